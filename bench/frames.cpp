@@ -179,8 +179,8 @@ Frames::Frames(const Skin& skin, SenselType type, const Scenario& scenario) : sk
   fill(frames_, type, skin, scenario);
 }
 
-Frames::Frames(const Skin& skin, std::vector<FrameBuffer> frames)
-    : skin_(skin), frames_(std::move(frames)) {}
+Frames::Frames(Skin skin, std::vector<FrameBuffer> frames)
+    : skin_(std::move(skin)), frames_(std::move(frames)) {}
 
 double Frames::contact() const {
   std::size_t pressed = 0;

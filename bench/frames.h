@@ -35,7 +35,7 @@ class Frames {
   /// 64 frames, or as many as fit in 1 GiB, at least 2.
   Frames(const Skin& skin, SenselType type, const Scenario& scenario);
   /// Wraps one or more given frames.
-  Frames(const Skin& skin, std::vector<FrameBuffer> frames);
+  Frames(Skin skin, std::vector<FrameBuffer> frames);
 
   [[nodiscard]] std::size_t size() const { return frames_.size(); }
   /// Frames repeat after size().

@@ -51,12 +51,16 @@ install(TARGETS pillarfield RUNTIME COMPONENT program)
 # Completion of the shells.
 set(completion "${PROJECT_BINARY_DIR}/completion")
 file(MAKE_DIRECTORY ${completion})
-add_custom_command(OUTPUT ${completion}/pillarfield ${completion}/pillarfield.fish
+add_custom_command(
+  OUTPUT ${completion}/pillarfield ${completion}/_pillarfield ${completion}/pillarfield.fish
   COMMAND pillarfield completion bash > ${completion}/pillarfield
+  COMMAND pillarfield completion zsh > ${completion}/_pillarfield
   COMMAND pillarfield completion fish > ${completion}/pillarfield.fish VERBATIM)
 add_custom_target(completion ALL DEPENDS ${completion}/pillarfield)
 install(FILES ${completion}/pillarfield COMPONENT program OPTIONAL
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${completion}/_pillarfield COMPONENT program OPTIONAL
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${completion}/pillarfield.fish COMPONENT program OPTIONAL
   DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 

@@ -225,17 +225,33 @@ def extendible(item):
     return {"maxshape": (None, *item.shape[1:]), "chunks": (2, *item.shape[1:])}
 
 
-def convert(source, target, variable=False, layout=None, swmr=False, **file_options):
+def in_parts(name, item):
+    """A plane in two parts."""
+    layout = h5py.VirtualLayout(item.shape, item.dtype)
+    ends = (0, len(item) // 2, len(item))
+    for part, (first, end) in enumerate(zip(ends, ends[1:]), 1):
+        source = h5py.VirtualSource(f"out.h5.parts/{part:05}.h5", name, (end - first, *item.shape[1:]))
+        layout[first:end] = source
+    return layout
+
+
+def convert(source, target, variable=False, layout=None, swmr=False, joined=False, version=None, **file_options):
     """Copies a file object by object: with strings of variable length if `variable`, datasets of frames
     in the h5py `layout`, and the file version of `file_options`. With `swmr`, `target` is left as by a
-    writer that was killed after a flush."""
+    writer that was killed after a flush. With `joined`, planes lie in two parts.
+    `version` is the format's, by default that of `source`."""
     unfinished = target.with_name("unfinished.h5") if swmr else target
     with h5py.File(source, "r") as old, h5py.File(unfinished, "w", **file_options) as new:
         copy_attributes(old, new, variable)
+        if version:
+            new.attrs["version"] = version
 
         def visit(name, item):
             if isinstance(item, h5py.Group):
                 copy_attributes(item, new.require_group(name), variable)
+                return
+            if joined and item.ndim == 3:
+                new.create_virtual_dataset(name, in_parts(name, item))
                 return
             options = {}
             if item.ndim > 0 and item.size > 0:
@@ -254,7 +270,7 @@ def convert(source, target, variable=False, layout=None, swmr=False, **file_opti
 
 # Variants of an HDF5 file: old and new format, compressed, checksummed, with strings of variable length.
 VARIANTS = {
-    "old": {},
+    "old": {"version": 1},
     "old_gzip_variable": {"variable": True, "layout": {"compression": "gzip", "shuffle": True}},
     "latest": {"libver": "latest"},
     "latest_gzip": {"libver": "latest", "layout": {"compression": "gzip", "fletcher32": True}},
@@ -492,6 +508,95 @@ def write_seeds(folder, program):
         convert(scratch / "uncertainty.h5", folder / "forces" / "seed_old_uncertainty.h5")
 
 
+def write_parts(folder, program):
+    """Parts of two, and files joined of them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in [*folder.glob("seed_*"), *folder.glob("hostile_*")]:
+        old.unlink()
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = pathlib.Path(scratch)
+        (scratch / "scene.toml").write_text(SCENE)
+        recording, output = scratch / "slide.h5", scratch / "out.h5"
+        run(program, "simulate", scratch / "scene.toml", "-o", recording)
+        plans = {"contacts": ("--contacts", output, "--checkpoint-every", 2),
+                 "uncertainty": ("--outputs", "angles,uncertainty", "--noise", 1)}
+        for name, plan in plans.items():
+            run(program, "solve", recording, "-o", output, "--parts", 2, *plan)
+            run(program, "join", output)
+            for part in (1, 2):
+                convert(scratch / f"out.h5.parts/{part:05}.h5", folder / f"seed_part{part}_{name}.h5",
+                        libver="latest")
+            with h5py.File(output, "r+") as file:
+                file["parts"].attrs.update(fingerprint="seed", checkpoint_every=0.0, warm_up=0.0)
+            convert(output, folder / f"seed_joined_{name}.h5", joined=True, libver="latest")
+        for name, (seed, change) in HOSTILE_PARTS.items():
+            path = folder / f"hostile_{name}.h5"
+            path.write_bytes((folder / f"seed_{seed}.h5").read_bytes())
+            with h5py.File(path, "r+") as file:
+                change(file)
+
+
+def give_part(group="part", **members):
+    return lambda file: file[group].attrs.update({name: value if isinstance(value, str) else float(value)
+                                                  for name, value in members.items()})
+
+
+def longer_table(file):
+    """Contacts of a frame that the part does not have."""
+    for name, column in list(file["contacts/patch"].items()):
+        values = column[()]
+        del file["contacts/patch"][name]
+        file["contacts/patch"][name] = numpy.append(values, values[-1:])
+
+
+HOSTILE_PARTS = {
+    "part_of_2e45_frames": ("part2_contacts", give_part(frames=2**45 + 3, checkpoint_every=2**45)),
+    "part_of_99999": ("part1_uncertainty", give_part(count=99999, frames=99999 * 2)),
+    "part_nan": ("part1_contacts", give_part(frames=numpy.nan)),
+    "part_0_of_0": ("part1_contacts", give_part(index=0, count=0)),
+    "part_longer_table": ("part1_contacts", longer_table),
+    "joined_of_2e46_frames": ("joined_contacts", give_part("parts", frames=2**46)),
+    "joined_of_99999": ("joined_uncertainty", give_part("parts", count=99999)),
+    "joined_above": ("joined_contacts", give_part("parts", folder="..")),
+    "joined_elsewhere": ("joined_contacts", give_part("parts", folder="../out.h5.parts")),
+    "joined_of_others": ("joined_contacts", give_part("parts", fingerprint="other")),
+}
+
+
+def write_bodies(folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in BODIES.items():
+        (folder / f"{name}.toml").write_text(text)
+
+
+PATCH = """
+[[patch]]
+name = "palm"
+scene = "skin.toml"
+"""
+BODY = """title = "Hand"
+rate_hz = 500
+refresh_s = 0.05
+""" + PATCH + """seed = 3
+size_mm = [12, 10]
+origin_mm = [0, 0, 20]
+tangent_x = [2, 0, 0]
+tangent_y = [0, 1, 0.001]
+clock_offset_s = -20.5
+clock_drift_ppm = -50
+""" + PATCH.replace("palm", "back")
+BODIES = {
+    "seed_hand": BODY, "seed_small": PATCH,
+    "hostile_large": "".join(PATCH.replace("palm", str(i)) + "size_mm = [2590, 2590]\n" for i in range(2)),
+    "hostile_many": "".join(PATCH.replace("palm", str(i)) for i in range(1025)),
+    "hostile_no_patch": "rate_hz = 10\n", "hostile_rate": "rate_hz = nan\n" + PATCH,
+    "hostile_repeated_name": PATCH + PATCH, "hostile_scene_of_itself": PATCH.replace("skin", "body"),
+    "hostile_device": PATCH.replace("skin.toml", "/dev/zero"), "hostile_folder": PATCH.replace("skin.toml", "."),
+    "hostile_parallel_tangents": PATCH + "tangent_y = [1, 0, 0]\n",
+    "hostile_nested_arrays": "a=" + "[" * 5000 + "]" * 5000,
+}
+
+
 def write_calibration(program, scratch):
     """A calibration of the scene's skin in two steps, scratch/tare.h5."""
     unloaded = SCENE.split("[[contact]]")[0].replace("frames = 5", "frames = 40")
@@ -551,6 +656,8 @@ def main():
     write_seeds(options.folder, options.program)
     write_hostile(options.folder)
     write_packets(options.folder)
+    write_parts(options.folder / "parts", options.program)
+    write_bodies(options.folder / "body")
 
 
 if __name__ == "__main__":

@@ -22,11 +22,18 @@ void read_plain(const std::filesystem::path& path, const ReadOptions& options);
 /// Reads a force file; also compares its frames with themselves.
 void read_forces(const std::filesystem::path& path, const ReadOptions& options);
 
+/// Reads a part, which it joins with the others of its solve, in both ways; or a joined file, with
+/// parts beside it.
+void read_parts(const std::filesystem::path& path, const ReadOptions& options);
+
 /// Reads a calibration; also applies it to a skin of its size.
 void read_calibration(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads a scene; also simulates the first and the last frame of a small one.
 void read_scene(const std::filesystem::path& path, const ReadOptions& options);
+
+/// Reads a body, whose scene `skin.toml` lies beside it.
+void read_body(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads packets of a live source as from a pipe, and assembles their frames. Throws Error unless
 /// all bytes belong to packets of one stream, and they make a frame.
@@ -38,12 +45,14 @@ struct Target {
   void (*read)(const std::filesystem::path& path, const ReadOptions& options);
 };
 
-inline constexpr std::array<Target, 7> kTargets = {{
+inline constexpr std::array<Target, 9> kTargets = {{
     {"recording", read_frames},
     {"forces", read_forces},
+    {"parts", read_parts},
     {"calibration", read_calibration},
     {"tekscan", read_frames},
     {"scene", read_scene},
+    {"body", read_body},
     {"plain", read_plain},
     {"packets", read_packets},
 }};

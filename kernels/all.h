@@ -35,6 +35,7 @@
 #include "frame/idle.h"
 #include "frame/idle_tiles.h"
 #include "frame/block.h"
+#include "frame/row_blocks.h"
 #include "frame/memory_planes.h"
 #include "frame/neighbours.h"
 #include "frame/find_wires.cl"

@@ -26,6 +26,7 @@
  *
  *   word_of(r)    the bits of r
  *   real_of_word(w)  the Real whose bits are w
+ *   real_of_count(w)  the number w as Real
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
@@ -57,6 +58,7 @@ static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
 static inline Word word_of(Real value) { return as_uint(value); }
 static inline Real real_of_word(Word word) { return as_float(word); }
+static inline Real real_of_count(Word count) { return (Real)count; }
 #else
 #ifdef PF_WHOLE
 #define PF_MASK_LANE short
@@ -73,6 +75,7 @@ static inline Mask mask_of(Bits bits) {
 }
 static inline Word word_of(Real value) { return PF_JOIN(as_uint, PF_LANES)(value); }
 static inline Real real_of_word(Word word) { return PF_JOIN(as_float, PF_LANES)(word); }
+static inline Real real_of_count(Word count) { return PF_JOIN(convert_float, PF_LANES)(count); }
 #endif
 
 #ifdef PF_WHOLE
@@ -143,6 +146,7 @@ using Real = float;
 using Word = std::uint32_t;
 static inline Word word_of(Real value) { return std::bit_cast<Word>(value); }
 static inline Real real_of_word(Word word) { return std::bit_cast<Real>(word); }
+static inline Real real_of_count(Word count) { return static_cast<Real>(count); }
 #endif
 using Counts = Real;
 using Fraction = Real;

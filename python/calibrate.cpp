@@ -317,7 +317,7 @@ void bind_finding(py::module_& module) {
       .def_readonly("row", &SenselFinding::row, "sensel row")
       .def_readonly("col", &SenselFinding::col, "sensel column")
       .def_readonly("masked", &SenselFinding::masked, "treated as missing from now on")
-      .def_readonly("mean_counts", &SenselFinding::mean_counts, "mean of its raw readings")
+      .def_readonly("mean_counts", &SenselFinding::mean_counts, "mean of its raw readings, counts")
       .def_property_readonly(
           "fault", [](const SenselFinding& self) { return name_of(self.fault); },
           "'stuck', 'noisy', 'saturated', ...");

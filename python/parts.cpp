@@ -39,10 +39,12 @@ bool solve_part_of(Frames& frames, const SolverPlan& plan, const std::string& so
 std::uint64_t join(const std::filesystem::path& output, bool copy, bool allow_missing,
                    bool overwrite, bool trust) {
   const py::gil_scoped_release unlocked;
+  SignalCheck check_signals;
   return join_parts(output, {.copy = copy,
                              .allow_lost = allow_missing,
                              .replace = overwrite ? Replace::anything : Replace::results,
-                             .read = {.trust = trust}})
+                             .read = {.trust = trust},
+                             .progress = [&](auto...) { check_signals(); }})
       .lost.size();
 }
 

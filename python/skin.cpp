@@ -149,7 +149,7 @@ void bind_skin(py::module_& module) {
                                                         self.power_law->reference_counts})
                                   : std::nullopt;
           },
-          "(exponent, reference_counts), or None")
+          "(exponent, reference in counts), or None")
       .def_property_readonly("pillar_rows", &Skin::pillar_rows, "pillar rows")
       .def_property_readonly("pillar_cols", &Skin::pillar_cols, "pillar columns")
       .def_property_readonly("pillar_pitch_mm", &Skin::pillar_pitch_mm, "distance of pillars, mm")

@@ -83,9 +83,14 @@ std::vector<std::filesystem::path> png_names(const Options& options, const Frame
   return names;
 }
 
+Replace replace_of(const Options& options) {
+  return options.overwrite ? Replace::anything : Replace::results;
+}
+
 void check_exports(const Options& options, const std::vector<std::filesystem::path>& pictures,
                    Replace replace) {
   std::vector<PlannedOutput> outputs;
+  outputs.reserve(pictures.size() + 2);
   for (const auto& picture : pictures) outputs.push_back({picture, OutputKind::png});
   if (!options.csv.empty()) outputs.push_back({options.csv, OutputKind::forces});
   if (!options.video.empty()) outputs.push_back({options.video, OutputKind::video});
@@ -143,15 +148,53 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
               "start again");
 }
 
+/// Renders the frames of `span` into `pictures` and the video.
+void write_pictures(const Options& options, FieldProducer& producer, const RenderSettings& settings,
+                    const FrameRange& span, const std::vector<std::filesystem::path>& pictures) {
+  PeakHold peaks;
+  HeadlessRenderer headless(options);
+  const bool with_peaks = settings.quantity == Quantity::peak;
+  for (std::uint64_t frame = 0; with_peaks && frame < span.begin; ++frame) {
+    stop_if_interrupted(options, 0);
+    peaks.add(producer.produce(frame).forces);
+  }
+  const VideoPace pace(options, producer.info().rate_hz);
+  std::unique_ptr<VideoWriter> video;
+  if (!options.video.empty()) {
+    video = std::make_unique<VideoWriter>(options.video, options.width, options.height, pace.fps(),
+                                          replace_of(options));
+  }
+  for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
+    stop_if_interrupted(options, frame - span.begin);
+    ShownField field = producer.produce(frame);
+    if (settings.contacts) {
+      field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
+    }
+    if (with_peaks) {
+      peaks.add(field.forces);
+      field.peak = peaks.field(field);
+    }
+    const Pixels pixels = headless.render(field, producer.info(), settings);
+    if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace_of(options));
+    if (video == nullptr) continue;
+    const std::uint64_t repeats = pace.pictures_of(frame - span.begin);
+    for (std::uint64_t i = 0; i < repeats; ++i) video->add(pixels);
+  }
+  if (video != nullptr) video->finish();
+  if (headless.validation_messages() != 0) {
+    throw Error("Vulkan", fmt::format("validation had {} messages", headless.validation_messages()),
+                "please report them");
+  }
+}
+
 }  // namespace
 
 void run_headless(const Options& options) {
-  const Replace replace = options.overwrite ? Replace::anything : Replace::results;
+  const Replace replace = replace_of(options);
   // Check the options before opening the source, which may take long.
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  PeakHold peaks;
   const bool on_terminal = isatty(STDERR_FILENO) == 1;
   const auto producer =
       open_producer(options.source, producer_options(options, [=](const std::string& line) {
@@ -177,40 +220,8 @@ void run_headless(const Options& options) {
     tell_written(options, pictures, span, source.frames);
     return;
   }
-  HeadlessRenderer headless(options);
-  const bool with_peaks = settings.quantity == Quantity::peak;
-  for (std::uint64_t frame = 0; with_peaks && frame < span.begin; ++frame) {
-    stop_if_interrupted(options, 0);
-    peaks.add(producer->produce(frame).forces);
-  }
-  const VideoPace pace(options, source.rate_hz);
-  std::unique_ptr<VideoWriter> video;
-  if (!options.video.empty()) {
-    video = std::make_unique<VideoWriter>(options.video, options.width, options.height, pace.fps(),
-                                          replace);
-  }
-  for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
-    stop_if_interrupted(options, frame - span.begin);
-    ShownField field = producer->produce(frame);
-    if (settings.contacts) {
-      field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
-    }
-    if (with_peaks) {
-      peaks.add(field.forces);
-      field.peak = peaks.field(field);
-    }
-    const Pixels pixels = headless.render(field, source, settings);
-    if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace);
-    if (video == nullptr) continue;
-    const std::uint64_t repeats = pace.pictures_of(frame - span.begin);
-    for (std::uint64_t i = 0; i < repeats; ++i) video->add(pixels);
-  }
-  if (video != nullptr) video->finish();
+  write_pictures(options, *producer, settings, span, pictures);
   tell_written(options, pictures, span, source.frames);
-  if (headless.validation_messages() != 0) {
-    throw Error("Vulkan", fmt::format("validation had {} messages", headless.validation_messages()),
-                "please report them");
-  }
 }
 
 }  // namespace pillarfield::viewer

@@ -253,6 +253,52 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
           "--headless needs something to write: --png, --video or --csv");
 }
 
+void add_view_flags(CLI::App& app, Options& options) {
+  app.add_flag_callback(
+      "--light", [&] { options.theme = Theme::light; }, "Dark on white");
+  app.add_flag_callback(
+      "--no-arrows", [&] { options.arrows = false; }, "No arrows");
+  app.add_flag("--sectors,--fans", options.sectors,
+               "Uncertainty sectors of ambiguous shear, at large zoom");
+  app.add_flag_callback(
+      "--no-hatch", [&] { options.hatch = false; }, "No hatching of ambiguous pillars");
+  app.add_flag("--contacts", options.contacts,
+               "Mark contacts: extent, id, force, centre of pressure, shear");
+  app.add_flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
+  app.add_flag_callback(
+      "--no-legend", [&] { options.legend = false; },
+      "Only the field, without axes and colour bar");
+}
+
+void add_files(CLI::App& app, Options& options) {
+  app.add_flag("--headless", options.headless, "Write files without a window")->group("Files");
+  app.add_option_function<std::string>(
+         "--png", [&](const std::string& text) { take_png(options, text); },
+         "Picture to write; NAME_001.png and so on for several frames")
+      ->group("Files");
+  app.add_option("--video", options.video, "Video to write with ffmpeg, .mp4 or .webm")
+      ->group("Files");
+  app.add_option("--csv", options.csv, "Table to write: visible forces of the first frame")
+      ->group("Files");
+  app.add_flag("--overwrite", options.overwrite,
+               "Replace existing files of any kind, but never the source")
+      ->group("Files");
+}
+
+void add_devices(CLI::App& app, Options& options) {
+  app.add_option("--device", options.device, "OpenCL device that solves [the best]")
+      ->group("Devices");
+  app.add_option("--gpu", options.gpu, "Vulkan device that draws, by a part of its name [the best]")
+      ->group("Devices");
+  app.add_flag("--copy", options.copy_fields, "Always copy fields to the Vulkan device")
+      ->group("Devices");
+  app.add_flag("--validate", options.validate, "Enable the Vulkan validation layer")
+      ->group("Devices");
+  app.add_flag("--paused", options.paused, "Start paused")->group("Window");
+  app.add_flag("--statistics", options.statistics, "Print rates and times as JSON at the end")
+      ->group("Window");
+}
+
 }  // namespace
 
 std::optional<int> parse_options(int argc, char** argv, Options& options) {
@@ -277,46 +323,9 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       app.add_option("--frame", frame,
                      "Frame to show first, counted from 1 [1; headless: the most loaded]")
           ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
-  app.add_flag_callback(
-      "--light", [&] { options.theme = Theme::light; }, "Dark on white");
-  app.add_flag_callback(
-      "--no-arrows", [&] { options.arrows = false; }, "No arrows");
-  app.add_flag("--sectors,--fans", options.sectors,
-               "Uncertainty sectors of ambiguous shear, at large zoom");
-  app.add_flag_callback(
-      "--no-hatch", [&] { options.hatch = false; }, "No hatching of ambiguous pillars");
-  app.add_flag("--contacts", options.contacts,
-               "Mark contacts: extent, id, force, centre of pressure, shear");
-  app.add_flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
-  app.add_flag_callback(
-      "--no-legend", [&] { options.legend = false; },
-      "Only the field, without axes and colour bar");
-
-  app.add_flag("--headless", options.headless, "Write files without a window")->group("Files");
-  app.add_option_function<std::string>(
-         "--png", [&](const std::string& text) { take_png(options, text); },
-         "Picture to write; NAME_001.png and so on for several frames")
-      ->group("Files");
-  app.add_option("--video", options.video, "Video to write with ffmpeg, .mp4 or .webm")
-      ->group("Files");
-  app.add_option("--csv", options.csv, "Table to write: visible forces of the first frame")
-      ->group("Files");
-
-  app.add_flag("--overwrite", options.overwrite,
-               "Replace existing files of any kind, but never the source")
-      ->group("Files");
-
-  app.add_option("--device", options.device, "OpenCL device that solves [the best]")
-      ->group("Devices");
-  app.add_option("--gpu", options.gpu, "Vulkan device that draws, by a part of its name [the best]")
-      ->group("Devices");
-  app.add_flag("--copy", options.copy_fields, "Always copy fields to the Vulkan device")
-      ->group("Devices");
-  app.add_flag("--validate", options.validate, "Enable the Vulkan validation layer")
-      ->group("Devices");
-  app.add_flag("--paused", options.paused, "Start paused")->group("Window");
-  app.add_flag("--statistics", options.statistics, "Print rates and times as JSON at the end")
-      ->group("Window");
+  add_view_flags(app, options);
+  add_files(app, options);
+  add_devices(app, options);
   try {
     app.parse(argc, argv);
     check_together(options, one->count() > 0, options.end_frame != 0);

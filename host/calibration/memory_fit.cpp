@@ -76,6 +76,21 @@ NormalEquations equations_of(const Samples& samples, const std::vector<double>& 
   return equations;
 }
 
+/// Slopes and memory of a solution `x` of equations_of(), with two of its creep times.
+MemoryFit fit_of(const std::vector<double>& x, std::size_t pieces, double range,
+                 const std::array<double, kCreepTimes>& times, std::array<std::size_t, 2> creep) {
+  MemoryFit fit;
+  fit.slopes.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(pieces));
+  for (std::size_t i = 0; i < kMaxPlays; ++i) {
+    if (x[pieces + i] > 0) fit.memory.plays.push_back({kWidths.at(i) * range, x[pieces + i]});
+  }
+  for (const std::size_t i : creep) {
+    const double weight = x[pieces + kMaxPlays + i];
+    if (weight > 0) fit.memory.creep.push_back({times.at(i), weight});
+  }
+  return fit;
+}
+
 /// The best two creep times, or none, for a dead zone.
 MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool with_memory,
                  double zone, double range) {
@@ -84,7 +99,6 @@ MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool w
   const std::array<double, kCreepTimes> times = creep_times(samples);
   MemoryFit best;
   best.squares = std::numeric_limits<double>::infinity();
-  best.dead_zone = zone;
   for (std::size_t fast = 0; fast < kCreepTimes; ++fast) {
     for (std::size_t slow = fast + 1; slow < kCreepTimes; ++slow) {
       std::vector<bool> allowed(equations.unknowns());
@@ -93,18 +107,9 @@ MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool w
       const std::vector<double> x = equations.solve_non_negative(allowed);
       const double squares = equations.squares_at(x);
       if (squares < best.squares) {
+        best = fit_of(x, pieces, range, times, {fast, slow});
         best.squares = squares;
-        best.slopes.assign(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(pieces));
-        best.memory = {};
-        for (std::size_t i = 0; i < kMaxPlays; ++i) {
-          if (x[pieces + i] > 0) {
-            best.memory.plays.push_back({kWidths.at(i) * range, x[pieces + i]});
-          }
-        }
-        for (const std::size_t i : {fast, slow}) {
-          const double weight = x[pieces + kMaxPlays + i];
-          if (weight > 0) best.memory.creep.push_back({times.at(i), weight});
-        }
+        best.dead_zone = zone;
       }
       if (!with_memory) return best;
     }

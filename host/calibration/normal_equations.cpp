@@ -4,6 +4,25 @@
 #include <cmath>
 
 namespace pillarfield {
+namespace {
+
+/// Moves `x` towards `next` until the first unknown reaches zero, which leaves `active`.
+void step_to_zero(const std::vector<double>& next, std::vector<double>& x,
+                  std::vector<bool>& active) {
+  double part = 1;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (next[i] < 0) part = std::min(part, x[i] / (x[i] - next[i]));
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] += part * (next[i] - x[i]);
+    if (active[i] && x[i] <= 1e-15 && next[i] < 0) {
+      x[i] = 0;
+      active[i] = false;
+    }
+  }
+}
+
+}  // namespace
 
 void NormalEquations::add(std::span<const double> row, double value) {
   for (std::size_t i = 0; i < unknowns_; ++i) {
@@ -51,44 +70,40 @@ std::optional<std::vector<double>> NormalEquations::solve(const std::vector<bool
   return x;
 }
 
+/// The unknown at zero whose rise lowers the squares most, by more than `least` per unit.
+std::optional<std::size_t> NormalEquations::steepest_zero(const std::vector<double>& x,
+                                                          const std::vector<bool>& active,
+                                                          const std::vector<bool>& allowed,
+                                                          double least) const {
+  std::optional<std::size_t> steepest;
+  for (std::size_t i = 0; i < unknowns_; ++i) {
+    if (active[i] || !allowed[i]) continue;
+    double gradient = right_[i];
+    for (std::size_t j = 0; j < unknowns_; ++j) gradient -= matrix_[i * unknowns_ + j] * x[j];
+    if (!(gradient > least)) continue;
+    least = gradient;
+    steepest = i;
+  }
+  return steepest;
+}
+
 std::vector<double> NormalEquations::solve_non_negative(const std::vector<bool>& allowed) const {
   std::vector<double> x(unknowns_);
   std::vector<bool> active(unknowns_);
   double scale = 0;
   for (const double value : right_) scale = std::max(scale, std::abs(value));
   for (std::size_t step = 0; step < 3 * unknowns_ + 3; ++step) {
-    // The unknown at zero whose rise lowers the squares most.
-    std::size_t steepest = unknowns_;
-    double slope = 1e-12 * scale;
-    for (std::size_t i = 0; i < unknowns_; ++i) {
-      if (active[i] || !allowed[i]) continue;
-      double gradient = right_[i];
-      for (std::size_t j = 0; j < unknowns_; ++j) gradient -= matrix_[i * unknowns_ + j] * x[j];
-      if (gradient > slope) {
-        slope = gradient;
-        steepest = i;
-      }
-    }
-    if (steepest == unknowns_) return x;
-    active[steepest] = true;
+    const auto steepest = steepest_zero(x, active, allowed, 1e-12 * scale);
+    if (!steepest) return x;
+    active[*steepest] = true;
     auto next = solve(active);
     if (!next) {
-      active[steepest] = false;
+      active[*steepest] = false;
       return x;
     }
     // Back to the boundary until no unknown is negative.
     while (next && *std::ranges::min_element(*next) < 0) {
-      double part = 1;
-      for (std::size_t i = 0; i < unknowns_; ++i) {
-        if ((*next)[i] < 0) part = std::min(part, x[i] / (x[i] - (*next)[i]));
-      }
-      for (std::size_t i = 0; i < unknowns_; ++i) {
-        x[i] += part * ((*next)[i] - x[i]);
-        if (active[i] && x[i] <= 1e-15 && (*next)[i] < 0) {
-          x[i] = 0;
-          active[i] = false;
-        }
-      }
+      step_to_zero(*next, x, active);
       next = solve(active);
     }
     if (!next) return x;

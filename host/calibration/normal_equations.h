@@ -33,6 +33,11 @@ class NormalEquations {
   [[nodiscard]] double squares_at(const std::vector<double>& x) const;
 
  private:
+  [[nodiscard]] std::optional<std::size_t> steepest_zero(const std::vector<double>& x,
+                                                         const std::vector<bool>& active,
+                                                         const std::vector<bool>& allowed,
+                                                         double least) const;
+
   std::size_t unknowns_;
   std::vector<double> matrix_;
   std::vector<double> right_;

@@ -133,45 +133,66 @@ Response ResponseFit::line(const Sums& sums) const {
           .responded = sums.yy};
 }
 
-std::optional<LevelReadings> level_readings(const ResponseFit& fit,
-                                            const std::vector<std::uint8_t>& mask) {
-  const std::vector<UniformPress>& presses = fit.presses();
-  const Skin& skin = presses.front().frames.skin();
-  std::vector<double> sums(presses.size());
-  std::vector<double> one(presses.size());
-  std::size_t good = 0;
-  std::size_t responding = 0;
+namespace {
+
+/// The response of a sensel to each press; false where one of them has none.
+bool all_responses(const ResponseFit& fit, std::size_t sensel, std::vector<double>& responses) {
+  for (std::size_t press = 0; press < responses.size(); ++press) {
+    const auto response = fit.response(fit.presses()[press], sensel);
+    if (!response) return false;
+    responses[press] = *response;
+  }
+  return true;
+}
+
+/// Sums over the sensels that respond to every press.
+struct RespondingSensels {
+  std::vector<double> responses;  ///< one for each press
   double leaks = 0;
+  std::size_t count = 0;
+};
+
+/// Unset where half of the good sensels or fewer respond.
+std::optional<RespondingSensels> responding_sensels(const ResponseFit& fit,
+                                                    const std::vector<std::uint8_t>& mask) {
+  const Skin& skin = fit.presses().front().frames.skin();
+  RespondingSensels sums{std::vector<double>(fit.presses().size())};
+  std::vector<double> responses(fit.presses().size());
+  std::size_t good = 0;
   for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
     for (const std::size_t i : sensels) {
       if (!mask.empty() && mask[i] != kGood) continue;
       ++good;
-      std::size_t press = 0;
-      for (; press < presses.size(); ++press) {
-        const auto response = fit.response(presses[press], i);
-        if (!response) break;
-        one[press] = *response;
-      }
-      if (press < presses.size()) continue;
-      ++responding;
-      leaks += leak_sum(fit.planes().effects, skin, i);
-      for (std::size_t p = 0; p < presses.size(); ++p) sums[p] += one[p];
+      if (!all_responses(fit, i, responses)) continue;
+      ++sums.count;
+      sums.leaks += leak_sum(fit.planes().effects, skin, i);
+      for (std::size_t p = 0; p < responses.size(); ++p) sums.responses[p] += responses[p];
     }
   });
-  if (2 * responding <= good) return std::nullopt;
+  return 2 * sums.count > good ? std::optional(sums) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LevelReadings> level_readings(const ResponseFit& fit,
+                                            const std::vector<std::uint8_t>& mask) {
+  const std::vector<UniformPress>& presses = fit.presses();
+  const Skin& skin = presses.front().frames.skin();
+  const auto responding = responding_sensels(fit, mask);
+  if (!responding) return std::nullopt;
   LevelReadings at;
   for (const double level : fit.levels()) {
     double sum = 0;
     double frames = 0;
     for (std::size_t p = 0; p < presses.size(); ++p) {
       if (presses[p].pressure_kpa != level) continue;
-      sum += sums[p] * presses[p].frames.frames();
+      sum += responding->responses[p] * presses[p].frames.frames();
       frames += presses[p].frames.frames();
     }
     const double area_mm2 = skin.pillar_pitch_mm() * skin.pillar_pitch_mm();
-    const auto count = static_cast<double>(responding);
+    const auto count = static_cast<double>(responding->count);
     at.readings.push_back(sum / frames / count);
-    at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * leaks / count);
+    at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * responding->leaks / count);
   }
   const bool increase = std::ranges::is_sorted(at.readings, std::less_equal<>());
   return increase ? std::optional(at) : std::nullopt;

@@ -44,8 +44,8 @@ void copy_rows(const FrameView& frame, FrameBuffer& to) {
 }  // namespace
 
 struct SenselWatch::State {
-  State(const SolverPlan& watched, std::chrono::milliseconds window_length)
-      : plan(watched),
+  State(SolverPlan watched, std::chrono::milliseconds window_length)
+      : plan(std::move(watched)),
         window(window_length),
         frame(plan.sensel_type, plan.skin.rows, plan.skin.cols),
         faults(plan.skin.sensels()),

@@ -28,20 +28,19 @@ WireCorrection::WireCorrection(const Skin& skin, SenselType type,
 FrameView WireCorrection::operator()(const FrameView& raw) {
   if (!corrected_) return raw;
   const WireFactors factors(plan_, raw);
-  const auto per_count = static_cast<float>(plan_.calibration.effects.wires->column_per_count);
   const auto out = corrected_->readings<float>();
   for_each_row(raw, [&](std::size_t row, const auto* readings) {
     for (std::size_t col = 0; col < raw.cols; ++col) {
       const auto reading = static_cast<float>(readings[col]);
       float& corrected = out[row * raw.cols + col];
-      if (row >= 2 * plan_.skin.pillar_rows() || col >= 2 * plan_.skin.pillar_cols()) {
+      if (row / 2 >= plan_.skin.pillar_rows() || col / 2 >= plan_.skin.pillar_cols()) {
         corrected = reading;
         continue;
       }
       const single_precision::Wires at = factors.at(row, col);
       single_precision::Sensel sensel{};
       sensel.reading = reading;
-      sensel = single_precision::remove_crosstalk(sensel, at, per_count);
+      sensel = single_precision::remove_crosstalk(sensel, at);
       corrected = sensel.missing != 0 ? std::nanf("") : sensel.reading;
       if (plan_.skin.full_scale_counts && reading >= *plan_.skin.full_scale_counts) {
         corrected = static_cast<float>(*skin_.full_scale_counts);

@@ -11,7 +11,9 @@
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
+#include "cli/parts/examine.h"
 #include "cli/progress.h"
+#include "cli/warnings.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/error.h"
@@ -195,14 +197,20 @@ void print_coverage(const Coverage& coverage) {
       "deviations, since it excludes noise. Pillars with flagged sensels are left out.\n");
 }
 
-/// Ranges of frames without forces. Throws Error unless they are allowed.
+/// The parts that are absent or cannot be used, in order; names them. Throws Error unless they are
+/// allowed.
 std::vector<LostPart> lost_parts(const ForceFileReader& forces, const CompareOptions& options) {
-  std::vector<LostPart> lost = forces.lost_parts();
-  if (lost.empty() || options.allow_missing) return lost;
-  throw Error(options.forces,
-              fmt::format("it lacks {} of {} parts: {}{}", lost.size(), forces.parts(),
-                          name_of(lost.front()), lost.size() > 1 ? ", ..." : ""),
-              "solve them, or leave them out with --allow-missing");
+  std::vector<LostPart> lost = examined_parts(forces, options.forces, options.quiet);
+  if (options.allow_missing) {
+    print_file_warnings(options.forces, sentences_about(lost));
+    return lost;
+  }
+  if (lost.empty()) return lost;
+  throw Error(
+      options.forces,
+      fmt::format("it lacks {} of {} parts: {}{}: {}", lost.size(), forces.parts(),
+                  name_of(lost.front()), lost.size() > 1 ? ", ..." : "", lost.front().reason),
+      "solve them, or leave them out with --allow-missing");
 }
 
 /// Checks that the files belong to one patch and returns the number of frames in both.
@@ -243,11 +251,7 @@ void compare(const CompareOptions& options) {
   const std::unique_ptr<FrameSource> recording =
       open_frames(options.recording, {.trust = options.read.trust, .untimed = true});
   const std::vector<LostPart> lost = lost_parts(forces, options);
-  const auto is_lost = [&](std::uint64_t frame) {
-    return std::ranges::any_of(lost, [&](const LostPart& part) {
-      return frame >= part.frames.first && frame < part.frames.end;
-    });
-  };
+  auto next_lost = lost.begin();
   const std::uint64_t all_frames = common_frames(forces, *recording, options);
   std::uint64_t frames = 0;
   const ForceFileInfo& info = forces.info();
@@ -262,7 +266,8 @@ void compare(const CompareOptions& options) {
     Progress progress("Comparing", all_frames, options.quiet);
     for (std::uint64_t index = 0; index < all_frames; ++index) {
       stop_if_interrupted(index, options.forces);
-      if (is_lost(index)) continue;
+      while (next_lost != lost.end() && next_lost->frames.end <= index) ++next_lost;
+      if (next_lost != lost.end() && next_lost->frames.first <= index) continue;
       ++frames;
       forces.read(index, solved);
       recording->read_truth(first + index, truth);

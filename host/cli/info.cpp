@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
+#include "cli/parts/examine.h"
 #include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
@@ -132,8 +133,8 @@ Json facts_of_frames(const std::string& file, const ReadOptions& options) {
   return facts;
 }
 
-Json facts_of_forces(const std::string& file) {
-  const ForceFileReader reader(file, kProbed);
+Json facts_of_forces(const std::string& file, const InfoOptions& options) {
+  const ForceFileReader reader(file, options.read);
   const ForceFileInfo& info = reader.info();
   Json facts = {{"format", "force field"},
                 {"frames", reader.frames()},
@@ -156,7 +157,7 @@ Json facts_of_forces(const std::string& file) {
   if (reader.parts() == 0) return facts;
   facts["parts"] = reader.parts();
   facts[kLostParts] = Json::array();
-  for (const LostPart& part : reader.examine_parts()) {
+  for (const LostPart& part : examined_parts(reader, file, options.quiet)) {
     facts[kLostParts].push_back(fmt::format("{}: {}", name_of(part), part.reason));
   }
   return facts;
@@ -217,12 +218,14 @@ Json facts_of_scene(const std::string& file) {
   return facts;
 }
 
-Json facts_of(const std::string& file, const ReadOptions& options) {
+Json facts_of(const std::string& file, const InfoOptions& given) {
+  const ReadOptions& options = given.read;
   if (file.ends_with(".toml")) return facts_of_scene(file);
   if (!options.dataset.empty()) return facts_of_frames(file, options);
   if (!options.trust) probe_file(file);
   if (is_calibration_file(file, kProbed)) return facts_of_calibration(file);
-  return is_force_file(file, kProbed) ? facts_of_forces(file) : facts_of_frames(file, options);
+  return is_force_file(file, kProbed) ? facts_of_forces(file, given)
+                                      : facts_of_frames(file, options);
 }
 
 void print_device_error() {
@@ -283,7 +286,7 @@ void info(const InfoOptions& options) {
   } else if (!options.kernel.empty()) {
     print_kernel(options.kernel);
   } else if (!options.file.empty()) {
-    const Json facts = facts_of(options.file, options.read);
+    const Json facts = facts_of(options.file, options);
     print_facts(facts, options.json);
     const std::size_t lost = facts.contains(kLostParts) ? facts[kLostParts].size() : 0;
     if (lost > 0) {

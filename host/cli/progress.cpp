@@ -14,8 +14,11 @@ std::function<void(const std::string&)> terminal_line(bool quiet) {
   return [](const std::string& line) { fmt::print(stderr, "{}\n", printable(line)); };
 }
 
-Progress::Progress(std::string verb, std::uint64_t frames, bool quiet)
-    : verb_(std::move(verb)), frames_(frames), visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(std::string verb, std::uint64_t frames, bool quiet, const char* noun)
+    : verb_(std::move(verb)),
+      frames_(frames),
+      noun_(noun),
+      visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (drawn_) std::fputs("\r\033[K", stderr);
@@ -27,10 +30,15 @@ void Progress::show(std::uint64_t done) {
   next_ = now + std::chrono::milliseconds(100);
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const double left = seconds / static_cast<double>(done) * static_cast<double>(frames_ - done);
-  fmt::print(stderr, "\r\033[K{}: frame {} of {} ({} %), about {:.0f} s left", verb_, done, frames_,
-             100 * done / frames_, left);
+  fmt::print(stderr, "\r\033[K{}: {} {} of {} ({} %), about {:.0f} s left", verb_, noun_, done,
+             frames_, 100 * done / frames_, left);
   std::fflush(stderr);
   drawn_ = true;
+}
+
+void Progress::show(std::uint64_t done, std::uint64_t of) {
+  frames_ = of;
+  show(done);
 }
 
 }  // namespace pillarfield::cli

@@ -13,18 +13,20 @@ namespace pillarfield::cli {
 /// Shows the progress of a job on standard error if that is a terminal, at most ten times a second.
 class Progress {
  public:
-  /// `verb` is a word such as "Solving".
-  Progress(std::string verb, std::uint64_t frames, bool quiet);
+  /// `verb` is a word such as "Solving"; `noun` is what is counted.
+  Progress(std::string verb, std::uint64_t frames, bool quiet, const char* noun = "frame");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void show(std::uint64_t done);
+  void show(std::uint64_t done, std::uint64_t of);
 
  private:
   using Clock = std::chrono::steady_clock;
   std::string verb_;
   std::uint64_t frames_;
+  const char* noun_;
   bool visible_;
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now();

@@ -54,15 +54,14 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
   copy_activation_thresholds(plan, to);
 }
 
-/// Bytes of the states of sensels, and of the frame of their last load, as laid out in
-/// kernels/frame/memory_planes.h.
+/// Bytes of the states of pillars (Memory), as laid out in kernels/frame/memory_planes.h.
 std::size_t bytes_of_states(const SolverPlan& plan) {
   const auto& memory = plan.calibration.effects.memory;
   if (!memory) return 0;
-  const std::size_t states = memory->plays.size() + memory->creep.size() + 1;
+  const std::size_t words = 1 + 2 * (memory->plays.size() + memory->creep.size());
   // blocks_of_row() times the lanes, at most.
   const std::size_t pillars_of_row = std::size_t{plan.skin.pillar_cols()} + 32;
-  return page_aligned(4 * states * plan.skin.pillar_rows() * pillars_of_row * sizeof(float));
+  return page_aligned(words * plan.skin.pillar_rows() * pillars_of_row * sizeof(cl_uint));
 }
 
 }  // namespace
@@ -98,9 +97,9 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
                                      const SpeedPaths& paths)
     : planes_(calibration_planes(plan, paths)),
-      plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
-  has_tare_ = std::ranges::count(planes_, CalibrationPlane::tare) > 0;
-  state_bytes_ = bytes_of_states(plan);
+      plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))),
+      state_bytes_(bytes_of_states(plan)),
+      has_tare_(std::ranges::count(planes_, CalibrationPlane::tare) > 0) {
   if (planes_.empty()) return;
   const std::size_t planes = planes_.size() - (state_bytes_ > 0 ? 1 : 0);
   const std::size_t bytes = planes * plane_bytes_ + state_bytes_;

@@ -50,9 +50,9 @@ class CalibrationMemory {
 
   std::vector<CalibrationPlane> planes_;
   std::size_t plane_bytes_;
-  bool has_tare_;
   std::size_t state_bytes_ = 0;  ///< behind the planes
-  LargePages memory_;            ///< used if the device shares the host's memory
+  bool has_tare_;
+  LargePages memory_;  ///< used if the device shares the host's memory
   cl::Buffer buffer_;
 };
 

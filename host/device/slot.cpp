@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "device/block_lanes.h"
+
 namespace pillarfield {
 namespace {
 
@@ -42,7 +44,12 @@ cl::NDRange tiles_of(const SolverPlan& plan, const WireCrosstalk& wires) {
 /// Floats of the rings of kernels/frame/neighbours.h.
 std::size_t ring_floats(const SolverPlan& plan, const SlotSettings& settings, std::size_t bands) {
   if (!plan.calibration.effects.sensel_leak || settings.lanes == 1) return 0;
-  return bands * 8 * (std::size_t{plan.skin.pillar_cols()} + 2);
+  constexpr std::size_t kRows = 3;  // PF_RING_ROWS
+  const std::uint32_t cols = plan.skin.pillar_cols();
+  const auto lanes = static_cast<std::uint32_t>(settings.lanes);
+  const std::size_t flags = kRows * blocks_of_row(cols, lanes);
+  return bands *
+         (4 * kRows * (std::size_t{cols} + 2) + (flags + sizeof(float) - 1) / sizeof(float));
 }
 
 /// Floats of the vectors of kernels/frame/wire_vectors.h.

@@ -5,14 +5,14 @@
 namespace pillarfield {
 
 ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed)
-    : plane_bytes(page_aligned(plan.skin.pillars() * sizeof(float))),
+    : plane_bytes(plane_distance(plan.skin.pillars() * sizeof(float))),
       changed_flags(flags_of_changed) {
   for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
     has[i] = has_planes(plan.angles, plan.uncertainty, kResultPlanes[i].set);
     planes[i] = status;
     if (has[i]) status += plane_bytes;
   }
-  bytes = status + page_aligned(plan.skin.pillars());
+  bytes = page_aligned(status + plan.skin.pillars());
   if (block_lanes == 0) return;
   lanes = static_cast<std::uint32_t>(block_lanes);
   flag_stride = blocks_of_row(plan.skin.pillar_cols(), lanes);

@@ -20,12 +20,20 @@ constexpr std::size_t page_aligned(std::size_t bytes) {
   return (bytes + kPageSize - 1) / kPageSize * kPageSize;
 }
 
-/// Offsets of the planes of a result in one block of pages, bytes. Each plane begins on a page; the
-/// flags of idle blocks follow the planes.
+/// Distance of planes of `bytes`: 768 bytes above whole pages. The lines that a block of pillars
+/// writes to up to 16 planes then lie in different sets of a cache; on whole pages all share one.
+/// The planes stay aligned to 256 bytes.
+constexpr std::size_t plane_distance(std::size_t bytes) {
+  constexpr std::size_t kSkew = 768;
+  return page_aligned(bytes < kSkew ? 0 : bytes - kSkew) + kSkew;
+}
+
+/// Offsets of the planes of a result in one block of pages, bytes; the flags of idle blocks follow
+/// the planes.
 struct ResultLayout {
-  /// `lanes`: pillars of a block that may be idle; 0: no flags. `changed_flags`: bytes of
+  /// `block_lanes`: pillars of a block that may be idle; 0: no flags. `flags_of_changed`: bytes of
   /// ChangedBlocks.
-  ResultLayout(const SolverPlan& plan, int lanes, std::size_t changed_flags = 0);
+  ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed = 0);
 
   std::array<std::size_t, kSolvedPlanes> planes{};  ///< offset from the first one
   std::array<bool, kSolvedPlanes> has{};            ///< planes of the plan

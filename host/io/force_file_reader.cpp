@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "io/file_kind.h"
 #include "io/force_format.h"
@@ -26,11 +27,11 @@ namespace pillarfield {
 namespace {
 
 struct OpenForces {
-  explicit OpenForces(hdf5::File opened);
+  OpenForces(hdf5::File opened, const ReadOptions& options);
 
-  void open_planes();
+  void open_planes(bool may_lack_chunks);
   void read_size(const std::vector<hsize_t>& shape);
-  void open_parts();
+  void open_parts(const ReadOptions& options);
   void read_info();
   void read_surface_of_skin();
   void count_frames();
@@ -75,13 +76,13 @@ std::vector<hsize_t> shape_of_virtual(const hdf5::File& file, const char* name) 
   return {extent[1], extent[2]};
 }
 
-OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
+OpenForces::OpenForces(hdf5::File opened, const ReadOptions& options) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
-  hdf5::require_format(file, force_format::kName, force_format::kVersion);
+  const int version = hdf5::require_format(file, force_format::kName, force_format::kVersion);
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
   const bool is_joined = hdf5::exists(file, force_format::kParts);
-  if (!is_joined) open_planes();
+  if (!is_joined) open_planes(version >= force_format::kSparseSince);
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
   if (hdf5::exists(file, force_format::kContacts)) {
@@ -92,20 +93,20 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   read_info();
   read_surface_of_skin();
   if (is_joined) {
-    open_parts();
+    open_parts(options);
   } else {
     info.part = read_part(file, force_format::kPart);
     count_frames();
   }
 }
 
-void OpenForces::open_planes() {
+void OpenForces::open_planes(bool may_lack_chunks) {
   for (const ResultPlane& plane : planes_of(info)) {
     if (!is_read(plane)) continue;
-    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2, true);
+    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2, may_lack_chunks);
     require_class(planes.back(), H5T_FLOAT, "floats", file.path);
   }
-  status = {file, force_format::kStatus, 2, true};
+  status = {file, force_format::kStatus, 2, may_lack_chunks};
   require_class(status, H5T_INTEGER, "integers", file.path);
 }
 
@@ -128,7 +129,7 @@ void OpenForces::read_size(const std::vector<hsize_t>& shape) {
 }
 
 /// Opens the folder of parts, which lies beside the file.
-void OpenForces::open_parts() {
+void OpenForces::open_parts(const ReadOptions& options) {
   const auto part = read_part(file, force_format::kParts);
   const hdf5::Handle group = hdf5::open_object(file, force_format::kParts);
   const std::string folder = hdf5::read_text(file, group.get(), force_format::kFolder).value_or("");
@@ -141,10 +142,8 @@ void OpenForces::open_parts() {
     throw Error(file.path.string(), "its tables do not fit the frames of its parts",
                 "join them again");
   }
-  parts.emplace(file.path.parent_path() / folder, *part, info);
-  for (const LostPart& lost : parts->lost()) {
-    warnings.push_back(fmt::format("It lacks {}: {}.", name_of(lost), lost.reason));
-  }
+  parts.emplace(file.path.parent_path() / folder, *part, info, ReadOptions{.trust = options.trust});
+  std::ranges::move(sentences_about(parts->lost()), std::back_inserter(warnings));
 }
 
 void OpenForces::read_info() {
@@ -198,11 +197,11 @@ struct ForceFileReader::State : OpenForces {
   using OpenForces::OpenForces;
 };
 
-void try_forces(hdf5::File file) { (void)OpenForces(std::move(file)); }
+void try_forces(hdf5::File file) { (void)OpenForces(std::move(file), {}); }
 
 ForceFileReader::ForceFileReader(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  state_ = std::make_unique<State>(open_probed(path, options));
+  state_ = std::make_unique<State>(open_probed(path, options), options);
 }
 
 ForceFileReader::~ForceFileReader() = default;
@@ -214,14 +213,15 @@ std::uint64_t ForceFileReader::frames() const { return state_->frames; }
 const std::vector<std::string>& ForceFileReader::warnings() const { return state_->warnings; }
 
 const std::vector<LostPart>& ForceFileReader::lost_parts() const {
-  static const std::vector<LostPart> kNone;
-  return state_->parts ? state_->parts->lost() : kNone;
+  static const std::vector<LostPart> none;
+  return state_->parts ? state_->parts->lost() : none;
 }
 
 std::uint64_t ForceFileReader::parts() const { return state_->parts ? state_->parts->parts() : 0; }
 
-std::vector<LostPart> ForceFileReader::examine_parts() const {
-  return state_->parts ? state_->parts->examine() : std::vector<LostPart>();
+std::vector<LostPart> ForceFileReader::examine_parts(const StepProgress& progress) const {
+  const hdf5::QuietErrors quiet;
+  return state_->parts ? state_->parts->examine(progress) : std::vector<LostPart>();
 }
 
 double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {

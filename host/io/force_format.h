@@ -4,7 +4,8 @@
 namespace pillarfield::force_format {
 
 inline constexpr const char* kName = "pillarfield-forces";
-inline constexpr int kVersion = 1;
+inline constexpr int kVersion = 2;
+inline constexpr int kSparseSince = 2;  ///< planes may lack chunks
 
 inline constexpr const char* kUnit = "unit";
 inline constexpr const char* kSignConvention = "sign_convention";

@@ -88,4 +88,17 @@ std::string name_of(const LostPart& part) {
                      part.frames.end - 1);
 }
 
+std::vector<std::string> sentences_about(const std::vector<LostPart>& lost) {
+  constexpr std::size_t kMostNamed = 10;
+  const std::size_t named = std::min(lost.size(), kMostNamed);
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < named; ++i) {
+    sentences.push_back(fmt::format("It lacks {}: {}.", name_of(lost[i]), lost[i].reason));
+  }
+  if (lost.size() > named) {
+    sentences.push_back(fmt::format("It lacks {} more parts.", lost.size() - named));
+  }
+  return sentences;
+}
+
 }  // namespace pillarfield

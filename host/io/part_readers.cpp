@@ -16,12 +16,14 @@ constexpr std::size_t kMostOpenParts = 8;
 
 }  // namespace
 
-PartReaders::PartReaders(std::filesystem::path folder, ForcePart joined, const ForceFileInfo& info)
+PartReaders::PartReaders(std::filesystem::path folder, ForcePart joined, const ForceFileInfo& info,
+                         ReadOptions options)
     : folder_(std::move(folder)),
       joined_(std::move(joined)),
       rows_(info.rows),
       cols_(info.cols),
-      uncertainty_(info.uncertainty) {
+      uncertainty_(info.uncertainty),
+      options_(std::move(options)) {
   for (std::uint64_t index = 1; index <= joined_.count; ++index) {
     const FrameRange frames = frames_of(part(index));
     ends_.push_back(frames.end);
@@ -42,7 +44,7 @@ std::filesystem::path PartReaders::file(std::uint64_t index) const {
 }
 
 ForceFileReader PartReaders::open(std::uint64_t index) const {
-  ForceFileReader reader(file(index));
+  ForceFileReader reader(file(index), options_);
   const ForceFileInfo& info = reader.info();
   const bool fits = info.part == part(index) && info.rows == rows_ && info.cols == cols_ &&
                     info.uncertainty == uncertainty_ &&
@@ -52,9 +54,10 @@ ForceFileReader PartReaders::open(std::uint64_t index) const {
               "join the parts again, or solve this one again");
 }
 
-std::vector<LostPart> PartReaders::examine() const {
+std::vector<LostPart> PartReaders::examine(const StepProgress& progress) const {
   std::vector<LostPart> lost;
   for (std::uint64_t index = 1; index <= joined_.count; ++index) {
+    if (progress) progress(index - 1, joined_.count);
     try {
       static_cast<void>(open(index));
     } catch (const Error& error) {

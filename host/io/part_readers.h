@@ -16,13 +16,14 @@ namespace pillarfield {
 class PartReaders {
  public:
   /// `joined` holds what all parts have in common; `info` their size.
-  PartReaders(std::filesystem::path folder, ForcePart joined, const ForceFileInfo& info);
+  PartReaders(std::filesystem::path folder, ForcePart joined, const ForceFileInfo& info,
+              ReadOptions options);
 
   [[nodiscard]] std::uint64_t parts() const { return joined_.count; }
   [[nodiscard]] const std::vector<LostPart>& lost() const { return lost_; }
 
   /// Opens all parts and returns those that cannot be used.
-  [[nodiscard]] std::vector<LostPart> examine() const;
+  [[nodiscard]] std::vector<LostPart> examine(const StepProgress& progress) const;
 
   /// Reads the planes of a frame; NaN and status::kInconsistent if its part is absent.
   void read(std::uint64_t frame, ForceField& forces);
@@ -39,6 +40,7 @@ class PartReaders {
   std::uint32_t rows_;
   std::uint32_t cols_;
   bool uncertainty_;
+  ReadOptions options_;
   std::vector<std::uint64_t> ends_;  ///< of the frames of each part
   std::vector<bool> is_lost_;
   std::vector<LostPart> lost_;

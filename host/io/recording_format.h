@@ -8,7 +8,8 @@
 namespace pillarfield::recording_format {
 
 inline constexpr const char* kName = "pillarfield-recording";
-inline constexpr int kVersion = 1;
+inline constexpr int kNewestVersion = 2;
+inline constexpr int kSparseTruthSince = 2;  ///< the truth may lack chunks
 
 inline constexpr const char* kFrames = "/frames";
 inline constexpr const char* kRaw = "/frames/raw";

@@ -44,7 +44,8 @@ class Recording final : public FileSource {
   NumberType number_;                       // of the readings
   std::vector<std::byte> numbers_;          // of a frame, unless they are readings
   std::optional<hdf5::StoredFrames> time_;  // unset: see assumed_time()
-  std::vector<hdf5::StoredFrames> truth_;   // empty, or shear_x, shear_y, normal
+  int version_ = 1;
+  std::vector<hdf5::StoredFrames> truth_;  // empty, or shear_x, shear_y, normal
 };
 
 void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
@@ -57,7 +58,7 @@ void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::pat
 
 Recording::Recording(hdf5::File file, const ReadOptions& options)
     : FileSource(file.path, "recording"), file_(std::move(file)) {
-  hdf5::require_format(file_, recording_format::kName, recording_format::kVersion);
+  version_ = hdf5::require_format(file_, recording_format::kName, recording_format::kNewestVersion);
   raw_ = {file_, recording_format::kRaw, 2};
   open_times();
   number_ = hdf5::number_type_of(raw_, file_);
@@ -117,7 +118,7 @@ void Recording::take_skin(const ReadOptions& options) {
 void Recording::open_truth() {
   if (!hdf5::exists(file_, recording_format::kTruth)) return;
   for (const char* name : recording_format::kTruthPlanes) {
-    truth_.emplace_back(file_, name, 2, true);
+    truth_.emplace_back(file_, name, 2, version_ >= recording_format::kSparseTruthSince);
     require_floats(truth_.back(), path_);
     const auto shape = truth_.back().shape();
     if (shape[0] == skin_.pillar_rows() && shape[1] == skin_.pillar_cols()) continue;

@@ -63,7 +63,8 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
       part(path, OutputKind::recording, writer_options.replace),
       file(hdf5::create(part)) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(recording_format::kName));
-  hdf5::write_attribute(file, file.id.get(), "version", recording_format::kVersion);
+  hdf5::write_attribute(file, file.id.get(), "version",
+                        options.truth ? recording_format::kSparseTruthSince : 1);
   write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
                     skin.full_scale_counts, skin.power_law});
   write_planes(file, skin, calibration);

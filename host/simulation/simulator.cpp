@@ -231,8 +231,8 @@ void Simulator::render_all(std::uint64_t first, std::uint64_t count, const TakeF
                            unsigned threads) const {
   constexpr unsigned kMostThreads = 16;
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  const unsigned used = std::min(threads == 0 ? processors : threads, kMostThreads);
-  RenderAhead(*this, first, count, used, state_->memory != nullptr).deliver(take);
+  const unsigned workers = std::min(threads == 0 ? processors : threads, kMostThreads);
+  RenderAhead(*this, first, count, workers, state_->memory != nullptr).deliver(take);
 }
 
 }  // namespace pillarfield

@@ -27,6 +27,7 @@ class ParameterWriter {
   template <class Item>
   void list(const char* name, const std::vector<Item>& items, double Item::*member) {
     std::vector<double> values;
+    values.reserve(items.size());
     for (const Item& item : items) values.push_back(item.*member);
     list(name, values);
   }

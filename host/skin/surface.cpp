@@ -99,8 +99,8 @@ void check_heights(const Surface& surface, const PillarLayout& pillars, std::str
     throw Error(where, fmt::format("the surface has {} heights", surface.heights_mm.size()),
                 fmt::format("give one for each of {} x {} pillars", pillars.rows, pillars.cols));
   }
-  for (const float height : surface.heights_mm) {
-    require_range(where, "height", height, -kMostHeightMm, kMostHeightMm);
+  for (const float each_mm : surface.heights_mm) {
+    require_range(where, "height", each_mm, -kMostHeightMm, kMostHeightMm);
   }
 }
 

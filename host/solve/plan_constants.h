@@ -51,7 +51,6 @@ Stages plan_constants(const SolverPlan& plan) {
           .margin = real(region_margin(plan)),
           .parity_tolerance = real(plan.parity_tolerance_counts.value_or(0)),
           .scale = {real(scale.shear), real(scale.normal)},
-          .column_per_count = real(effects.wires.value_or(WireCrosstalk{}).column_per_count),
           .curve_polynomial = {},
           .leak_taps = {},
           .memory_model = {},

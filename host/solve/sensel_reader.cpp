@@ -37,8 +37,7 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
   stages_.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
   if (state_ == nullptr) return;
   const std::size_t states = effects.memory->plays.size() + effects.memory->creep.size();
-  state_->values.resize(states * plan.skin.sensels());
-  state_->last_active.resize(plan.skin.sensels());
+  state_->states.resize((1 + 2 * states) * plan.skin.pillars());
   ++state_->frame;
 }
 
@@ -62,8 +61,11 @@ void SenselReader::bend(const SolverPlan& plan) {
 maths::Pillar SenselReader::pillar(std::size_t row, std::size_t col) {
   const std::size_t top = 2 * row;
   const std::size_t left = 2 * col;
-  return {sensel(top, left + 1), sensel(top, left), sensel(top + 1, left),
-          sensel(top + 1, left + 1)};
+  maths::Pillar pillar = {freed(top, left + 1), freed(top, left), freed(top + 1, left),
+                          freed(top + 1, left + 1)};
+  if (stages_.memory) pillar = recalled(pillar, row * (frame_.cols / 2) + col);
+  return {active(pillar.s1, top, left + 1), active(pillar.s2, top, left),
+          active(pillar.s3, top + 1, left), active(pillar.s4, top + 1, left + 1)};
 }
 
 maths::Noise SenselReader::noise(std::size_t row, std::size_t col) const {
@@ -81,16 +83,18 @@ maths::Sensel SenselReader::linear(std::size_t row, std::size_t col) const {
   return maths::linear_sensel(raw_reading(frame_, row, col), correction(row, col), stages_);
 }
 
-maths::Sensel SenselReader::sensel(std::size_t row, std::size_t col) {
-  maths::Sensel sensel = linear(row, col);
-  if (stages_.leak) sensel = without_leak(sensel, row, col);
-  if (stages_.memory) sensel = recalled(sensel, row, col);
+maths::Sensel SenselReader::freed(std::size_t row, std::size_t col) const {
+  const maths::Sensel sensel = linear(row, col);
+  return stages_.leak ? without_leak(sensel, row, col) : sensel;
+}
+
+maths::Sensel SenselReader::active(maths::Sensel sensel, std::size_t row, std::size_t col) const {
   return maths::active_sensel(sensel, correction(row, col), stages_);
 }
 
 /// Zero outside the pillars; rows and columns before the first are huge numbers.
 float SenselReader::leak_source(std::size_t row, std::size_t col) const {
-  if (row >= frame_.rows / 2 * 2 || col >= frame_.cols / 2 * 2) return 0;
+  if (row / 2 >= frame_.rows / 2 || col / 2 >= frame_.cols / 2) return 0;
   const std::size_t beside = col + static_cast<std::size_t>(inward(col));
   const maths::Sensel sensel = linear(row, col);
   return maths::source_or(sensel, maths::leak_source(sensel, stages_.threshold),
@@ -110,25 +114,28 @@ maths::Sensel SenselReader::without_leak(maths::Sensel sensel, std::size_t row,
   return maths::remove_leak(sensel, neighbours, stages_.leak_taps, stages_.threshold);
 }
 
-maths::Sensel SenselReader::recalled(maths::Sensel sensel, std::size_t row, std::size_t col) {
+maths::Pillar SenselReader::recalled(const maths::Pillar& pillar, std::size_t index) {
   const maths::MemoryModel& model = stages_.memory_model;
   if (state_ == nullptr) {
-    return maths::recall(sensel, maths::Memory{}, model, stages_.threshold, 0).sensel;
+    return maths::recall(pillar, maths::Memory{}, model, stages_.threshold, 1).pillar;
   }
-  const std::size_t place = row * frame_.cols + col;
-  const auto value = [&](int state) -> float& {
-    return state_->values[static_cast<std::size_t>(state) * state_->last_active.size() + place];
+  if (!maths::is_touched_pillar(pillar, stages_.threshold)) return pillar;
+  const auto words = static_cast<std::size_t>(1 + 2 * (model.plays + model.creeps));
+  std::uint32_t* const stored = state_->states.data() + index * words;
+  maths::Memory memory{};
+  const auto for_each_pair = [&](const auto& act) {
+    for (int i = 0; i < PF_MAX_STATES; ++i) {
+      const int number = maths::number_of_state(i, model);
+      for (int row = 0; number >= 0 && row < 2; ++row) act(row, i, stored[1 + 2 * number + row]);
+    }
   };
-  maths::Memory before{};
-  for (int i = 0; i < model.plays; ++i) before.play[i] = value(i);
-  for (int i = 0; i < model.creeps; ++i) before.creep[i] = value(model.plays + i);
-  const auto idle = static_cast<float>(state_->frame - state_->last_active[place] - 1);
-  const maths::Recalled result = maths::recall(sensel, before, model, stages_.threshold, idle);
-  if (!result.active) return result.sensel;
-  for (int i = 0; i < model.plays; ++i) value(i) = result.memory.play[i];
-  for (int i = 0; i < model.creeps; ++i) value(model.plays + i) = result.memory.creep[i];
-  state_->last_active[place] = state_->frame;
-  return result.sensel;
+  memory.last = stored[0];
+  for_each_pair([&](int row, int i, std::uint32_t word) { memory.pair[row][i] = word; });
+  const maths::Recalled result =
+      maths::recall(pillar, memory, model, stages_.threshold, state_->frame);
+  stored[0] = result.memory.last;
+  for_each_pair([&](int row, int i, std::uint32_t& word) { word = result.memory.pair[row][i]; });
+  return result.pillar;
 }
 
 float SenselReader::sensel_noise(std::size_t row, std::size_t col) const {

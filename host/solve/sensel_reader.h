@@ -39,12 +39,15 @@ class SenselReader {
   void bend(const SolverPlan& plan);
   [[nodiscard]] single_precision::Correction correction(std::size_t row, std::size_t col) const;
   [[nodiscard]] single_precision::Sensel linear(std::size_t row, std::size_t col) const;
-  [[nodiscard]] single_precision::Sensel sensel(std::size_t row, std::size_t col);
+  /// A sensel without the leak of its neighbours.
+  [[nodiscard]] single_precision::Sensel freed(std::size_t row, std::size_t col) const;
+  [[nodiscard]] single_precision::Sensel active(single_precision::Sensel sensel, std::size_t row,
+                                                std::size_t col) const;
   [[nodiscard]] float leak_source(std::size_t row, std::size_t col) const;
   [[nodiscard]] single_precision::Sensel without_leak(single_precision::Sensel sensel,
                                                       std::size_t row, std::size_t col) const;
-  [[nodiscard]] single_precision::Sensel recalled(single_precision::Sensel sensel, std::size_t row,
-                                                  std::size_t col);
+  [[nodiscard]] single_precision::Pillar recalled(const single_precision::Pillar& pillar,
+                                                  std::size_t index);
   [[nodiscard]] float sensel_noise(std::size_t row, std::size_t col) const;
 
   const Calibration& calibration_;

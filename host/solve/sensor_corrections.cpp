@@ -21,12 +21,16 @@ double leak_between(const SenselLeak& leak, int at, int to) {
   return std::min(at, to) % 2 == 0 ? leak.inside : leak.across;
 }
 
-double at(const Patch& patch, int row, int col) {
-  return patch[static_cast<std::size_t>((row + kPatch) % kPatch * kPatch +
-                                        (col + kPatch) % kPatch)];
+/// The patch repeats.
+std::size_t place_of(int row, int col) {
+  constexpr std::size_t kRowLength = kPatch;
+  const auto wrapped = [](int i) { return static_cast<std::size_t>((i + kPatch) % kPatch); };
+  return wrapped(row) * kRowLength + wrapped(col);
 }
 
-/// What the place of a patch receives from the sensels beside it; the patch repeats.
+double at(const Patch& patch, int row, int col) { return patch[place_of(row, col)]; }
+
+/// What the place of a patch receives from the sensels beside it.
 double sensel_receives(const Patch& from, int row, int col, const SenselLeak& leak) {
   double sum = 0;
   for (const int step : {-1, 1}) {
@@ -49,13 +53,13 @@ double pillar_receives(const Patch& from, int row, int col, const PillarLeak& le
 template <class Receives>
 Patch inverse_of(Receives receives) {
   Patch term(static_cast<std::size_t>(kPatch) * kPatch);
-  term[static_cast<std::size_t>(kMiddle * kPatch + kMiddle)] = 1;
+  term[place_of(kMiddle, kMiddle)] = 1;
   Patch inverse = term;
   Patch next = term;
   for (int i = 0; i < kTerms; ++i) {
     for (int row = 0; row < kPatch; ++row) {
       for (int col = 0; col < kPatch; ++col) {
-        next[static_cast<std::size_t>(row * kPatch + col)] = -receives(term, row, col);
+        next[place_of(row, col)] = -receives(term, row, col);
       }
     }
     term = next;

@@ -28,7 +28,7 @@ WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame) {
   wires_ = *plan.calibration.effects.wires;
   rows_ = 2 * std::size_t{plan.skin.pillar_rows()};
   cols_ = 2 * std::size_t{plan.skin.pillar_cols()};
-  row_factors_.assign(rows_ * tiles_along(cols_, wires_.tile_cols), {1, 1});
+  row_factors_.assign(rows_ * tiles_along(cols_, wires_.tile_cols), {1, 0});
   column_gains_.resize(cols_ * tiles_along(rows_, wires_.tile_rows));
   for (std::size_t row = 0; row < rows_; row += wires_.tile_rows) {
     for (std::size_t col = 0; col < cols_; col += wires_.tile_cols)
@@ -38,8 +38,8 @@ WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame) {
 
 single_precision::Wires WireFactors::at(std::size_t row, std::size_t col) const {
   if (row >= rows_ || col >= cols_) return {};
-  const auto& [gain, idle] = row_factors_[col / wires_.tile_cols * rows_ + row];
-  return {gain, idle, column_gains_[row / wires_.tile_rows * cols_ + col]};
+  const auto& [gain, driven] = row_factors_[col / wires_.tile_cols * rows_ + row];
+  return {gain, driven * gain, column_gains_[row / wires_.tile_rows * cols_ + col]};
 }
 
 void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std::size_t row,
@@ -52,19 +52,21 @@ void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std:
   const std::size_t padded = tiles_along(wires_.tile_cols, PF_WIRE_PARTS) * PF_WIRE_PARTS;
   std::vector<float> readings(padded);
   std::vector<float> columns(padded, 1);
+  std::vector<float> losses(padded);
+  const auto count = static_cast<int>(padded);
   for (int sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
-    std::vector<float> losses(padded);
     for (std::size_t r = row; r < row + rows; ++r) {
       for (std::size_t c = 0; c < cols; ++c) {
         readings[c] = summed_reading(plan, frame, r, col + c);
       }
       auto& factors = row_factors_[col / wires_.tile_cols * rows_ + r];
-      const auto count = static_cast<int>(padded);
-      factors =
-          single_precision::wires_of_row(readings.data(), columns.data(), count, factors, model);
-      single_precision::add_row(readings.data(), losses.data(), count, factors, model);
+      const auto [load, square] =
+          single_precision::sums_of_row(readings.data(), columns.data(), count);
+      factors = single_precision::wires_of_rows(load, square, factors, model);
+      single_precision::add_row(readings.data(), losses.data(), count, factors.row, factors.driven,
+                                model);
     }
-    std::ranges::transform(losses, columns.begin(), single_precision::gain_of_loss);
+    single_precision::find_columns(losses.data(), columns.data(), count);
   }
   const std::size_t first = row / wires_.tile_rows * cols_ + col;
   std::copy_n(columns.begin(), cols, column_gains_.begin() + static_cast<std::ptrdiff_t>(first));

@@ -1,11 +1,24 @@
 /* What a work-item of solve_frame.cl reads and writes. */
 
-#ifdef PF_LEAK
-/* Rows of sensels around a pillar row: neighbours.h. */
+#if defined(PF_LEAK) && PF_LANES > 1
+#define PF_RING
+/* The pillar rows around one: neighbours.h. */
 typedef struct {
-  global float* values;
+  global float* values; /* [PF_RING_ROWS, sensel row, side, stride] */
+  global uchar* idle;   /* [PF_RING_ROWS, blocks]: flags of the idle ones */
   size_t stride;
+  uint blocks;
+  uint written; /* a bit for each row that is not zero */
 } Ring;
+
+#define PF_RING_ROWS 3
+
+/* Place of a pillar row in the ring. */
+PF_INLINE uint place_in_ring(uint row) { return (row + 1) % PF_RING_ROWS; }
+
+PF_INLINE global uchar* idle_in_ring(Ring ring, uint row) {
+  return ring.idle + place_in_ring(row) * ring.blocks;
+}
 #endif
 
 typedef struct {
@@ -14,7 +27,7 @@ typedef struct {
   Calibration calibration;
   uint rows; /* pillars */
   uint cols;
-#ifdef PF_LEAK
+#ifdef PF_RING
   Ring ring;
 #endif
 } Input;

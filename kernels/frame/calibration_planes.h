@@ -115,7 +115,7 @@ PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibrati
 #define PF_PREFETCH_PLANE(type, plane) \
   PF_PREFETCH(PF_PLANE_OF(calibration, type, plane) + offset + row * calibration.stride)
 
-/* Prefetches the calibration of both rows of sensels under a block, one pillar row ahead: hardware
+/* Prefetches the calibration of two rows of sensels under a block that is solved later: hardware
  * prefetching stops at the end of a page. */
 PF_INLINE void prefetch_planes(Calibration calibration, size_t offset) {
   for (uint row = 0; row < 2; ++row) {
@@ -143,10 +143,14 @@ typedef struct {
   uint end;
 } Band;
 
-/* Pillar rows of this work-item: one of get_global_size(1) bands of nearly equal height. */
+/* Pillar rows of this work-item: one of get_global_size(1) bands of nearly equal height. Even bands
+ * come before odd ones: PoCL gives its first thread the first half of the work-groups at once, and
+ * a contact that lies in one half of the skin would keep the other threads idle. */
 PF_INLINE Band band_of_rows(uint rows) {
   const ulong bands = get_global_size(1);
-  const ulong band = get_global_id(1);
+  const ulong even = (bands + 1) / 2;
+  const ulong at = get_global_id(1);
+  const ulong band = at < even ? 2 * at : 2 * (at - even) + 1;
   const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
   return result;
 }

@@ -48,32 +48,58 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
   }
 }
 
-/* Finds the wires of a tile: those of its rows, then the gains of its columns. */
+/* A tile's wires (RowWires, and the gains of its columns); rows and columns are padded. */
+typedef struct {
+  float row[PF_TILE_ROWS + PF_LANES];
+  float driven[PF_TILE_ROWS + PF_LANES];
+  float column[PF_TILE_PARTS];
+} TileWires;
+
+PF_INLINE void fill_floats(float* values, uint count, float value) {
+  for (uint i = 0; i < count; ++i) values[i] = value;
+}
+
+/* Finds the wires of a tile: those of its rows, PF_LANES at a time, then the gains of its columns.
+ */
 PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
-                          Tile tile, global float* row_gains, global float* idle_parts,
-                          float* columns) {
+                          Tile tile, TileWires* wires) {
   const WireModel model = {(float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT),
                            (float)(PF_IDLE_PER_COUNT)};
-  float readings[PF_TILE_PARTS];
+  float readings[PF_LANES * PF_TILE_PARTS];
   float losses[PF_TILE_PARTS];
-  for (uint i = 0; i < PF_TILE_PARTS; ++i) {
-    readings[i] = 0.0f;
-    columns[i] = 1.0f;
-  }
-  for (uint i = 0; i < tile.rows; ++i) row_gains[i] = idle_parts[i] = 1.0f;
+  float loads[PF_LANES];
+  float squares[PF_LANES];
+  if (tile.cols < PF_TILE_PARTS) fill_floats(readings, PF_LANES * PF_TILE_PARTS, 0.0f);
+  fill_floats(losses, PF_TILE_PARTS, 0.0f);
+  fill_floats(loads, PF_LANES, 0.0f);
+  fill_floats(squares, PF_LANES, 0.0f);
+  fill_floats(wires->column, PF_TILE_PARTS, 1.0f);
+  fill_floats(wires->row, PF_TILE_ROWS + PF_LANES, 1.0f);
+  fill_floats(wires->driven, PF_TILE_ROWS + PF_LANES, 0.0f);
   for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
-    for (uint i = 0; i < PF_TILE_PARTS; ++i) losses[i] = 0.0f;
-    for (uint row = 0; row < tile.rows; ++row) {
-      const size_t at = tile.row + row;
-      read_tile_row(raw + at * layout.row_stride + tile.col, calibration,
-                    at * calibration.stride + tile.col, tile.cols, readings);
-      const RowWires before = {row_gains[row], idle_parts[row]};
-      const RowWires after = wires_of_row(readings, columns, PF_TILE_PARTS, before, model);
-      add_row(readings, losses, PF_TILE_PARTS, after, model);
-      row_gains[row] = after.row;
-      idle_parts[row] = after.idle;
+    for (uint first = 0; first < tile.rows; first += PF_LANES) {
+      const uint rows = min(tile.rows - first, (uint)PF_LANES);
+      for (uint i = 0; i < rows; ++i) {
+        float* const of_row = readings + i * PF_TILE_PARTS;
+        const size_t at = tile.row + first + i;
+        read_tile_row(raw + at * layout.row_stride + tile.col, calibration,
+                      at * calibration.stride + tile.col, tile.cols, of_row);
+        const RowSums sums = sums_of_row(of_row, wires->column, PF_TILE_PARTS);
+        loads[i] = sums.load;
+        squares[i] = sums.square;
+      }
+      const RowWires before = {PF_LOAD_WIRES(wires->row + first),
+                               PF_LOAD_WIRES(wires->driven + first)};
+      const RowWires after =
+          wires_of_rows(PF_LOAD_WIRES(loads), PF_LOAD_WIRES(squares), before, model);
+      PF_STORE_WIRES(after.row, wires->row + first);
+      PF_STORE_WIRES(after.driven, wires->driven + first);
+      for (uint i = 0; i < rows; ++i) {
+        add_row(readings + i * PF_TILE_PARTS, losses, PF_TILE_PARTS, wires->row[first + i],
+                wires->driven[first + i], model);
+      }
     }
-    for (uint i = 0; i < PF_TILE_PARTS; ++i) columns[i] = gain_of_loss(losses[i]);
+    find_columns(losses, wires->column, PF_TILE_PARTS);
   }
 }
 
@@ -92,15 +118,19 @@ kernel void find_wires(global const PF_SENSEL* restrict raw,
   tile.cols = min((uint)PF_TILE_COLS, wires.cols - tile.col);
   const size_t first = (size_t)across * wires.rows + tile.row;
   global float* const gains = wires.column + (size_t)down * wires.cols + tile.col;
-  float columns[PF_TILE_PARTS];
 #ifdef PF_SKIP_IDLE
   const TileRange range = range_of_tile(raw, planes, layout, tile);
   if (find_idle_tile(range, tile, wires, first, gains)) return;
 #endif
-  sweep_tile(raw, planes, layout, tile, wires.row + first, wires.idle + first, columns);
-  for (uint col = 0; col < tile.cols; ++col) gains[col] = columns[col];
+  TileWires found;
+  sweep_tile(raw, planes, layout, tile, &found);
+  for (uint i = 0; i < tile.rows; ++i) {
+    wires.row[first + i] = found.row[i];
+    wires.own[first + i] = found.driven[i] * found.row[i];
+  }
+  for (uint col = 0; col < tile.cols; ++col) gains[col] = found.column[col];
 #ifdef PF_SKIP_IDLE
-  bound_rows(range, tile, wires, first, columns);
+  bound_rows(range, tile, wires, first, found.column);
 #endif
 }
 

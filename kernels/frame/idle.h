@@ -85,11 +85,6 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
 #endif
 }
 
-/* True if no sensel of one row under PF_LANES pillars is active. */
-PF_INLINE bool row_is_idle(global const PF_SENSEL* raw, global const PF_SENSEL* activation) {
-  return is_idle(raw, 0, activation, 0);
-}
-
 #endif
 
 #if defined(PF_BASELINE) || defined(PF_BEND)

@@ -9,7 +9,7 @@
 #define PF_IDLE_TILE 0.0f
 #define PF_SATURATED_ROW INFINITY
 #define PF_FLOAT(x) x##f
-#define PF_ROWS_AHEAD 16 /* that are prefetched */
+#define PF_ROWS_AHEAD 64 /* that are prefetched */
 /* Factor above 1 that covers the rounding of a bound. */
 #define PF_BOUND_RESERVE 1.00001f
 
@@ -131,19 +131,22 @@ PF_INLINE float largest_gain(float largest, Tile tile) {
   return row * column * own * PF_BOUND_RESERVE;
 }
 
-/* True if a tile is idle; then writes gains of 1. */
+/* True if a tile is idle; then writes gains of 1, unless an earlier frame did. */
 PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, size_t first,
                               global float* columns) {
 #ifdef PF_SKIP_IDLE_TILES
   const float gain = largest_gain(range.largest, tile);
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
                     range.largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
-  for (uint i = 0; idle && i < tile.rows; ++i) {
-    wires.row[first + i] = wires.idle[first + i] = 1.0f;
+  const bool was_idle = wires.row[first] == 1.0f && wires.bound[first] == PF_IDLE_TILE;
+  if (!idle || was_idle) return idle;
+  for (uint i = 0; i < tile.rows; ++i) {
+    wires.row[first + i] = 1.0f;
+    wires.own[first + i] = 0.0f;
     wires.bound[first + i] = PF_IDLE_TILE;
   }
-  for (uint i = 0; idle && i < tile.cols; ++i) columns[i] = 1.0f;
-  return idle;
+  for (uint i = 0; i < tile.cols; ++i) columns[i] = 1.0f;
+  return true;
 #else
   return false;
 #endif
@@ -160,20 +163,20 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
   }
   for (uint at = first; at < first + tile.rows; ++at) {
     const float row = wires.row[at];
-    const float own = (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
+    const float own = wires.own[at] * range.largest;
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
     const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
     wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) ? max(high, low) : PF_SATURATED_ROW;
   }
 }
 
-/* The largest bound of `rows` rows of sensels under PF_LANES pillars. */
-PF_INLINE float bound_of(WireVectors wires, Place place, uint rows) {
+/* The largest bound of the sensels under PF_LANES pillars. */
+PF_INLINE float bound_of(WireVectors wires, Place place) {
   float bound = PF_IDLE_TILE;
   for (uint tile = place.col / PF_TILE_COLS; tile * PF_TILE_COLS < place.col + 2 * PF_LANES;
        ++tile) {
     global const float* const of_rows = wires.bound + (size_t)tile * wires.rows + place.row;
-    for (uint row = 0; row < rows; ++row) bound = max(bound, of_rows[row]);
+    bound = max(bound, max(of_rows[0], of_rows[1]));
   }
   return bound;
 }
@@ -189,12 +192,12 @@ PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise)
 #endif
 }
 
-/* As is_idle() and row_is_idle(), of 2 rows and of 1, behind wires with this bound_of(). */
+/* As is_idle(), behind wires with this bound_of(). */
 PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
-                             Calibration calibration, Place place, uint rows, float bound) {
+                             Calibration calibration, Place place, float bound) {
   const Real rise = (Real)(bound - 1.0f);
   Mask idle = mask_of(PF_BITS(-1));
-  for (uint row = 0; row < rows; ++row) {
+  for (uint row = 0; row < 2; ++row) {
     for (uint side = 0; side < 2; ++side) {
       idle =
           idle && stays_idle(PF_READINGS_AT(raw + row * row_stride + side * PF_LANES),

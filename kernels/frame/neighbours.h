@@ -1,7 +1,8 @@
-/* The sensels next to a pillar, for stages that need them: those under it and a ring of one around.
- * With several lanes a work-item keeps the four rows of sensels that it needs at a time, so that
- * each is corrected once for each band; with one lane, which shares a row with other work-items, it
- * corrects them anew. Sensels outside the skin leak nothing. Stage PF_LEAK. */
+/* The sensels next to a pillar, for stages that need them: those under it and a ring of one
+ * around. With several lanes a work-item keeps the three pillar rows of sensels that it needs at a
+ * time, so that each is read and corrected once for each band; with one lane, which shares a row
+ * with other work-items, it corrects them anew. Sensels outside the skin leak nothing. Stage
+ * PF_LEAK. */
 #ifdef PF_LEAK
 
 /* Values of the 4 x 4 sensels around PF_LANES pillars: rows from above, columns from the left. */
@@ -19,79 +20,84 @@ PF_INLINE RealPair leak_sources(global const PF_SENSEL* raw, Calibration calibra
   return sources;
 }
 
-#if PF_LANES > 1
+#ifdef PF_RING
 
-#define PF_RING_ROWS 4
-
-/* Four rows of sources, left and right sensels apart, each with a zero before and after it. Row r
- * of the skin has the place (r + 1) % 4. */
-PF_INLINE global float* ring_row(Ring ring, uint row, uint side) {
-  return ring.values + ((row + 1) % PF_RING_ROWS * 2 + side) * ring.stride + 1;
+/* Sources of the upper (down 0) or lower sensels of a pillar row, left or right ones, with a zero
+ * before and after them. */
+PF_INLINE global float* ring_row(Ring ring, uint row, uint down, uint right) {
+  return ring.values + (4 * place_in_ring(row) + 2 * down + right) * ring.stride + 1;
 }
 
-/* This work-item's ring. */
+/* This work-item's ring, whose rows may hold anything. */
 PF_INLINE Ring ring_of(global float* rings, uint cols) {
   Ring ring;
   ring.stride = cols + 2;
-  ring.values = rings + get_global_id(1) * (2 * PF_RING_ROWS) * ring.stride;
+  ring.blocks = blocks_of_row(cols);
+  ring.written = (1 << PF_RING_ROWS) - 1;
+  const size_t floats = 4 * PF_RING_ROWS * ring.stride;
+  ring.values = rings + get_global_id(1) * floats;
+  ring.idle = (global uchar*)(rings + get_global_size(1) * floats) +
+              get_global_id(1) * PF_RING_ROWS * ring.blocks;
   return ring;
 }
 
-/* Prefetches the readings two rows of sensels below, which the ring needs next, with their
- * thresholds. */
-PF_INLINE void prefetch_row_below(Input input, Place place) {
-  PF_PREFETCH_FAR(input.raw + (place.row + 2) * input.row_stride + place.col);
-#ifdef PF_ACTIVATION_PLANE
-  PF_PREFETCH_FAR(activation_thresholds(input.calibration) + offset_of(input.calibration, place) +
-                  2 * input.calibration.stride);
-#endif
-}
-
-/* True if no sensel of one row under PF_LANES pillars is active, as far as raw readings tell. */
-PF_INLINE bool leaks_nothing(Input input, Place place) {
-  global const PF_SENSEL* const raw = input.raw + place.row * input.row_stride + place.col;
-#if defined(PF_SKIP_IDLE) && defined(PF_WIRES)
-  const float bound = bound_of(input.calibration.wires, place, 1);
-  if (bound == PF_IDLE_TILE) return true;
-  prefetch_row_below(input, place);
-  return rows_are_idle(raw, 0, input.calibration, place, 1, bound);
-#elif defined(PF_SKIP_IDLE)
-  prefetch_row_below(input, place);
-  return row_is_idle(
-      raw, activation_thresholds(input.calibration) + offset_of(input.calibration, place));
+/* Finds the idle blocks of a row; how many are not. */
+PF_INLINE uint find_idle_blocks(Row row, global uchar* flags) {
+  uint active = 0;
+  bool idle = true;
+  for (uint at = 0; at < row.blocks; ++at) {
+#ifdef PF_SKIP_IDLE
+    idle = readings_are_idle(row, 2 * col_of_block(row, at), idle);
 #else
-  return false;
+    idle = false;
 #endif
+    flags[at] = idle ? 1 : 0;
+    active += idle ? 0 : 1;
+  }
+  return active;
 }
 
-/* Writes the sources of row `row`, which may lie outside the skin (-1 and beyond the last), and of
- * its ends. */
-PF_INLINE void fill_ring_row(Input input, uint row) {
-  global float* const left = ring_row(input.ring, row, 0);
-  global float* const right = ring_row(input.ring, row, 1);
-  left[-1] = right[-1] = left[input.cols] = right[input.cols] = 0.0f;
-  const bool outside = row >= 2 * input.rows;
-  for (uint at = 0; at < input.cols; at += PF_LANES) {
-    const uint col = min(at, input.cols - PF_LANES);
-    const Place place = {row, 2 * col};
-    RealPair sources = {(Real)(0.0f), (Real)(0.0f)};
-    if (!outside && !leaks_nothing(input, place)) {
-      sources =
-          leak_sources(input.raw + row * input.row_stride + 2 * col, input.calibration, place);
+/* Writes the sources of the blocks of a row that are not idle. */
+PF_INLINE void fill_ring_blocks(Input input, Row row, global const uchar* idle, uint at_row) {
+  for (uint at = 0; at < row.blocks; ++at) {
+    if (idle[at]) continue;
+    const uint col = col_of_block(row, at);
+    for (uint down = 0; down < 2; ++down) {
+      const Place place = {2 * at_row + down, 2 * col};
+      const RealPair sources =
+          leak_sources(row.raw + down * row.row_stride + 2 * col, input.calibration, place);
+      PF_STORE_WHOLE(float, sources.left, ring_row(input.ring, at_row, down, 0) + col);
+      PF_STORE_WHOLE(float, sources.right, ring_row(input.ring, at_row, down, 1) + col);
     }
-    PF_STORE_WHOLE(float, sources.left, left + col);
-    PF_STORE_WHOLE(float, sources.right, right + col);
   }
+}
+
+/* Writes zeros to a row, or only before and after it. */
+PF_INLINE void clear_ring_row(Ring ring, uint row, bool whole) {
+  global float* const first = ring_row(ring, row, 0, 0) - 1;
+  const size_t count = 4 * ring.stride;
+  for (size_t i = 0; whole && i < count; i += PF_LANES) {
+    PF_STORE_WHOLE(float, (Real)(0.0f), first + min(i, count - PF_LANES));
+  }
+  for (size_t i = 0; i < count; i += ring.stride) first[i] = first[i + ring.stride - 1] = 0.0f;
+}
+
+/* Writes the sources of a pillar row, which may lie outside the skin (-1 and beyond the last). */
+PF_INLINE void fill_ring_row(Input* input, global uchar* idle, uint at_row) {
+  const uint bit = 1u << place_in_ring(at_row);
+  const bool outside = at_row >= input->rows;
+  const Row row = row_of(*input, idle, 0, outside ? 0 : at_row);
+  const uint active = outside ? 0 : find_idle_blocks(row, idle_in_ring(input->ring, at_row));
+  if (input->ring.written & bit) clear_ring_row(input->ring, at_row, active < row.blocks);
+  input->ring.written &= ~bit;
+  if (active == 0) return;
+  fill_ring_blocks(*input, row, idle_in_ring(input->ring, at_row), at_row);
+  input->ring.written |= bit;
 }
 
 /* Fills the rows around pillar row `row` that the ring does not have yet. */
-PF_INLINE void fill_ring(Input input, uint row, bool first) {
-  if (first) {
-    fill_ring_row(input, 2 * row - 1);
-    fill_ring_row(input, 2 * row);
-  }
-  fill_ring_row(input, 2 * row + 1);
-  fill_ring_row(input, 2 * row + 2);
+PF_INLINE void fill_ring(Input* input, global uchar* idle, uint row, bool first) {
+  for (uint at = first ? row - 1 : row + 1; at != row + 2; ++at) fill_ring_row(input, idle, at);
 }
 
 PF_INLINE Surroundings surroundings_of(Block block, Input input) {
@@ -99,8 +105,9 @@ PF_INLINE Surroundings surroundings_of(Block block, Input input) {
   Surroundings around;
   PF_UNROLL
   for (uint i = 0; i < 4; ++i) {
-    global const float* const left = ring_row(input.ring, block.top.row + i - 1, 0) + col;
-    global const float* const right = ring_row(input.ring, block.top.row + i - 1, 1) + col;
+    const uint row = block.top.row / 2 + (i + 1) / 2 - 1;
+    global const float* const left = ring_row(input.ring, row, (i + 1) % 2, 0) + col;
+    global const float* const right = ring_row(input.ring, row, (i + 1) % 2, 1) + col;
     around.at[i][0] = PF_LOAD_WHOLE(float, right - 1);
     around.at[i][1] = PF_LOAD_WHOLE(float, left);
     around.at[i][2] = PF_LOAD_WHOLE(float, right);
@@ -109,14 +116,14 @@ PF_INLINE Surroundings surroundings_of(Block block, Input input) {
   return around;
 }
 
-#else
-
-PF_INLINE Ring ring_of(global float* rings, uint cols) {
-  const Ring ring = {rings, cols};
-  return ring;
+/* The sensels of a row as the ring has them: zero where they are at most the threshold. */
+PF_INLINE SenselPair pair_in_ring(SenselPair pair, Surroundings around, uint side) {
+  pair.left.reading = around.at[side + 1][1];
+  pair.right.reading = around.at[side + 1][2];
+  return pair;
 }
 
-PF_INLINE void fill_ring(Input input, uint row, bool first) {}
+#else
 
 /* Sources of the pillar at `col`, in the row of sensels `row`; zero outside the skin. */
 PF_INLINE RealPair sources_at(Input input, uint row, uint col) {

@@ -76,12 +76,20 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   SenselPair bottom = read_linear(block.raw + input.row_stride, calibration, block.bottom);
 #ifdef PF_LEAK
   const Surroundings around = surroundings_of(block, input);
+#ifdef PF_RING
+  top = pair_in_ring(top, around, 0);
+  bottom = pair_in_ring(bottom, around, 1);
+#endif
   top = without_leak(top, around, 0);
   bottom = without_leak(bottom, around, 1);
 #endif
 #ifdef PF_MEMORY
-  top = recall_row(top, calibration, block.top.row, block);
-  bottom = recall_row(bottom, calibration, block.bottom.row, block);
+  const Pillar before = {top.right, top.left, bottom.left, bottom.right};
+  const Pillar recalled = recall_block(before, calibration, block);
+  top.right = recalled.s1;
+  top.left = recalled.s2;
+  bottom.left = recalled.s3;
+  bottom.right = recalled.s4;
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
@@ -134,69 +142,13 @@ PF_INLINE void store_solution(Solution solution, Output output, size_t index, La
   }
 }
 
-/* A row of pillars, and the blocks into which it is divided. Blocks begin at results aligned to
- * PF_LANES, so that stores do not straddle cache lines. The first and the last block are shifted
- * into the row and overlap their neighbours; both write equal results. With PF_STREAM each cache
- * line must be written once. */
-typedef struct {
-  global const PF_SENSEL* raw;        /* the first sensel */
-  global const PF_SENSEL* activation; /* its activation threshold */
-  size_t row_stride;
-  size_t activation_stride;
-  global uchar* idle;          /* flag of the first block */
-  global const uchar* changed; /* flag of the first block */
-  uint skew;                   /* pillars by which the first block would begin before the row */
-  uint last_col;               /* first column of the last block */
-  uint blocks;
-#ifdef PF_WIRES
-  Calibration calibration;
-  uint sensel_row;
-#endif
-} Row;
-
-PF_INLINE uint col_of_block(Row row, uint at) {
-  return min(max(at * PF_LANES, row.skew) - row.skew, row.last_col);
-}
-
-/* Prefetches the readings of the pillar row below and their activation thresholds; `sensel` counts
- * from the first of the row. Below an idle block there is mostly another one. */
-PF_INLINE void prefetch_readings(Row row, size_t sensel, bool idle) {
-  if (idle) {
-    PF_PREFETCH_FAR(row.raw + sensel + 2 * row.row_stride);
-    PF_PREFETCH_FAR(row.raw + sensel + 3 * row.row_stride);
-  } else {
-    PF_PREFETCH(row.raw + sensel + 2 * row.row_stride);
-    PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
-  }
-#ifdef PF_ACTIVATION_PLANE
-  PF_PREFETCH_FAR(row.activation + sensel + 2 * row.activation_stride);
-  PF_PREFETCH_FAR(row.activation + sensel + 3 * row.activation_stride);
-#endif
-}
-
-#ifdef PF_SKIP_IDLE
-/* True if a block is idle, as far as raw readings tell. */
-PF_INLINE bool block_is_idle(Row row, size_t sensel, bool was_idle) {
-#ifdef PF_WIRES
-  const Place place = {row.sensel_row, (uint)sensel};
-  const float bound = bound_of(row.calibration.wires, place, 2);
-  if (bound == PF_IDLE_TILE) return true;
-  prefetch_readings(row, sensel, was_idle);
-  return rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, 2, bound);
-#else
-  prefetch_readings(row, sensel, was_idle);
-  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
-#endif
-}
-#endif
-
 /* True if a block is idle and its stored results are already those of an idle block; updates its
  * flag. */
 PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
   if (!is_changed(row.changed, at)) return true;
 #ifdef PF_SKIP_IDLE
   const uchar before = row.idle[at];
-  const bool idle = block_is_idle(row, sensel, before != 0);
+  const bool idle = block_is_idle(row, at, sensel);
   const uchar now = idle ? (before != 0 ? PF_IDLE : PF_NEWLY_IDLE) : 0;
   if (now != before) row.idle[at] = now;
   return idle && before != 0;
@@ -226,22 +178,11 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
 PF_INLINE void solve_row(Input input, Output output, uint at_row, global const uchar* changed) {
   const uint pillar_cols = input.cols;
   const size_t first_index = (size_t)at_row * pillar_cols;
-  const Calibration calibration = input.calibration;
-  const size_t first_offset = 2 * at_row * calibration.stride;
-  const uint skew = (uint)(first_index % PF_LANES);
-  Row row;
-  row.raw = input.raw + 2 * at_row * input.row_stride;
-  row.activation = activation_thresholds(calibration) + first_offset;
-  row.row_stride = input.row_stride;
-  row.activation_stride = calibration.stride;
-  row.idle = output.idle + (size_t)at_row * blocks_of_row(pillar_cols);
-  row.changed = changed;
-  row.skew = skew;
-  row.last_col = pillar_cols - PF_LANES;
-  row.blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
-#ifdef PF_WIRES
-  row.calibration = calibration;
-  row.sensel_row = 2 * at_row;
+  const Row row = row_of(input, output.idle, changed, at_row);
+#ifdef PF_RING
+  const size_t row_ahead = 2 * at_row + 4; /* the next one of which the ring is filled */
+#else
+  const size_t row_ahead = 2 * at_row + 2;
 #endif
   const uint step = (uint)get_global_size(0);
   for (uint at = next_active(row, (uint)get_global_id(0)); at < row.blocks;
@@ -249,9 +190,9 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, global const u
     const uint col = col_of_block(row, at);
     const Place top = {2 * at_row, 2 * col};
     const Place bottom = {2 * at_row + 1, 2 * col};
-    prefetch_planes(calibration, first_offset + 2 * col + 2 * calibration.stride);
+    prefetch_planes(input.calibration, row_ahead * input.calibration.stride + 2 * col);
 #if defined(PF_STREAM) || defined(PF_MEMORY) || defined(PF_CHANGED)
-    const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
+    const Lanes lanes = own_lanes(at * PF_LANES, row.skew, col, pillar_cols);
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
@@ -264,7 +205,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, global const u
 #ifdef PF_MEMORY
     block.at = at;
     block.blocks = blocks_of_row(pillar_cols);
-    prefetch_states(calibration, block);
+    prefetch_states(input.calibration, block);
 #endif
     store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
@@ -294,16 +235,14 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
 #endif
   const Output output = {forces, results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
-#ifdef PF_LEAK
+#ifdef PF_RING
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);
-#endif
-#ifdef PF_LEAK
   bool first = true; /* row of several without a gap */
 #endif
   for (uint row = band.first; row < band.end; ++row) {
     global const uchar* const changed = changed_in_row(results, layout, row);
-#ifdef PF_LEAK
-    if (changed) fill_ring(input, row, first);
+#ifdef PF_RING
+    if (changed) fill_ring(&input, output.idle, row, first);
     first = !changed;
 #endif
     if (changed) solve_row(input, output, row, changed);

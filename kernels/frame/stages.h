@@ -22,7 +22,6 @@
 #define PF_MASK
 #define PF_FULL_SCALE stages.full_scale
 #define PF_WIRES
-#define PF_COLUMN_PER_COUNT stages.column_per_count
 #define PF_TARE
 #define PF_GAIN
 #define PF_CURVE
@@ -81,7 +80,6 @@ typedef struct {
   Real margin;
   Real parity_tolerance;
   ForceScale scale;
-  Real column_per_count;
   CurvePolynomial curve_polynomial;
   LeakTaps leak_taps;
   MemoryModel memory_model;
@@ -141,9 +139,7 @@ PF_INLINE CurvePolynomial curve_of(Stages stages) {
 PF_INLINE Sensel untared_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = validate_reading(raw, at.good, stages);
 #ifdef PF_WIRES
-  if (PF_NAMED(wires)) {
-    sensel = remove_crosstalk(sensel, at.wires, PF_CONSTANT(Real, PF_COLUMN_PER_COUNT));
-  }
+  if (PF_NAMED(wires)) sensel = remove_crosstalk(sensel, at.wires);
 #endif
   return sensel;
 }
@@ -194,9 +190,7 @@ PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
 /* Noise of a sensel after correction, counts. */
 PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
 #ifdef PF_WIRES
-  if (PF_NAMED(wires)) {
-    noise = noise * wire_gain(raw, at.wires, PF_CONSTANT(Real, PF_COLUMN_PER_COUNT));
-  }
+  if (PF_NAMED(wires)) noise = noise * wire_gain(raw, at.wires);
 #endif
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) noise = noise * at.gain;
@@ -287,9 +281,10 @@ PF_INLINE Force per_coefficient(Force force, Stages stages) {
 
 #ifdef PF_UNCERTAINTY
 PF_INLINE ShearWeights shear_weights(Stages stages) {
-  ShearWeights weights = {PF_REAL(1.0), PF_REAL(1.0)};
+  ShearWeights weights = {PF_REAL(1.0), PF_REAL(1.0), true};
 #ifdef PF_SHEAR_COEFFICIENT
   if (PF_NAMED(shear_coefficient)) {
+    weights.are_one = false;
     weights.x = PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
     weights.y = PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
   }

@@ -13,9 +13,10 @@ typedef struct {
   float idle;
 } WireModel;
 
+/* Of rows of sensels, one a lane. */
 typedef struct {
-  float row; /* as in Wires */
-  float idle;
+  Real row;    /* a, as in Wires */
+  Real driven; /* k = C (1 - lambda), with the factor lambda of idle rows */
 } RowWires;
 
 /* PF_WIRE_PARTS sensels at once: vectors of the device, or one by one. */
@@ -57,16 +58,25 @@ PF_INLINE float sum_of_parts(Real* parts) {
 }
 
 /* 1 / (1 - loss), bounded. */
-PF_INLINE float gain_of_loss(float loss) {
-  const float share = 1.0f - loss;
-  return 1.0f / (share > PF_WIRE_LEAST_SHARE ? share : PF_WIRE_LEAST_SHARE);
-}
+#define PF_DEFINE_GAIN(name, type)                                    \
+  PF_INLINE type name(type loss) {                                    \
+    const type least = PF_CONSTANT(type, PF_WIRE_LEAST_SHARE);        \
+    const type share = PF_CONSTANT(type, 1.0f) - loss;                \
+    return PF_CONSTANT(type, 1.0f) / (share > least ? share : least); \
+  }
+PF_DEFINE_GAIN(gain_of_loss, float)
+PF_DEFINE_GAIN(gains_of_losses, Real)
 
-/* The wires of a row with these readings, counts, under columns with the gains `columns`. */
-PF_INLINE RowWires wires_of_row(const float* readings, const float* columns, int cols,
-                                RowWires before, WireModel model) {
-  Real loads[PF_WIRE_GROUPS];   /* m l */
-  Real squares[PF_WIRE_GROUPS]; /* m^2 l */
+/* Sums of m l and m^2 l over a row. */
+typedef struct {
+  float load;
+  float square;
+} RowSums;
+
+/* The sums of a row with these readings, counts, under columns with the gains `columns`. */
+PF_INLINE RowSums sums_of_row(const float* readings, const float* columns, int cols) {
+  Real loads[PF_WIRE_GROUPS];
+  Real squares[PF_WIRE_GROUPS];
   for (int i = 0; i < PF_WIRE_GROUPS; ++i) loads[i] = squares[i] = PF_REAL(0.0);
   for (int at = 0; at < cols; at += PF_WIRE_PARTS) {
     for (int i = 0; i < PF_WIRE_GROUPS; ++i) {
@@ -77,23 +87,39 @@ PF_INLINE RowWires wires_of_row(const float* readings, const float* columns, int
       squares[i] = squares[i] + reading * load;
     }
   }
-  const float load = sum_of_parts(loads);
-  const float square = before.row * sum_of_parts(squares);
-  const float own = model.column * (1.0f - before.idle);
+  const RowSums sums = {sum_of_parts(loads), sum_of_parts(squares)};
+  return sums;
+}
+
+/* The wires of rows with these sums. */
+PF_INLINE RowWires wires_of_rows(Real load, Real square, RowWires before, WireModel model) {
+  const Real one = PF_REAL(1.0);
+  const Real column = PF_CONSTANT(Real, model.column);
+  square = before.row * square;
   RowWires after;
-  after.row = gain_of_loss(model.row * (load + (own - model.column) * square));
-  after.idle = 1.0f / (1.0f + model.idle * after.row * (load + own * square));
+  after.row =
+      gains_of_losses(PF_CONSTANT(Real, model.row) * (load + (before.driven - column) * square));
+  const Real loss = PF_CONSTANT(Real, model.idle) * after.row * (load + before.driven * square);
+  after.driven = column * (loss / (one + loss));
   return after;
 }
 
 /* Adds what a row that is not driven lets its columns lose, over their gain, to `losses`. */
-PF_INLINE void add_row(const float* readings, float* losses, int cols, RowWires wires,
+PF_INLINE void add_row(const float* readings, float* losses, int cols, float row, float driven,
                        WireModel model) {
-  const Real first = PF_CONSTANT(Real, model.column * wires.idle * wires.row);
-  const Real second = PF_CONSTANT(Real, model.column * (1.0f - wires.idle) * wires.row);
+  const Real first = PF_CONSTANT(Real, (model.column - driven) * row);
+  const Real second = PF_CONSTANT(Real, driven * row);
   for (int at = 0; at < cols; at += PF_WIRE_LANES) {
     const Real reading = PF_LOAD_WIRES(readings + at);
     const Real loss = first * reading * (PF_REAL(1.0) + second * reading);
     PF_STORE_WIRES(PF_LOAD_WIRES(losses + at) + loss, losses + at);
+  }
+}
+
+/* The gains of columns with these losses, which become zero. */
+PF_INLINE void find_columns(float* losses, float* columns, int cols) {
+  for (int at = 0; at < cols; at += PF_WIRE_LANES) {
+    PF_STORE_WIRES(gains_of_losses(PF_LOAD_WIRES(losses + at)), columns + at);
+    PF_STORE_WIRES(PF_REAL(0.0), losses + at);
   }
 }

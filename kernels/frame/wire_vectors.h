@@ -1,10 +1,10 @@
-/* What the wires of each tile do (WireCrosstalk), found by find_wires.cl: a and the idle factor for
- * each row of sensels and tile across, the gain for each column and tile down. */
+/* What the wires of each tile do (WireCrosstalk), found by find_wires.cl: a and k a for each
+ * row of sensels and tile across, the gain for each column and tile down. */
 #ifdef PF_WIRES
 
 typedef struct {
   global float* row;    /* [tiles across, sensel rows] */
-  global float* idle;   /* [tiles across, sensel rows] */
+  global float* own;    /* [tiles across, sensel rows] */
   global float* bound;  /* [tiles across, sensel rows]: idle_tiles.h */
   global float* column; /* [tiles down, sensel columns] */
   uint rows;            /* of sensels, an even number */
@@ -55,7 +55,7 @@ PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
   if (first == last) {
     const size_t at = (size_t)first * wires.rows + row;
     pair.left.row = pair.right.row = (Real)(wires.row[at]);
-    pair.left.idle = pair.right.idle = (Real)(wires.idle[at]);
+    pair.left.own = pair.right.own = (Real)(wires.own[at]);
   } else if (PF_TILE_COLS >= 2 * PF_LANES) {
     /* Two tiles: lanes before and from the border on. */
     const size_t at = (size_t)first * wires.rows + row;
@@ -65,22 +65,22 @@ PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
     const Mask right = before > (Real)(1.0f);
     pair.left.row = left ? (Real)(wires.row[at]) : (Real)(wires.row[next]);
     pair.right.row = right ? (Real)(wires.row[at]) : (Real)(wires.row[next]);
-    pair.left.idle = left ? (Real)(wires.idle[at]) : (Real)(wires.idle[next]);
-    pair.right.idle = right ? (Real)(wires.idle[at]) : (Real)(wires.idle[next]);
+    pair.left.own = left ? (Real)(wires.own[at]) : (Real)(wires.own[next]);
+    pair.right.own = right ? (Real)(wires.own[at]) : (Real)(wires.own[next]);
   } else {
     float rows[2 * PF_LANES];
-    float idles[2 * PF_LANES];
+    float owns[2 * PF_LANES];
     for (uint i = 0; i < 2 * PF_LANES; ++i) {
       const size_t at = (size_t)((col + i) / PF_TILE_COLS) * wires.rows + row;
       rows[i] = wires.row[at];
-      idles[i] = wires.idle[at];
+      owns[i] = wires.own[at];
     }
     const RealPair row_pair = load_private(rows);
-    const RealPair idle_pair = load_private(idles);
+    const RealPair own_pair = load_private(owns);
     pair.left.row = row_pair.left;
     pair.right.row = row_pair.right;
-    pair.left.idle = idle_pair.left;
-    pair.right.idle = idle_pair.right;
+    pair.left.own = own_pair.left;
+    pair.right.own = own_pair.right;
   }
   pair.left.column = columns.left;
   pair.right.column = columns.right;

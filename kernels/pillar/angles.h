@@ -9,10 +9,10 @@ typedef struct {
 /* Magnitude and direction of a force, within 3 ULP of the exact values. */
 static inline Direction direction_of(Force force) {
   const Real zero = PF_REAL(0.0);
-  const Real shear = length_2(force.shear_x, force.shear_y);
+  const Lengths lengths = lengths_of(force.shear_x, force.shear_y, force.normal);
   Direction direction;
-  direction.magnitude = length_3(force.shear_x, force.shear_y, force.normal);
-  direction.theta = upper_angle_of(shear, force.normal);
+  direction.magnitude = lengths.all;
+  direction.theta = upper_angle_of(lengths.first_two, force.normal);
   /* Subtracted, not negated: a component +0 must not become -0, on the far side of the cut. */
   direction.phi = angle_of(zero - force.shear_y, zero - force.shear_x);
   return direction;

@@ -20,11 +20,21 @@ static inline Scaling scaling_for(Real largest) {
   return scaling;
 }
 
-/* True if squares of numbers up to `largest` leave the range in any lane. Zeros need no scaling. */
-static inline bool needs_scaling(Real largest) {
-  const Mask is_small = (largest < PF_REAL(0x1p-40)) && (largest > PF_REAL(0.0));
-  return any_lane(is_small || (largest > PF_REAL(0x1p60)));
+/* True where squares of numbers up to `largest` fall below the range. Zeros need no scaling. */
+static inline Mask is_small(Real largest) {
+  return (largest < PF_REAL(0x1p-40)) && (largest > PF_REAL(0.0));
 }
+
+/* True if squares of numbers up to `largest` leave the range in any lane. */
+static inline bool needs_scaling(Real largest) {
+  return any_lane(is_small(largest) || (largest > PF_REAL(0x1p60)));
+}
+
+/* Lengths of a vector of three components, and of its first two. */
+typedef struct {
+  Real first_two;
+  Real all;
+} Lengths;
 
 /* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) without scaling. */
 static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
@@ -46,6 +56,19 @@ static inline Real length_3(Real x, Real y, Real z) {
   if (!needs_scaling(largest)) return plain_length_3(x, y, z);
   const Scaling scaling = scaling_for(largest);
   return plain_length_3(x * scaling.down, y * scaling.down, z * scaling.down) * scaling.up;
+}
+
+/* length_2 and length_3 of a vector, with one test for both. */
+static inline Lengths lengths_of(Real x, Real y, Real z) {
+  const Real larger = larger_of(fabs(x), fabs(y));
+  const Real largest = larger_of(larger, fabs(z));
+  const Real square = x * x + y * y;
+  Lengths lengths = {sqrt(square), sqrt(square + z * z)};
+  if (any_lane(is_small(larger) || is_small(largest) || largest > PF_REAL(0x1p60))) {
+    lengths.first_two = length_2(x, y);
+    lengths.all = length_3(x, y, z);
+  }
+  return lengths;
 }
 
 /* Polar angle of a point in the first quadrant: the nearest of the axes and their bisector, and the
@@ -138,6 +161,10 @@ PF_INLINE Real power_of(Real base, Real exponent) {
 
 static inline Real length_2(Real x, Real y) { return hypot(x, y); }
 static inline Real length_3(Real x, Real y, Real z) { return hypot(hypot(x, y), z); }
+static inline Lengths lengths_of(Real x, Real y, Real z) {
+  const Lengths lengths = {length_2(x, y), length_3(x, y, z)};
+  return lengths;
+}
 static inline Real acute_angle_of(Real y, Real x) { return atan2(y, x); }
 static inline Real upper_angle_of(Real y, Real x) { return atan2(y, x); }
 static inline Real angle_of(Real y, Real x) { return atan2(y, x); }

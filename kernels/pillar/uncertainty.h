@@ -64,6 +64,17 @@ static inline Real ambiguity_of(Diagonals diagonals, ParitySum sum, Real segment
   return sum.ambiguous ? part * sum.high : PF_REAL(0.0);
 }
 
+/* Deviations, N, from variances of the components and what ambiguity adds to them, counts. */
+static inline Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity,
+                             ForceScale scale) {
+  const Real square = ambiguity * ambiguity;
+  Force deviations;
+  deviations.shear_x = scale.shear * sqrt(variances.shear_x + to_x * to_x * square);
+  deviations.shear_y = scale.shear * sqrt(variances.shear_y + to_y * to_y * square);
+  deviations.normal = scale.normal * sqrt(variances.normal + square);
+  return deviations;
+}
+
 /* Standard deviations of the components of `direct_force`, N (U3, U9); exact in regions 1 and 2. */
 static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
                                      Real segment_point, ForceScale scale) {
@@ -84,20 +95,22 @@ static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParityS
   const Real var2 = variance_of(pillar.s2, noise.n2);
   const Real var3 = variance_of(pillar.s3, noise.n3);
   const Real var4 = variance_of(pillar.s4, noise.n4);
-  const Real rising_variance = weights.rising * weights.rising * (var1 + var3);
-  const Real falling_variance = weights.falling * weights.falling * (var2 + var4);
-  Force deviations;
-  deviations.shear_x =
-      scale.shear * sqrt(x1 * x1 * var1 + x2 * x2 * var2 + x3 * x3 * var3 + x4 * x4 * var4);
-  deviations.shear_y =
-      scale.shear * sqrt(y1 * y1 * var1 + y2 * y2 * var2 + y3 * y3 * var3 + y4 * y4 * var4);
-  deviations.normal = scale.normal * sqrt(rising_variance + falling_variance);
-  if (!any_lane(sum.ambiguous)) return deviations;
+  const Force variances = {x1 * x1 * var1 + x2 * x2 * var2 + x3 * x3 * var3 + x4 * x4 * var4,
+                           y1 * y1 * var1 + y2 * y2 * var2 + y3 * y3 * var3 + y4 * y4 * var4,
+                           weights.rising * weights.rising * (var1 + var3) +
+                               weights.falling * weights.falling * (var2 + var4)};
   const Real ambiguity = ambiguity_of(diagonals, sum, segment_point);
-  const Real shear = scale.shear * ambiguity;
-  deviations.shear_x = length_2(deviations.shear_x, to_x * shear);
-  deviations.shear_y = length_2(deviations.shear_y, to_y * shear);
-  deviations.normal = length_2(deviations.normal, scale.normal * ambiguity);
+  if (!any_lane(ambiguity > PF_REAL(0x1p60))) {
+    return roots_of(variances, to_x, to_y, ambiguity, scale);
+  }
+  const Scaling scaling = scaling_for(larger_of(ambiguity, PF_REAL(1.0)));
+  const Real down = scaling.down;
+  const Force scaled = {variances.shear_x * down * down, variances.shear_y * down * down,
+                        variances.normal * down * down};
+  Force deviations = roots_of(scaled, to_x, to_y, ambiguity * down, scale);
+  deviations.shear_x = deviations.shear_x * scaling.up;
+  deviations.shear_y = deviations.shear_y * scaling.up;
+  deviations.normal = deviations.normal * scaling.up;
   return deviations;
 }
 
@@ -182,30 +195,25 @@ static inline ScaledPillar scaled_pillar(Pillar pillar, Diagonals diagonals, Par
   return e;
 }
 
-/* V_p - V_q of a diagonal at a given parity sum (D3). */
+/* V_p - V_q of a diagonal, linear in the parity sum: base - slope * sum (D3). */
 typedef struct {
-  Mask sloped;   /* one sensel is measured: the difference is twice its reading minus the sum */
-  Mask turned;   /* that sensel is q: the difference has the opposite sign */
-  Real measured; /* its reading; zero unless sloped */
-  Real level;    /* the difference where it is not sloped */
+  Real base;
+  Real slope; /* 1 if p alone is measured, -1 if q alone is, else 0 */
 } DifferenceLine;
 
 static inline DifferenceLine difference_line(Diagonal d) {
   const Real zero = PF_REAL(0.0);
+  const Real one = PF_REAL(1.0);
+  const Real level = (d.p_measured ? d.p : zero) - (d.q_measured ? d.q : zero);
   DifferenceLine line;
-  line.sloped = d.p_measured != d.q_measured;
-  line.turned = d.q_measured && !d.p_measured;
-  line.measured = line.sloped ? (d.p_measured ? d.p : d.q) : zero;
-  line.level = (d.p_measured && d.q_measured) ? d.p - d.q : zero;
+  line.slope = (d.p_measured ? one : zero) - (d.q_measured ? one : zero);
+  line.base = level + line.slope * line.slope * level;
   return line;
 }
 
-/* The difference at a parity sum, without the sign of `turned`. */
-static inline Real size_at(DifferenceLine line, Real sum) {
-  return line.sloped ? line.measured - (sum - line.measured) : line.level;
+static inline Real difference_at(DifferenceLine line, Real sum) {
+  return line.base - line.slope * sum;
 }
-
-static inline Real signed_as(DifferenceLine line, Real size) { return line.turned ? -size : size; }
 
 /* Largest difference of two inactive sensels in one direction (U5). */
 static inline Real most_difference(Real reading, Real sum) {
@@ -216,36 +224,60 @@ static inline Real most_difference(Real reading, Real sum) {
 typedef struct {
   Real x;
   Real y;
+  bool are_one; /* both, for shorter formulas */
 } ShearWeights;
 
 /* Squared shear with these differences over the diagonals, counts^2. */
 static inline Real shear_square(Real a, Real b, ShearWeights weights) {
+  if (weights.are_one) return a * a + b * b;
   const Real x = weights.x * (a - b);
   const Real y = weights.y * (a + b);
   return PF_REAL(0.5) * (x * x + y * y);
 }
 
+/* Ends of the difference of a diagonal at the smallest parity sum: -low .. high if it is
+ * unconstrained (U5), else both its value there. */
+typedef struct {
+  Real low;
+  Real high;
+} DifferenceEnds;
+
+static inline DifferenceEnds ends_of(Diagonal d, Mask unconstrained, Real flat, Real sum) {
+  DifferenceEnds ends;
+  ends.low = unconstrained ? most_difference(d.q, sum) : flat;
+  ends.high = unconstrained ? most_difference(d.p, sum) : flat;
+  return ends;
+}
+
 /* Squared shear of the longest force, counts^2: the force at the smallest parity sum. */
-static inline Real longest_shear(ScaledPillar e, Real a_size, Real b_size, ShearWeights weights) {
-  const Real a = e.a_unconstrained ? most_difference(larger_of(e.a.p, e.a.q), e.low) : a_size;
-  const Real b = e.b_unconstrained ? most_difference(larger_of(e.b.p, e.b.q), e.low) : b_size;
+static inline Real longest_shear(ScaledPillar e, DifferenceEnds a_ends, DifferenceEnds b_ends,
+                                 ShearWeights weights) {
+  const Real a = larger_of(a_ends.low, a_ends.high);
+  const Real b = larger_of(b_ends.low, b_ends.high);
   const Real longest = shear_square(a, b, weights);
+  if (weights.are_one) return longest;
   const Real turned = shear_square(a, -b, weights);
   return (e.a_unconstrained || e.b_unconstrained) ? larger_of(longest, turned) : longest;
+}
+
+/* The largest |phi| of a pillar without measured sensels, rad. */
+static inline Real half_turn_of(ScaledPillar e) {
+  return e.high > PF_REAL(0.0) ? PF_REAL(3.14159265358979323846) : PF_REAL(0.0);
 }
 
 /* The interval of a pillar without measured sensels, up to the bounds of its inactive ones (U8). */
 static inline DirectionInterval inactive_interval(ScaledPillar e, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
-  const Mask may_be_loaded = e.high > zero;
-  const Real pi = may_be_loaded ? PF_REAL(3.14159265358979323846) : zero;
+  const Real half_turn = half_turn_of(e);
   DirectionInterval interval;
   interval.theta_low = zero;
-  interval.theta_high = may_be_loaded ? PF_REAL(1.57079632679489661923) : zero;
-  interval.phi_low = zero - pi;
-  interval.phi_high = pi;
+  interval.theta_high = e.high > zero ? PF_REAL(1.57079632679489661923) : zero;
+  interval.phi_low = zero - half_turn;
+  interval.phi_high = half_turn;
   interval.magnitude_low = zero;
-  interval.magnitude_high = e.newtons * sqrt(longest_shear(e, zero, zero, weights));
+  const DifferenceEnds a = ends_of(e.a, e.a_unconstrained, zero, e.low);
+  const DifferenceEnds b = ends_of(e.b, e.b_unconstrained, zero, e.low);
+  interval.magnitude_high = e.newtons * sqrt(longest_shear(e, a, b, weights));
   return interval;
 }
 
@@ -273,58 +305,49 @@ static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real 
 }
 
 /* phi between the ends of a segment, or of an unconstrained diagonal at the smallest sum. */
-static inline PhiInterval phi_interval(ScaledPillar e, Real a_flat, Real b_flat, Real a_steep,
-                                       Real b_steep, ShearWeights weights) {
+static inline PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, DifferenceEnds b,
+                                       Real a_steep, Real b_steep, ShearWeights weights) {
   const Mask unconstrained = e.a_unconstrained || e.b_unconstrained;
-  const Real a_from = e.a_unconstrained ? -most_difference(e.a.q, e.low) : a_flat;
-  const Real b_from = e.b_unconstrained ? -most_difference(e.b.q, e.low) : b_flat;
-  const Real a_to =
-      e.a_unconstrained ? most_difference(e.a.p, e.low) : (unconstrained ? a_flat : a_steep);
-  const Real b_to =
-      e.b_unconstrained ? most_difference(e.b.p, e.low) : (unconstrained ? b_flat : b_steep);
+  const Real a_from = e.a_unconstrained ? -a.low : a.low;
+  const Real b_from = e.b_unconstrained ? -b.low : b.low;
+  const Real a_to = unconstrained ? a.high : a_steep;
+  const Real b_to = unconstrained ? b.high : b_steep;
   return phi_between(a_from, b_from, a_to, b_to, weights);
-}
-
-/* The difference with its sign, linear in the parity sum. */
-static inline Real difference_at(DifferenceLine line, Real sum) {
-  return signed_as(line, size_at(line, sum));
-}
-
-/* Slope of the difference over the parity sum: -1, 0 or 1. */
-static inline Real slope_of(DifferenceLine line) {
-  return line.sloped ? signed_as(line, PF_REAL(-1.0)) : PF_REAL(0.0);
 }
 
 /* The parity sum of the shortest force (U6). */
 static inline Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b,
                                 ShearWeights weights) {
   const Real one_half = PF_REAL(0.5);
-  const Real x = one_half * weights.x * weights.x;
-  const Real y = one_half * weights.y * weights.y;
-  const Real a_twice = signed_as(a, a.measured + a.measured);
-  const Real b_twice = signed_as(b, b.measured + b.measured);
-  const Real a_at_zero = a.sloped ? a_twice : a.level;
-  const Real b_at_zero = b.sloped ? b_twice : b.level;
-  const Real x_slope = slope_of(a) - slope_of(b);
-  const Real y_slope = slope_of(a) + slope_of(b);
-  const Real pull = x * x_slope * (a_at_zero - b_at_zero) + y * y_slope * (a_at_zero + b_at_zero);
-  const Real stiffness = x * x_slope * x_slope + y * y_slope * y_slope + PF_REAL(1.0);
-  const Real free = -pull / stiffness;
+  Real free;
+  if (weights.are_one) {
+    const Mask both = a.slope != PF_REAL(0.0) && b.slope != PF_REAL(0.0);
+    free =
+        (both ? PF_REAL(0.33333333333333333333) : one_half) * (a.slope * a.base + b.slope * b.base);
+  } else {
+    const Real x = one_half * weights.x * weights.x;
+    const Real y = one_half * weights.y * weights.y;
+    const Real x_slope = a.slope - b.slope;
+    const Real y_slope = a.slope + b.slope;
+    const Real pull = x * x_slope * (a.base - b.base) + y * y_slope * (a.base + b.base);
+    free = pull / (x * x_slope * x_slope + y * y_slope * y_slope + PF_REAL(1.0));
+  }
   return free < e.low ? e.low : least_of(free, e.high);
 }
 
-/* The interval of a pillar whose force is not determined. */
-static inline DirectionInterval ambiguous_interval(ScaledPillar e, Direction estimate,
-                                                   ShearWeights weights) {
+/* The interval of a pillar whose force is not determined; `inactive` are those of U8. */
+static inline DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive,
+                                                   Direction estimate, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
+  const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const DifferenceLine a = difference_line(e.a);
   const DifferenceLine b = difference_line(e.b);
-  const Real a_flat = difference_at(a, e.low);
-  const Real b_flat = difference_at(b, e.low);
+  const DifferenceEnds a_ends = ends_of(e.a, e.a_unconstrained, difference_at(a, e.low), e.low);
+  const DifferenceEnds b_ends = ends_of(e.b, e.b_unconstrained, difference_at(b, e.low), e.low);
   const Real a_steep = difference_at(a, e.high);
   const Real b_steep = difference_at(b, e.high);
   const Real least = shortest_sum(e, a, b, weights);
-  const Real flat = longest_shear(e, a_flat, b_flat, weights);
+  const Real flat = longest_shear(e, a_ends, b_ends, weights);
   const Real shortest =
       shear_square(difference_at(a, least), difference_at(b, least), weights) + least * least;
 
@@ -333,12 +356,13 @@ static inline DirectionInterval ambiguous_interval(ScaledPillar e, Direction est
   const Mask from_zero = !(e.low > zero);
   const Real slope = sqrt(from_zero ? shear_square(a_steep, b_steep, weights) : flat);
   const Real tilt = acute_angle_of(slope, e.high);
-  const PhiInterval phi = phi_interval(e, a_flat, b_flat, a_steep, b_steep, weights);
+  const PhiInterval phi = phi_interval(e, a_ends, b_ends, a_steep, b_steep, weights);
+  const Real half_turn = half_turn_of(e);
   DirectionInterval interval;
   interval.theta_low = from_zero ? tilt : estimate.theta;
-  interval.theta_high = from_zero ? (flat > zero ? PF_REAL(1.57079632679489661923) : zero) : tilt;
-  interval.phi_low = phi.low;
-  interval.phi_high = phi.high;
+  interval.theta_high = from_zero ? (flat > zero ? quarter_turn : zero) : tilt;
+  interval.phi_low = inactive ? zero - half_turn : phi.low;
+  interval.phi_high = inactive ? half_turn : phi.high;
   interval.magnitude_low = e.newtons * sqrt(shortest);
   interval.magnitude_high = e.newtons * sqrt(flat + e.low * e.low);
   return interval;
@@ -360,9 +384,8 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const ScaledPillar e = scaled_pillar(pillar, diagonals, sum, scale.normal);
   const Mask inactive = e.a_unconstrained && e.b_unconstrained &&
                         (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
-  const DirectionInterval simple_interval =
-      either_interval(determined, point, inactive_interval(e, weights));
-  if (!any_lane(!(determined || inactive))) return simple_interval;
-  return either_interval(determined || inactive, simple_interval,
-                         ambiguous_interval(e, estimate, weights));
+  if (!any_lane(!(determined || inactive))) {
+    return either_interval(determined, point, inactive_interval(e, weights));
+  }
+  return either_interval(determined, point, ambiguous_interval(e, inactive, estimate, weights));
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Iterable
-from typing import Any, Optional, TypeGuard, Union
+from typing import TYPE_CHECKING, Any, Optional, TypeGuard, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,13 @@ from ._frames import Path, readings_of, timed, times_of
 from ._recording import Recording
 from ._scene import Simulation
 
+if TYPE_CHECKING:
+    from .calibrate import Step
+
 
 def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulation], *,
           skin: Optional[_core.Skin] = None,
-          calibration: Union[_core.Calibration, Path, None] = None,
+          calibration: Union[_core.Calibration, Step, Path, None] = None, tare_frames: int = 0,
           times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
           contacts: bool = False, device: str = "", **options: Any) -> ForceField:
     """Solves frames of readings into forces.
@@ -28,7 +31,9 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     frames: path of a recording or Tekscan export; readings, counts, [T, R, C] or [R, C]; an iterator
         of arrays [R, C]; a Recording or a Simulation
     skin: constants of the skin; by default those of the file, or Skin() for arrays
-    calibration: replaces that of the file
+    calibration: replaces that of the file; a step of pf.calibrate holds one
+    tare_frames: the first frames, at least 10, are of the unloaded skin: tare, noise and threshold are
+        measured in them
     times: of the frames of an array, s; by default from rate_hz
     rate_hz: frames per second of arrays and iterators, 100 by default, and of files without times
     contacts: find and track the contacts too
@@ -44,17 +49,43 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     >>> forces
     <ForceField: 5 frames of 4 x 6 pillars, 0.1..0.1 N, 0 % ambiguous>
     """
+    calibration = _calibration_of(calibration)
     if isinstance(frames, Simulation):
         options = {"scene": frames.scene, **options}
         calibration = calibration or frames.calibration
     if _is_iterator(frames):
+        if tare_frames:
+            raise Error("tare_frames", "an iterator's frames come once",
+                        "give calibration=pf.calibrate.tare(unloaded)")
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
         frames = np.asarray(frames)
     source = source_of(frames, skin, times, rate_hz)
+    if tare_frames:
+        calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz)
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+
+
+def _calibration_of(given: Any) -> Any:
+    """A calibration, its path or None, from what solve() takes."""
+    given = getattr(given, "calibration", given)
+    if given is None or isinstance(given, (str, os.PathLike, _core.Calibration)):
+        return given
+    raise Error("calibration", f"it is of the type {type(given).__name__}",
+                "give a step such as pf.calibrate.tare(unloaded), a Calibration or its path")
+
+
+def _tare_of(frames: Any, count: int, before: Any, skin: _core.Skin,
+             rate_hz: Optional[float]) -> _core.Calibration:
+    from .calibrate import tare  # which imports this module
+    if isinstance(frames, (str, os.PathLike)):
+        frames = Recording(frames, rate_hz=rate_hz)
+    if isinstance(frames, Recording):
+        before = before or frames.calibration
+    first = getattr(frames, "frames", frames)[:max(count, 0)]
+    return tare(first, before, skin=skin).calibration
 
 
 def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,

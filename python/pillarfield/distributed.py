@@ -33,7 +33,8 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
     attempts: how often a part is tried, since workers may die
     how: as in solve_part()
 
-    Raises Error if a part fails, with the reason.
+    Raises Error if a part fails, with the reason. After this, or Ctrl+C, workers finish the parts
+    that they have begun, and begin no others.
     """
     as_completed = _dask().as_completed
     recording, output = os.path.abspath(recording), os.path.abspath(output)
@@ -49,23 +50,26 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
     tried = dict.fromkeys(range(1, parts + 1), 1)
     waiting = {submit(part): part for part in tried}
     finished = as_completed(list(waiting))
-    for future in finished:
-        part = waiting.pop(future)
-        failure = future.exception() if future.status != "finished" else None
-        if future.status == "finished":
-            continue
-        if not _may_pass(failure) or tried[part] >= attempts:
-            client.cancel(list(waiting))
-            if isinstance(failure, Error):
+    try:
+        for future in finished:
+            part = waiting.pop(future)
+            failure = future.exception() if future.status != "finished" else None
+            if future.status == "finished":
+                continue
+            if isinstance(failure, Error) and not _is_claimed(failure):
                 raise failure
-            raise Error(str(output), f"part {part} of {parts} failed {tried[part]} times: {failure}",
-                        "look at the workers' logs; the same call continues") from failure
-        tried[part] += 1
-        # Another worker may still hold the part: Dask gives up workers that it does not hear.
-        time.sleep(min(30, 0.2 * 2 ** tried[part]))
-        again = submit(part)
-        waiting[again] = part
-        finished.add(again)
+            if tried[part] >= attempts:
+                raise Error(output, f"part {part} of {parts} failed {tried[part]} times: {failure}",
+                            "look at the workers' logs; the same call continues") from failure
+            tried[part] += 1
+            # Another worker may still hold the part: Dask gives up workers that it does not hear.
+            time.sleep(min(30, 0.2 * 2 ** tried[part]))
+            again = submit(part)
+            waiting[again] = part
+            finished.add(again)
+    except BaseException:  # Ctrl+C too: workers finish the parts that they have begun, and no others.
+        client.cancel(list(waiting))
+        raise
     join(output, copy=copy, overwrite=overwrite)
     return ForceFile(output)
 
@@ -134,8 +138,6 @@ def _require_portable(how: dict[str, Any]) -> None:
                         "save it and give its path")
 
 
-def _may_pass(failure: Optional[BaseException]) -> bool:
-    """Whether another attempt may succeed: a worker died, or one that was given up still writes."""
-    if isinstance(failure, Error):
-        return "being written by another process" in failure.failure
-    return True
+def _is_claimed(failure: Error) -> bool:
+    """Whether a worker that was given up still writes the part, so that a later attempt may succeed."""
+    return "being written by another process" in failure.failure

@@ -23,7 +23,7 @@ bool is_utf8(std::string_view text) {
 }
 
 TEST(Printable, LeavesTextAlone) {
-  for (const char* text : {"", "A ball", "α ± 2°, 猫 🐾", "back\\slash \"quoted\""}) {
+  for (const char* text : {"", "A ball", "α ± 2°, 猫 🐾", R"(back\slash "quoted")"}) {
     EXPECT_EQ(printable(text), text);
   }
 }

@@ -84,9 +84,9 @@ void expect_all_moved(Copy& copy, const cl::Buffer& input, std::size_t first_byt
       copy.flip(input, first_byte + at * value_size);
       const auto after = copy.of_first_frame();
       const std::size_t status = before.size() - pillars;
-      constexpr std::size_t size = sizeof(float);
-      for (std::size_t plane = 0; plane <= status; plane += size * pillars) {
-        const Moved count = moved(before, after, plane, plane == status ? 1 : size, skin, row);
+      constexpr std::size_t kSize = sizeof(float);
+      for (std::size_t plane = 0; plane <= status; plane += kSize * pillars) {
+        const Moved count = moved(before, after, plane, plane == status ? 1 : kSize, skin, row);
         ASSERT_EQ(count.in_row, 1) << "sensel " << sensel << " of pillar " << pillar;
         ASSERT_EQ(count.elsewhere, 0) << "sensel " << sensel << " of pillar " << pillar;
       }

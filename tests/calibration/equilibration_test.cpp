@@ -185,6 +185,7 @@ EquilibrationResult equilibrate_at_loads(PressedSkin& skin, const EquilibrationO
   const SkinCalibration before = tared(skin);
   const double k = skin.skin().counts_per_newton;
   std::vector<FrameStatistics> frames;
+  frames.reserve(loads.size());
   for (const double load : loads) frames.push_back(skin.press(load / k, kFrames));
   std::vector<UniformPress> presses;
   for (std::size_t i = 0; i < loads.size(); ++i) {

@@ -32,7 +32,7 @@ PressedSkin leaking_skin(const SenselLeak& sensel, const PillarLeak& pillar,
   sensor.pillar_leak_edge = pillar.edge;
   sensor.pillar_leak_corner = pillar.corner;
   sensor.dead_zone_counts = dead_zone_counts;
-  return PressedSkin(20, 20, sensor);
+  return {20, 20, sensor};
 }
 
 SkinCalibration equilibrated_with_leaks(PressedSkin& skin) {
@@ -69,10 +69,12 @@ void press_places(PressedSkin& skin, double friction, int stride, LeakFinder& fi
     tip.shape = ContactShape::flat_punch;
     tip.motion = ContactMotion::slide;
     tip.friction = friction;
+    const int row = place / 18;
+    const int col = place % 18;
     tip.direction_deg = 37 * place % 360;
     tip.contact_radius_mm = 0.3;
     tip.reference_load_n = 0.5;
-    tip.path = {{0, (place % 18 - 8.5) * pitch, (place / 18 - 8.5) * pitch, 0.5}};
+    tip.path = {{0, (col - 8.5) * pitch, (row - 8.5) * pitch, 0.5}};
     scene.load = std::vector<Contact>{tip};
     Simulator(scene).render(index++, frame, truth);
     finder.add(frame.view());

@@ -25,7 +25,7 @@ PressedSkin noisy_skin() {
   sensor.tare_counts = 12;
   sensor.gain_spread = 0.05;
   sensor.noise_counts = 0.5;
-  return PressedSkin(20, 20, sensor);
+  return {20, 20, sensor};
 }
 
 SkinCalibration equilibrated(PressedSkin& skin) {

@@ -26,7 +26,7 @@ PressedSkin wired_skin(double row_ohm, double column_ohm, double noise_counts = 
     sensor.wires->row_ohm = row_ohm;
     sensor.wires->column_ohm = column_ohm;
   }
-  return PressedSkin(16, 16, sensor);
+  return {16, 16, sensor};
 }
 
 Contact ball_at(double x_mm, double y_mm, double load_n) {

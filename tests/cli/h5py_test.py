@@ -5,7 +5,7 @@ import unittest
 import h5py
 import numpy as np
 
-from command import CommandTest, run
+from command import BALL, CommandTest, run
 from direct_oracle import sensels_of, solve
 
 
@@ -29,6 +29,47 @@ def write_recording(path, raw, threshold, counts_per_newton):
         skin.attrs["sensel_pitch_mm"] = 0.632
         skin.attrs["counts_per_newton"] = counts_per_newton
         skin.attrs["threshold_counts"] = threshold
+
+
+class Versions(CommandTest):
+    """Chunks may be absent from version 2 on; earlier files without them are damaged."""
+
+    def setUp(self):
+        super().setUp()
+        scene = self.folder / "ball.toml"
+        scene.write_text(BALL.replace("[20, 20]", "[60, 60]"), encoding="utf-8")
+        self.recording, self.forces = self.folder / "rec.h5", self.folder / "forces.h5"
+        run("simulate", scene, "-o", self.recording)
+        run("solve", self.recording, "-o", self.forces)
+
+    def table(self):
+        return run("compare", self.forces, self.recording).stdout
+
+    def test_new_files_say_that_chunks_may_be_absent(self):
+        for file in (self.recording, self.forces):
+            with h5py.File(file) as opened:
+                self.assertEqual(opened.attrs["version"], 2, file)
+
+    def test_dense_files_of_version_1_are_read(self):
+        before = self.table()
+        for path, group in ((self.recording, "truth"), (self.forces, "force")):
+            with h5py.File(path, "r+") as file:
+                file.attrs["version"] = 1
+                for name, plane in list(file[group].items()):
+                    values = plane[()]
+                    del file[group][name]
+                    file[group][name] = values
+            self.assertEqual(self.table(), before)
+
+    def test_absent_chunks_of_version_1_and_later_versions_are_refused(self):
+        for path in (self.recording, self.forces):
+            for version, words in ((1, "are stored"), (3, "its version is 3; this program reads version 1 to 2")):
+                with h5py.File(path, "r+") as file:
+                    file.attrs["version"] = version
+                self.assert_fails("compare", self.forces, self.recording, names=[path.name, words])
+            with h5py.File(path, "r+") as file:
+                file.attrs["version"] = 2
+        self.table()
 
 
 class RecordingsOfH5py(CommandTest):

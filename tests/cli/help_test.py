@@ -195,6 +195,14 @@ class Numbers(CommandTest):
         run("testbed", "--runs", 2, "--seed", "9223372036854775807")
 
 
+# What zsh's completion system defines, with what it would offer printed.
+ZSH = """
+compdef() { :; }
+_files() { print FILES; }
+_describe() { [[ $1 == -o ]] && shift; print -l -- "${(P@)2}"; }
+"""
+
+
 class Completion(CommandTest):
     def complete(self, *words):
         """Completions of bash for the last of `words`."""
@@ -217,8 +225,29 @@ class Completion(CommandTest):
         self.assertEqual(self.complete("pillarfield", "solve", "a.h5", "--noise", "3", "--mem"),
                          ["--memory"])
 
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
+    def test_zsh(self):
+        """Also as a function that zsh loads from its file."""
+        function = self.folder / "_pillarfield"
+        function.write_text(run("completion", "zsh").stdout)
+        loads = (f". {function}", f"fpath=({self.folder}); autoload -U _pillarfield")
+        def complete(load, *words):
+            script = (f"{ZSH}{load}\nPATH={pathlib.Path(PROGRAM).parent}:$PATH\n"
+                      f"words=({' '.join(words)}); CURRENT={len(words)}\n_pillarfield\n")
+            return subprocess.run(["zsh", "-fc", script], capture_output=True, text=True,
+                                  check=True).stdout.splitlines()
+        for load in loads:
+            commands = complete(load, "pillarfield", "si")
+            self.assertIn("simulate:Make a recording from a scene: frames of the sensor and the true forces.", commands)
+            self.assertEqual(commands[-1], "FILES")
+            self.assertFalse([line for line in commands if line.startswith("-")])
+            options = complete(load, "pillarfield", "solve", "--th")
+            self.assertTrue([line for line in options if line.startswith("--threshold:")])
+            self.assertTrue(all(line.startswith("--") for line in options), options)
+            self.assertIn("--preloaded", " ".join(complete(load, "pillarfield", "calibrate", "tare", "--")))
+            self.assertEqual(complete(load, "pillarfield", "solve", "x.h5"), ["FILES"])
+
     def test_other_shells(self):
-        self.assertIn("bashcompinit", run("completion", "zsh").stdout)
         self.assertIn("complete -c pillarfield", run("completion", "fish").stdout)
         words = run("completion", "words", "--", "calibrate").stdout  # as fish calls it
         self.assertIn("\ntare\tTare, noise and threshold", "\n" + words)

@@ -4,13 +4,14 @@ import fcntl
 import json
 import os
 import shutil
+import signal
 import subprocess
 import unittest
 
 import h5py
 import numpy
 
-from command import BALL, PROGRAM, CommandTest, datasets, run, run_json
+from command import BALL, PROGRAM, CommandTest, datasets, on_terminal, run, run_json
 
 CARRYING = ("--estimator", "contact", "--follow-baseline", 0.05, "--noise", 0.5)
 
@@ -173,10 +174,54 @@ class PartsTest(PartsFolder):
                 self.assertTrue(numpy.isnan(file["force/normal"][7:15]).all())
                 self.assertTrue((file["force/status"][7:15] == 64).all())
                 self.assertFalse(numpy.isnan(file["force/normal"][:7]).any())
+        # A damaged part is named, and left out like an absent one.
+        run("join", self.output, "--allow-missing")
+        lost.write_bytes(b"")
+        self.assert_fails("compare", self.output, self.recording, names=["part 2", "00002.h5"])
+        for trusted in ((), ("--trust-input",)):
+            damaged = run("compare", self.output, self.recording, "--allow-missing", *trusted)
+            self.assertEqual(damaged.stdout, table)
+            self.assertIn("It lacks part 2 (frames 7 to 14)", damaged.stderr)
         # A lost part that comes back is found again.
         run("join", self.output, "--allow-missing")
         self.solve("--part", "2/3")
         self.assertEqual(run_json("info", self.output)["lost_parts"], [])
+
+    def test_trust_reaches_parts(self):
+        """Untrusted frames have fewer values than these."""
+        size = 3000
+        self.solve("--parts", 2)
+        for part in self.parts.iterdir():
+            with h5py.File(part, "r+") as file:
+                for name, plane in list(file["force"].items()):
+                    if plane.ndim < 3:
+                        continue
+                    del file["force"][name]
+                    file["force"].create_dataset(name, (len(plane), size, size), plane.dtype,
+                                                 chunks=(1, 100, 100), fillvalue=0)
+        self.assert_fails("join", self.output, names=["9000000", "--trust-input"])
+        run("join", self.output, "--trust-input")
+        self.assert_fails("info", self.output, names=["9000000", "--trust-input"])
+        facts = run("info", self.output, "--trust-input", "--json").stdout
+        self.assertEqual(json.loads(facts)["lost_parts"], [])
+
+    def test_lost_parts_cannot_claim_more_than_the_others_hold(self):
+        """The others say how many frames they have, which nothing else shows."""
+        self.solve("--parts", 2)
+        (self.parts / "00001.h5").unlink()
+        with h5py.File(self.parts / "00002.h5", "r+") as file:
+            file["part"].attrs["checkpoint_every"] = 2.0**45
+            file["part"].attrs["frames"] = 2.0**45 + 12
+        for options in ((), ("--copy",)):
+            self.assert_fails("join", self.output, "--allow-missing", *options,
+                              names=["35184372088832 frames", "1 lost part", "solve more"])
+        # A copy writes the lost frames.
+        with h5py.File(self.parts / "00002.h5", "r+") as file:
+            file["part"].attrs["checkpoint_every"] = 5e6
+            file["part"].attrs["frames"] = 5e6 + 12
+        self.assert_fails("join", self.output, "--allow-missing", "--copy", names=["without --copy"])
+        run("join", self.output, "--allow-missing")
+        self.assertIn("5000012", run("info", self.output, expect=1).stdout)
 
     def test_one_of_two_claimants_writes(self):
         self.parts.mkdir()
@@ -260,6 +305,71 @@ class PartsTest(PartsFolder):
         self.assertGreater(numpy.count_nonzero(status), 6 * 50)
         self.assertFalse(normal[status == 0].any())
         numpy.testing.assert_array_equal(high[status == 0], numpy.float32(numpy.pi / 2))
+
+    def test_strips_of_skins_where_most_is_loaded(self):
+        """Small planes are buffered for some frames, large ones written in place."""
+        random = numpy.random.default_rng(5)
+        for rows, cols, frames in ((120, 90, 37), (1230, 1000, 4)):
+            raw = random.integers(60, 200, (frames, rows, cols), "u1")
+            raw[1] = 0
+            raw[2, :200], raw[3, 7:9, 5:] = 0, 0
+            numpy.save(self.folder / "raw.npy", raw)
+            plain = (self.folder / "raw.npy", "--rate", 100, "--threshold", 2)
+            run("solve", *plain, "-o", self.output)
+            run("solve", *plain, "-o", self.folder / "forces.npy")
+            forces = numpy.load(self.folder / "forces.npy", mmap_mode="r")
+            for part in (1, 2):
+                run("solve", *plain, "-o", self.folder / "apart.h5", "--part", f"{part}/2")
+            run("join", self.folder / "apart.h5", "--copy")
+            for path in (self.output, self.folder / "apart.h5"):
+                with h5py.File(path, "r") as file:
+                    normal = file["force/normal"]
+                    self.assertEqual(normal.chunks[2], cols // 2)
+                    self.assertLess(normal.id.get_num_chunks(),
+                                    -(-frames // normal.chunks[0]) * -(-rows // 2 // normal.chunks[1])
+                                    + (normal.chunks[0] > 1))
+                    for name in forces.dtype.names:
+                        numpy.testing.assert_array_equal(file["force"][name][()], forces[name])
+
+
+class ManyPartsTest(PartsFolder):
+    FRAMES = 300
+
+    def setUp(self):
+        super().setUp()
+        scene = self.folder / "ball.toml"
+        scene.write_text(BALL.replace("frames = 6", f"frames = {self.FRAMES}"), encoding="utf-8")
+        run("simulate", scene, "-o", self.recording, "--overwrite")
+        self.solve("--part", f"1/{self.FRAMES}")
+        for index in range(2, self.FRAMES + 1):
+            part = self.parts / f"{index:05}.h5"
+            shutil.copy(self.parts / "00001.h5", part)
+            with h5py.File(part, "r+") as file:
+                file["part"].attrs["index"] = float(index)
+
+    def test_ctrl_c_ends_long_work_and_leaves_nothing_half_written(self):
+        def interrupt(process, messages):
+            if "%" in messages:
+                process.send_signal(signal.SIGINT)
+            return "%" in messages
+        def assert_interrupted(verb, *command):
+            status, out, messages = on_terminal([PROGRAM, *map(str, command)], interrupt)
+            self.assertEqual((status, out), (1, ""), messages)
+            self.assertRegex(messages, f"{verb}: [a-z]+ [0-9]+ of [0-9]+ ")
+            self.assertIn("interrupted", messages.splitlines()[-1])
+            self.assert_folder_holds("ball.toml", "out.h5.parts", "rec.h5", *joined)
+        joined = []
+        for how in ((), ("--copy",)):
+            assert_interrupted("Joining", "join", self.output, *how)
+        run("join", self.output)
+        joined = ["out.h5"]
+        before = self.output.read_bytes()
+        assert_interrupted("Joining", "join", self.output)
+        self.assertEqual(self.output.read_bytes(), before)
+        assert_interrupted("Examining", "info", self.output)
+        assert_interrupted("Examining", "compare", self.output, self.recording)
+        quiet = on_terminal([PROGRAM, "join", str(self.output), "--quiet"])
+        self.assertEqual(quiet, (0, "", ""))
 
 
 if __name__ == "__main__":

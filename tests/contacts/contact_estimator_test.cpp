@@ -186,14 +186,14 @@ TEST_F(OneFrame, ScalesWithTheForces) {
 }
 
 TEST_F(OneFrame, StaysFiniteOnAnyPlanes) {
-  const float kStrange[] = {0,
-                            -1,
-                            1e-38F,
-                            1e30F,
-                            std::numeric_limits<float>::infinity(),
-                            std::numeric_limits<float>::quiet_NaN()};
+  const float strange[] = {0,
+                           -1,
+                           1e-38F,
+                           1e30F,
+                           std::numeric_limits<float>::infinity(),
+                           std::numeric_limits<float>::quiet_NaN()};
   ContactEstimator estimator(plan_of(scene_, Estimator::contact));
-  for (const float value : kStrange) {
+  for (const float value : strange) {
     ForceField broken = direct_;
     for (std::size_t i = 0; i < broken.pillars(); i += 3) {
       broken.normal[i] = value;

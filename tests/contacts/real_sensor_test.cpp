@@ -41,7 +41,7 @@ struct Sensor {
 };
 
 const std::array<Sensor, 7>& sensors() {
-  static const std::array<Sensor, 7> kAll = {{
+  static const std::array<Sensor, 7> all = {{
       {"coefficient 0.9",
        [](SensorModel& s) {
          s.shear_coefficient = {0.9, 0.9};
@@ -68,7 +68,7 @@ const std::array<Sensor, 7>& sensors() {
       // The lean that the correction leaves moves the segments themselves (segment.md, section 3).
       {"arm 0.224 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.224; }, 0.35},
   }};
-  return kAll;
+  return all;
 }
 
 /// Shares of the true components that lie between their ends.

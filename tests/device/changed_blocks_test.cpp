@@ -53,7 +53,7 @@ class RandomChanges {
     return {first_row, rows, first_col, cols};
   }
 
-  void write(FrameBuffer& frame, std::size_t at, std::uint32_t reading) {
+  void write(FrameBuffer& frame, std::size_t at, std::uint32_t reading) const {
     switch (plan_.sensel_type) {
       case SenselType::u8:
         frame.readings<std::uint8_t>()[at] = static_cast<std::uint8_t>(reading);

@@ -39,7 +39,7 @@ class KernelCacheTest : public testing::Test {
 
   /// A directory in the test's folder with these rights, whatever the mask.
   [[nodiscard]] fs::path directory(const char* name, mode_t mode) const {
-    const fs::path path = folder_ / name;
+    fs::path path = folder_ / name;
     mkdir(path.c_str(), mode);
     chmod(path.c_str(), mode);
     return path;

@@ -101,6 +101,7 @@ void expect_same(const Device& device, const SolverPlan& plan, int lanes, const 
                  {.lanes = lanes, .paths = paths});
   MovingContact contact(plan, 5);
   std::vector<FrameBuffer> frames;
+  frames.reserve(14);
   for (int i = 0; i < 14; ++i) frames.push_back(contact.next());
   for (int i = 0; i < 14; ++i) {
     fast.submit(frames[static_cast<std::size_t>(i)].view());

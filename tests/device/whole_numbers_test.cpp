@@ -41,20 +41,20 @@ FrameBuffer all_pillars() {
 
 class WholeNumbers : public testing::Test {
  protected:
-  static void SetUpTestSuite() { device_.emplace(open_device()); }
-  static void TearDownTestSuite() { device_.reset(); }
+  static void SetUpTestSuite() { device.emplace(open_device()); }
+  static void TearDownTestSuite() { device.reset(); }
 
   static SolverPlan plan_of(double threshold_counts) {
-    SolverPlan plan = bare_plan(frame_.view().rows, frame_.view().cols, SenselType::u8);
+    SolverPlan plan = bare_plan(kFrame.view().rows, kFrame.view().cols, SenselType::u8);
     plan.skin.threshold_counts = threshold_counts;
     plan.skin.counts_per_newton = 317;
     return plan;
   }
 
   static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
-    const ForceField expected = solve_on_host(plan, frame_.view());
-    Processor processor(*device_, plan, {}, {.lanes = lanes});
-    processor.submit(frame_.view());
+    const ForceField expected = solve_on_host(plan, kFrame.view());
+    Processor processor(*device, plan, {}, {.lanes = lanes});
+    processor.submit(kFrame.view());
     const ForceFieldView forces = processor.receive();
     expect_same(forces.shear_x, expected.shear_x, "shear_x");
     expect_same(forces.shear_y, expected.shear_y, "shear_y");
@@ -72,8 +72,8 @@ class WholeNumbers : public testing::Test {
     }
   }
 
-  static inline std::optional<Device> device_;
-  static inline const FrameBuffer frame_ = all_pillars();
+  static inline std::optional<Device> device;
+  static inline const FrameBuffer kFrame = all_pillars();
 };
 
 TEST_F(WholeNumbers, EveryThreshold) {

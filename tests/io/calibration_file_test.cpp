@@ -276,11 +276,11 @@ TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   const std::string whole = bytes_of(directory / "whole.h5");
   const auto path = directory / "broken.h5";
   // The checksums of our own files keep HDF5 from crashing in the test process.
-  const ReadOptions kTrusted = {.trust = true};
+  const ReadOptions trusted = {.trust = true};
   const auto try_to_read = [&](const std::string& bytes) {
     write_bytes(path, bytes);
     try {
-      check(read_calibration_file(path, kTrusted), "read");
+      check(read_calibration_file(path, trusted), "read");
     } catch (const Error& error) {
       EXPECT_TRUE(has_all(error.what(), {path.string()}));
     }
@@ -293,7 +293,7 @@ TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   for (std::size_t part = 1; part < 100; ++part) {
     write_bytes(path, whole.substr(0, whole.size() * part / 100));
     EXPECT_TRUE(
-        has_all(error_of([&] { (void)read_calibration_file(path, kTrusted); }), {path.string()}));
+        has_all(error_of([&] { (void)read_calibration_file(path, trusted); }), {path.string()}));
   }
 }
 

@@ -49,7 +49,7 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
   return lines;
 }
 
-ForceFileInfo force_info(std::optional<ContactOptions> contacts = sample_options()) {
+ForceFileInfo force_info(const std::optional<ContactOptions>& contacts = sample_options()) {
   ForceFileInfo info = {2, 3, 1.25, "direct", "a device", "press.h5"};
   info.contacts = contacts;
   return info;

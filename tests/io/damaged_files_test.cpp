@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <thread>
 
 #include "pillarfield/calibration_file.h"
@@ -102,9 +103,9 @@ TEST(DamagedFiles, EndInEveryReader) {
 
 /// A child of a process with threads acquires no lock that another thread holds.
 TEST(DamagedFiles, AreDetectedWhileOtherThreadsRead) {
-  std::vector<std::jthread> readers;
-  for (int thread = 0; thread < 4; ++thread) {
-    readers.emplace_back([] {
+  std::array<std::jthread, 4> readers;
+  for (std::jthread& reader : readers) {
+    reader = std::jthread([] {
       for (int time = 0; time < 20; ++time) {
         EXPECT_THROW(read_recording_whole(kDamagedFiles / "recording/short_chunk.h5"), Error);
         EXPECT_THROW(read_recording_whole(kDamagedFiles / "recording/sigfpe_chunk_of_zero.h5"),

@@ -66,7 +66,7 @@ class Interchange(unittest.TestCase):
         write("recording", self.folder / "r.h5", 5, 7, 100)
         with h5py.File(self.folder / "r.h5", "r") as file:
             self.assertEqual(file.attrs["format"].decode(), "pillarfield-recording")
-            self.assertEqual(file.attrs["version"], 1)
+            self.assertEqual(file.attrs["version"], 2)
             self.assertEqual(file["frames/raw"].dtype, numpy.dtype("<u2"))
             self.assertEqual(file["frames/raw"].shape, (100, 10, 14))
             self.assertNotIn("full_scale_counts", file["skin"].attrs)

@@ -43,7 +43,15 @@ std::function<void()>& before_lock() {
 }  // namespace
 
 // These replace functions of the C library.
-extern "C" int fcntl(int descriptor, int command, ...) {
+extern "C" {
+int noted_fcntl(int descriptor, int command, ...) asm("fcntl");
+int noted_fsync(int descriptor) asm("fsync");
+int noted_fdatasync(int descriptor) asm("fdatasync");
+int noted_rename(const char* from, const char* to) asm("rename");
+int noted_renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                    unsigned flags) asm("renameat2");
+
+int noted_fcntl(int descriptor, int command, ...) {
   va_list arguments;
   va_start(arguments, command);
   void* const argument = va_arg(arguments, void*);
@@ -51,16 +59,17 @@ extern "C" int fcntl(int descriptor, int command, ...) {
   if (command == F_OFD_SETLK && before_lock()) std::exchange(before_lock(), nullptr)();
   return static_cast<int>(syscall(SYS_fcntl, descriptor, command, argument));
 }
-extern "C" int fsync(int descriptor) { return note_sync(descriptor, SYS_fsync); }
-extern "C" int fdatasync(int descriptor) { return note_sync(descriptor, SYS_fdatasync); }
-extern "C" int rename(const char* from, const char* to) noexcept {
+int noted_fsync(int descriptor) { return note_sync(descriptor, SYS_fsync); }
+int noted_fdatasync(int descriptor) { return note_sync(descriptor, SYS_fdatasync); }
+int noted_rename(const char* from, const char* to) {
   disk_calls().emplace_back("rename");
   return static_cast<int>(syscall(SYS_rename, from, to));
 }
-extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
-                         unsigned flags) noexcept {
+int noted_renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                    unsigned flags) {
   disk_calls().emplace_back("rename");
   return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
 }
 
 namespace pillarfield {
@@ -247,7 +256,7 @@ TEST(OutputFile, APartThatIsALinkIsRefused) {
     const std::string checked = error_of([&] {
       check_outputs({}, {{directory / "a.csv", OutputKind::forces}}, Replace::anything);
     });
-    const std::string opened =
+    std::string opened =
         error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces, Replace::anything); });
     EXPECT_EQ(checked, opened);
     fs::remove(directory / "a.csv.part");
@@ -268,7 +277,7 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   const TemporaryDirectory directory;
   const auto refusal = [&] {
     const std::string before = bytes_of(directory / "a.csv.part");
-    const std::string error =
+    std::string error =
         error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces, Replace::anything); });
     EXPECT_EQ(bytes_of(directory / "a.csv.part"), before);
     return error;

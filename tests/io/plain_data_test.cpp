@@ -42,7 +42,8 @@ std::vector<float> all_readings(FrameSource& source) {
 
 class PlainTable : public testing::Test {
  protected:
-  std::unique_ptr<FrameSource> open(const std::string& text, ReadOptions options = untimed()) {
+  std::unique_ptr<FrameSource> open(const std::string& text,
+                                    const ReadOptions& options = untimed()) {
     write_bytes(path_, text);
     return open_frames(path_, options);
   }

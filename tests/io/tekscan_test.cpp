@@ -324,13 +324,14 @@ TEST_F(Tekscan, ForcesOfAnInsoleArePressureTimesArea) {
   written.set("UNITS", "UNITS kPa\nSENSEL_AREA 0.258064 cm2");
   written.cols = 21;
   written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,12345"};
-  written.frames.assign(1, std::vector<int>(60 * 21));
+  written.frames.assign(1, std::vector<int>(1260));
   double newtons = 0;
+  std::size_t place = 0;
   for (int row = 0; row < 60; ++row) {
     for (int col = 0; col < 21; ++col) {
       const bool inside = std::hypot((row - 30.0) / 29, (col - 9.5) / 9) < 1;
       const int kpa = inside ? 20 + 3 * row + 5 * col : -1;
-      written.frames[0][static_cast<std::size_t>(row * 21 + col)] = kpa;
+      written.frames[0].at(place++) = kpa;
       newtons += inside ? kpa * 1e3 * 0.258064e-4 : 0;
     }
   }

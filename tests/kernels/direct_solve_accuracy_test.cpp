@@ -24,7 +24,7 @@ class DirectSolveAccuracy : public testing::Test {
     Random random(seed);
     double worst = 0;
     while (cases > 0) {
-      const double k = double{static_cast<RealOf<Precision>>(random.decades(1e-2, 1e6))};
+      const auto k = static_cast<RealOf<Precision>>(random.decades(1e-2, 1e6));
       const FourReadings<Precision> readings = draw_readings(random, k);
       if (count_positive(readings) < 3) continue;
       const auto pillar = pillar_of<Precision>(readings);

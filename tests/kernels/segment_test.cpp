@@ -114,7 +114,7 @@ TEST(FeasibleSegment, RatiosFallAsTheNormalForceGrows) {
   for_ambiguous_pillars([](const AmbiguousPillar& pillar, const maths::Force&) {
     const FeasibleSegment segment = segment_of(pillar);
     double before = segment.ratio_at(0.01 * segment.high);
-    for (double step = 1; step <= 30; ++step) {
+    for (int step = 1; step <= 30; ++step) {
       const double ratio = segment.ratio_at(double{segment.high} * step / 30);
       ASSERT_LT(ratio, before);
       before = ratio;

@@ -171,7 +171,7 @@ struct Ends {
       : slack(64 * std::numeric_limits<RealOf<Precision>>::epsilon()) {
     const auto solved = solve<Precision>(pillar, kCountsOfOneNewton);
     interval = direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
-                                  solved.scale, {1, 1});
+                                  solved.scale, {1, 1, true});
   }
 
   /// Counter-clockwise angles of phi and of phi_high from phi_low.
@@ -331,6 +331,32 @@ TYPED_TEST(DirectionIntervals, HaveTheHalfWidthsOfTheDesign) {
   EXPECT_NEAR(phi, 0.0709, 5e-5 + 1e-6);
 }
 
+/// Coefficients of one have shorter formulas.
+TYPED_TEST(DirectionIntervals, DoNotDependOnTheFormOfTheWeights) {
+  Random random(75);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto pillar = hiding_pillar<TypeParam>(random_truth(random).readings());
+    const Ends<TypeParam> ends(pillar);
+    const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
+    const auto general =
+        direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
+                           solved.scale, {1, 1, false});
+    const auto expect_near = [&](double a, double b) {
+      EXPECT_NEAR(a, b, ends.slack * std::max(1.0, std::abs(b)));
+    };
+    expect_near(static_cast<double>(ends.interval.theta_low),
+                static_cast<double>(general.theta_low));
+    expect_near(static_cast<double>(ends.interval.theta_high),
+                static_cast<double>(general.theta_high));
+    expect_near(static_cast<double>(ends.interval.phi_low), static_cast<double>(general.phi_low));
+    expect_near(static_cast<double>(ends.interval.phi_high), static_cast<double>(general.phi_high));
+    expect_near(static_cast<double>(ends.interval.magnitude_low),
+                static_cast<double>(general.magnitude_low));
+    expect_near(static_cast<double>(ends.interval.magnitude_high),
+                static_cast<double>(general.magnitude_high));
+  }
+}
+
 TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
   using Real = RealOf<TypeParam>;
   const std::array<Real, 6> odd = {std::numeric_limits<Real>::denorm_min(),
@@ -346,8 +372,9 @@ TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
       for (auto& reading : readings) reading = odd[random.below(odd.size())];
       const auto pillar = pillar_in<TypeParam>(states, readings);
       const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
-      const auto interval = direction_interval(pillar, solved.diagonals, solved.sum,
-                                               direction_of(solved.force), solved.scale, {1, 1});
+      const auto interval =
+          direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
+                             solved.scale, {1, 1, true});
       const Real most = static_cast<Real>(1e6);
       const auto deviations =
           force_deviations(pillar, solved.diagonals, solved.sum, {most, most, most, most},

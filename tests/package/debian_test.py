@@ -11,7 +11,8 @@ SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
 BUILT = SOURCE / "build/package"
 WANTED = {
     r"pillarfield": [r"/usr/bin/pillarfield$", r"/man1/pillarfield\.1\.gz$", r"/man1/pillarfield-solve\.1\.gz$",
-                     r"/bash-completion/completions/pillarfield$", r"/vendor_completions\.d/pillarfield\.fish$"],
+                     r"/bash-completion/completions/pillarfield$", r"/vendor-completions/_pillarfield$",
+                     r"/vendor_completions\.d/pillarfield\.fish$"],
     r"pillarfield-viewer": [r"/usr/bin/pillarfield-viewer$", r"/applications/pillarfield-viewer\.desktop$",
                             r"/apps/pillarfield-viewer\.svg$", r"/man1/pillarfield-viewer\.1\.gz$"],
     r"libpillarfield\d+\.\d+": [rf"/libpillarfield_{layer}\.so\.\d+\.\d+$"

@@ -5,6 +5,7 @@ PILLARFIELD_BUILD is the installed build tree, PILLARFIELD_WORK the folder of th
 
 import csv
 import gzip
+import importlib.util
 import io
 import os
 import pathlib
@@ -166,7 +167,13 @@ class Readme(unittest.TestCase):
         if not (PREFIX / "bin/pillarfield-viewer").exists():
             first = re.sub("^pillarfield-viewer.*\n", "", first, flags=re.MULTILINE)
         run("bash", "-ec", first, cwd=folder)
-        run(sys.executable, "-c", readme_blocks("python")[0], cwd=folder)
+        own_frames, plot = readme_blocks("python")
+        run(sys.executable, "-c", own_frames, cwd=folder)
+        package = list(PREFIX.glob("lib/python3*/*-packages/pillarfield"))
+        if package and importlib.util.find_spec("matplotlib"):
+            begin = f"import sys, matplotlib\nsys.path.insert(0, {str(package[0].parent)!r})\nmatplotlib.use('Agg')\n"
+            run(sys.executable, "-c", begin + own_frames + plot, cwd=folder)
+            self.assertTrue((folder / "mine.png").exists())
         run("bash", "-ec", own, cwd=folder)
         output = run("bash", "-ec", program, cwd=folder).splitlines()[-1]
         self.assertEqual(output, re.search("# (row 3.*)", program)[1])

@@ -204,7 +204,8 @@ TEST(WholeBody, TakesWholeFramesAndRowsToo) {
       header.patch = 1;
       header.bytes = half * 62;
       const auto rows = std::as_bytes(rig.touched[1].frame.readings<std::uint8_t>());
-      EXPECT_TRUE(rig.body.receive(header, rows.subspan(first * 62, header.bytes), {}));
+      EXPECT_TRUE(
+          rig.body.receive(header, rows.subspan(std::size_t{62} * first, header.bytes), {}));
     }
     rig.body.solve();
     EXPECT_TRUE(rig.is_same(1));

@@ -97,6 +97,39 @@ class Distributed(unittest.TestCase):
 
         self.assertEqual(self.with_workers(2, solve), 10)
 
+    def test_ctrl_c_ends_solve_and_join(self):
+        """Workers finish the parts that they have begun, and the same call continues."""
+        interrupted = WORK / "interrupted.h5"
+
+        def solve(client):
+            parts = WORK / "interrupted.h5.parts"
+            def interrupt():
+                while not (parts.is_dir() and list(parts.glob("?????.h5"))):
+                    time.sleep(0.02)
+                os.kill(os.getpid(), signal.SIGINT)
+            thread = threading.Thread(target=interrupt)
+            thread.start()
+            with self.assertRaises(KeyboardInterrupt):
+                pf.distributed.solve(client, self.recording, interrupted, parts=20, **PLAN)
+            thread.join()
+            self.assertFalse(interrupted.exists())
+            while client.run(lambda dask_worker: len(dask_worker.state.executing))[
+                    next(iter(client.scheduler_info()["workers"]))]:
+                time.sleep(0.05)
+            self.assertLess(len(list(parts.glob("?????.h5"))), 20)
+            pf.distributed.solve(client, self.recording, interrupted, parts=20, **PLAN)
+            self.assert_serial(interrupted)
+        self.with_workers(1, solve)
+        before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        for copy in (False, True):
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
+            with self.assertRaises(KeyboardInterrupt):
+                while True:
+                    pf.distributed.join(interrupted, copy=copy)
+            self.assertEqual(len(pf.open(interrupted)), 400)
+            self.assertFalse((WORK / "interrupted.h5.part").exists())
+        signal.signal(signal.SIGALRM, before)
+
     def test_errors(self):
         def solve(client):
             for plan, words in (({"baseline_time_s": 1}, "--checkpoint-every"),

@@ -93,6 +93,23 @@ class Frames(unittest.TestCase):
     def test_no_frame(self):
         self.assertEqual(pf.solve(self.frames[:0]).shape, (0, 20, 30))
 
+    def test_first_frames_give_the_tare(self):
+        unloaded = RANDOM.normal(20, 1, (30, 40, 60)).round().astype(np.uint8)
+        frames = np.concatenate([unloaded, self.frames // 2 + 20])
+        step = pf.calibrate.tare(unloaded)
+        expected = pf.solve(frames, calibration=step.calibration)
+        np.save(WORK / "tare.npy", frames)
+        self.assertAlmostEqual(float(np.abs(expected[0].normal).max()), 0, 2)
+        for given in (frames, frames.tolist(), WORK / "tare.npy", pf.Recording(WORK / "tare.npy", rate_hz=9)):
+            rate_hz = 50 if isinstance(given, pathlib.Path) else None
+            self.assertTrue(same(pf.solve(given, tare_frames=30, rate_hz=rate_hz), expected))
+        self.assertTrue(same(pf.solve(frames, calibration=step), expected))
+        for wrong in ({"tare_frames": 9}, {"tare_frames": -5}, {"calibration": frames[0]}):
+            with self.assertRaises(pf.Error):
+                pf.solve(frames, **wrong)
+        with self.assertRaisesRegex(pf.Error, "an iterator's frames come once"):
+            pf.solve(iter(frames), tare_frames=30)
+
     def test_times(self):
         self.assertEqual(pf.solve(self.frames, rate_hz=50).times[3], 0.06)
         times = np.linspace(5, 6, 12)

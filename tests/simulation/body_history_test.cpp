@@ -83,8 +83,9 @@ TEST(BodyHistory, TurnsCounterClockwise) {
     double squares = 0;
     double torque = 0;
     for (std::size_t i = 0; i < pressed.pillars(); ++i) {
+      const std::size_t row = i / pressed.cols;
       const double x = static_cast<double>(i % pressed.cols) - 12.5;
-      const double y = 12.5 - static_cast<double>(i / pressed.cols);
+      const double y = 12.5 - static_cast<double>(row);
       product += pressed.normal[i] * x * y;
       squares += pressed.normal[i] * x * x;
       torque += x * turned.shear_y[i] - y * turned.shear_x[i];
@@ -138,8 +139,9 @@ TEST(BodyHistory, ShearFollowsTheBody) {
   BodyHistory turned(scene_of(body), 0);
   double torque = 0;
   for (const BodyForce& force : *turned.forces(1)) {
+    const auto row = force.pillar / 26;
     const double x = static_cast<double>(force.pillar % 26) - 12.5;
-    const double y = 12.5 - static_cast<double>(force.pillar / 26);
+    const double y = 12.5 - static_cast<double>(row);
     torque += (x * force.shear_y - y * force.shear_x) * scene.skin.pillar_pitch_mm();
   }
   // (3π/16) µPa of a ball that turns all over; a from Hertz's law.

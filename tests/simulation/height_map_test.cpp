@@ -186,7 +186,7 @@ void expect_like_ball(const Body& body, double tolerance_n) {
   ball.radius_mm = kBallRadiusMm;
   ball.path = body.path;
   const BodyForces expected = forces_of(ball);
-  std::vector<double> all(22 * 22);
+  std::vector<double> all(484);
   for (const BodyForce& force : forces_of(body)) all[force.pillar] = force.normal;
   double most = 0;
   for (const BodyForce& force : expected) {
@@ -210,6 +210,7 @@ TEST(HeightMap, OfABallAsAPictureOf16BitsPressesAsTheBall) {
   const double low = relief[0];
   const double range = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - low;
   std::vector<std::uint16_t> samples;
+  samples.reserve(relief.size());
   for (const double height : relief) {
     samples.push_back(static_cast<std::uint16_t>(std::lround((height - low) / range * 65535)));
   }

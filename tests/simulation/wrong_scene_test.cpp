@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -326,9 +327,8 @@ TEST(WrongScene, KeysOfManyPartsAreRefused) {
     for (const std::string& text :
          {key + " = 1", "[" + key + "]", "[[" + key + "]]", "x = { " + key + " = 1 }",
           "x = [1, { b = 1, " + key + " = 1 }]", quoted + " = 1", "[ " + quoted + " ]",
-          "x = [ \"\"\"a\"\"\"\"\", { " + key + " = 1 } ]",
-          "x = [ '''a''''', { " + key + " = 1 } ]", "x = 'a' # \"\n" + key + " = 1",
-          "x = \"\\\"\"\n" + key + " = 1"}) {
+          R"(x = [ """a""""", { )" + key + " = 1 } ]", "x = [ '''a''''', { " + key + " = 1 } ]",
+          "x = 'a' # \"\n" + key + " = 1", "x = \"\\\"\"\n" + key + " = 1"}) {
       const std::string message = message_of(text).substr(0, 80);
       EXPECT_TRUE(message.starts_with("s.toml:1: a key has more than 16 parts") ||
                   message.starts_with("s.toml:2: a key has more than 16 parts"))
@@ -345,7 +345,7 @@ TEST(WrongScene, DepthsThatAddUpAreNoDanger) {
   const std::string tables = repeated(250, "{" + key + " = ") + "1" + repeated(250, "}");
   for (const std::string& text :
        {repeated(100'000, "{a="), repeated(100'000, "["), repeated(100'000, "[{a="), tables}) {
-    const std::string message = message_of("[" + key + "]\n" + key + " = " + text);
+    const std::string message = message_of(fmt::format("[{0}]\n{0} = {1}", key, text));
     EXPECT_TRUE(message.starts_with("s.toml")) << message.substr(0, 80);
   }
 }

@@ -257,7 +257,7 @@ maths::Force on_segment(const maths::Force& force, int bits, double slope, doubl
 TEST(CorrectedInterval, HoldsTheSegmentAndReachesItsEnds) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> part(0, 1);
-  const maths::ShearWeights weights = {1 / 0.8, 1 / 1.3};
+  const maths::ShearWeights weights = {1 / 0.8, 1 / 1.3, false};
   for (int i = 0; i < 400; ++i) {
     const std::array<int, 4> pairs = {3, 6, 12, 9};
     const int bits = pairs.at(static_cast<std::size_t>(i) % pairs.size());
@@ -294,7 +294,7 @@ TEST(CorrectedInterval, IsAPointWhereTheForceIsDetermined) {
   const auto direction = maths::direction_of(force);
   for (const int bits : {15, 7, 11, 13, 14}) {
     const auto interval = maths::corrected_interval(
-        {}, force, direction, static_cast<maths::Bits>(bits), kSegmentPoint, 0.1, {1, 1});
+        {}, force, direction, static_cast<maths::Bits>(bits), kSegmentPoint, 0.1, {1, 1, true});
     EXPECT_EQ(interval.theta_low, direction.theta);
     EXPECT_EQ(interval.phi_high, direction.phi);
     EXPECT_EQ(interval.magnitude_low, direction.magnitude);

@@ -14,57 +14,57 @@ namespace {
 class HostSolve : public testing::Test {
  protected:
   HostSolve() {
-    plan.skin.rows = 4;
-    plan.skin.cols = 6;
-    plan.skin.counts_per_newton = 100;
-    plan.sensel_type = SenselType::u16;
-    frame = {readings.data(), SenselType::u16, 4, 6, 8};
+    plan_.skin.rows = 4;
+    plan_.skin.cols = 6;
+    plan_.skin.counts_per_newton = 100;
+    plan_.sensel_type = SenselType::u16;
+    frame_ = {readings_.data(), SenselType::u16, 4, 6, 8};
   }
 
   void expect_refused(const char* what) {
     try {
-      static_cast<void>(solve_on_host(plan, frame));
+      static_cast<void>(solve_on_host(plan_, frame_));
       ADD_FAILURE() << what << " was accepted";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
     }
   }
 
-  SolverPlan plan;
-  std::vector<std::uint16_t> readings = std::vector<std::uint16_t>(4 * 8, 50);
-  FrameView frame;
+  SolverPlan plan_;
+  std::vector<std::uint16_t> readings_ = std::vector<std::uint16_t>(32, 50);
+  FrameView frame_;
 };
 
 TEST_F(HostSolve, TakesRowsOfAnyStride) {
-  for (std::size_t row = 0; row < 4; ++row) readings[row * 8 + 6] = readings[row * 8 + 7] = 999;
-  const ForceField forces = solve_on_host(plan, frame);
+  for (std::size_t row = 0; row < 4; ++row) readings_[row * 8 + 6] = readings_[row * 8 + 7] = 999;
+  const ForceField forces = solve_on_host(plan_, frame_);
   EXPECT_EQ(forces.normal, std::vector<float>(6, 0.5F));
 }
 
 TEST_F(HostSolve, RefusesFramesAndPlansThatDoNotFit) {
-  FrameView fitting = frame;
-  frame.rows = 6;
+  FrameView fitting = frame_;
+  frame_.rows = 6;
   expect_refused("the frame is 6 x 6 uint16; it must be 4 x 6 uint16");
-  frame = fitting;
-  frame.type = SenselType::u8;
+  frame_ = fitting;
+  frame_.type = SenselType::u8;
   expect_refused("the frame is 4 x 6 uint8");
-  frame = fitting;
-  frame.data = nullptr;
+  frame_ = fitting;
+  frame_.data = nullptr;
   expect_refused("no data");
-  frame = fitting;
-  frame.row_stride = 5;
+  frame_ = fitting;
+  frame_.row_stride = 5;
   expect_refused("row_stride is 5");
-  frame = fitting;
-  plan.segment_point = 2;
+  frame_ = fitting;
+  plan_.segment_point = 2;
   expect_refused("segment_point is 2");
 }
 
 TEST_F(HostSolve, ABaselineStartsFromZeroWithoutATare) {
-  plan.baseline_rate = 0.25;
-  plan.skin.threshold_counts = 60;  // nothing is usable, so every sensel is untouched
-  follow_baseline_on_host(plan, frame, solve_on_host(plan, frame));
-  EXPECT_EQ(plan.calibration.tare, std::vector<float>(24, 12.5F));
-  EXPECT_THROW(follow_baseline_on_host(plan, frame, ForceField(3, 3)), Error);
+  plan_.baseline_rate = 0.25;
+  plan_.skin.threshold_counts = 60;  // nothing is usable, so every sensel is untouched
+  follow_baseline_on_host(plan_, frame_, solve_on_host(plan_, frame_));
+  EXPECT_EQ(plan_.calibration.tare, std::vector<float>(24, 12.5F));
+  EXPECT_THROW(follow_baseline_on_host(plan_, frame_, ForceField(3, 3)), Error);
 }
 
 }  // namespace

@@ -223,6 +223,14 @@ TEST(SenselMemory, LeavesSenselsBelowTheThresholdInactive) {
   }
 }
 
+/// The most by which states of 8 bits, of loads up to `load`, move a reading.
+double resolution(const SenselMemory& model, double load) {
+  double weights = 0;
+  for (const Play& play : model.plays) weights += std::abs(play.weight);
+  for (const Creep& creep : model.creep) weights += std::abs(creep.weight);
+  return std::ldexp(weights * load, -8);
+}
+
 TEST(SenselMemory, OfAnyHistoryComesBack) {
   const std::vector<SenselMemory> models = {
       {{{0, 0.05}, {30, 0.04}, {100, 0.03}, {150, -0.02}}, {}},
@@ -240,12 +248,36 @@ TEST(SenselMemory, OfAnyHistoryComesBack) {
     for (const ForceField& truth : random_history(11)) {
       std::vector<double> readings = loads_of(truth);
       for (std::size_t n = 0; n < 4; ++n) readings[n] = sensels[n].reading(readings[n]);
-      EXPECT_LT(largest_error(solve_readings(plan, readings, state), truth), 2e-3);
+      EXPECT_LT(largest_error(solve_readings(plan, readings, state), truth),
+                resolution(model, 300) + 2e-3);
       least_ignored = std::max(
           least_ignored, largest_error(solve_readings(pressed_plan(1, 1, {}), readings), truth));
     }
     EXPECT_GT(least_ignored, 5) << "the history shows the effect";
   }
+}
+
+/// 30 s at 1 kHz: a frame moves the state by a hundredth of a count, its last bit is half a count.
+TEST(SenselMemory, CreepsByLessThanTheLastBitOfAState) {
+  const SenselMemory model = {{}, {{10, 0.1}}};
+  SensorEffects effects;
+  effects.memory = model;
+  SolverPlan plan = pressed_plan(1, 1, effects);
+  plan.frame_interval_s = 0.001;
+  ForceField truth(1, 1);
+  truth.normal[0] = 1.5;
+  std::vector<RememberingSensel> sensels(4, {model, plan.frame_interval_s});
+  SensorState state;
+  double largest = 0;
+  double ignored = 0;
+  for (int frame = 0; frame < 30000; ++frame) {
+    std::vector<double> readings = loads_of(truth);
+    for (std::size_t n = 0; n < 4; ++n) readings[n] = sensels[n].reading(readings[n]);
+    ignored = readings[0] - loads_of(truth)[0];
+    largest = std::max(largest, largest_error(solve_readings(plan, readings, state), truth));
+  }
+  EXPECT_LT(largest, 2 * resolution(model, 150));
+  EXPECT_GT(ignored, 14) << "the state has crept";
 }
 
 // --- Bending ---

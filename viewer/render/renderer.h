@@ -17,9 +17,9 @@ class Renderer {
   Renderer(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
            double scale);
 
-  /// Records the drawing of a picture. `field` must stay alive until the commands are complete;
+  /// Records the drawing of a picture. `shown` must stay alive until the commands are complete;
   /// commands recorded earlier must be complete.
-  void record(const vk::raii::CommandBuffer& commands, const ShownField& field,
+  void record(const vk::raii::CommandBuffer& commands, const ShownField& shown,
               const SourceInfo& source, const RenderSettings& settings);
 
   /// Changes size and scale; recorded commands must be complete.

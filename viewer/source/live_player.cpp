@@ -64,13 +64,15 @@ LiveSinkInfo recording_info(const SourceInfo& source, const SolverPlan& plan,
 /// The readings of a field on display, and its forces where pillars without readings were taken
 /// out.
 struct LiveField {
-  LiveField(const SolverPlan& plan) : readings(plan.sensel_type, plan.skin.rows, plan.skin.cols) {}
+  explicit LiveField(const SolverPlan& plan)
+      : readings(plan.sensel_type, plan.skin.rows, plan.skin.cols) {}
   FrameBuffer readings;
   std::optional<PlaneBlock> planes;
 };
 
 /// Keeps the memory of a field alive.
 struct LiveFieldOwner {
+  explicit LiveFieldOwner(std::shared_ptr<LiveField> kept) : field(std::move(kept)) {}
   std::shared_ptr<LiveField> field;
   std::optional<Processor::PinnedResult> result;  ///< released first: then `field` implies a slot
 };

@@ -27,7 +27,30 @@ std::string completion_script(const std::string& shell) {
     return "complete -c pillarfield -a '(pillarfield completion words -- "
            "(commandline -opc)[2..])'\n";
   }
-  const std::string bash = R"(_pillarfield() {
+  if (shell == "zsh") {
+    return R"(#compdef pillarfield
+_pillarfield() {
+  local -a commands options
+  local line
+  for line in "${(@f)$(pillarfield completion words -- "${(@)words[2,CURRENT-1]}")}"; do
+    line=${line/$'\t'/:}
+    [[ $line == -* ]] && options+=("$line") || commands+=("$line")
+  done
+  if [[ ${words[CURRENT]} == -* ]]; then
+    _describe -o option options
+  else
+    (( $#commands )) && _describe command commands
+    _files
+  fi
+}
+if [[ ${funcstack[1]} == _pillarfield ]]; then
+  _pillarfield "$@"
+else
+  compdef _pillarfield pillarfield
+fi
+)";
+  }
+  return R"(_pillarfield() {
   local current=${COMP_WORDS[COMP_CWORD]} words
   words=$(pillarfield completion words -- "${COMP_WORDS[@]:1:COMP_CWORD-1}" | cut -f1)
   [[ $current == -* ]] || words=$(grep -v '^-' <<<"$words")
@@ -35,7 +58,6 @@ std::string completion_script(const std::string& shell) {
 }
 complete -o default -F _pillarfield pillarfield
 )";
-  return shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" + bash : bash;
 }
 
 }  // namespace pillarfield::cli

@@ -15,9 +15,9 @@ namespace {
 /// Default time constant of the baseline with --everything, seconds.
 constexpr double kBaselineTimeS = 10;
 
-/// Baseline interval of --everything: at most 16 frames and 1/100 of the time constant.
+/// Baseline interval of --everything: at most 64 frames and 1/100 of the time constant.
 int baseline_interval_of(double baseline_time_s, double frame_interval_s) {
-  constexpr double kMostFrames = 16;
+  constexpr double kMostFrames = 64;
   return static_cast<int>(std::clamp(baseline_time_s / (100 * frame_interval_s), 1.0, kMostFrames));
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +19,9 @@ using Work = std::function<void()>;
 inline constexpr const char* kQuietWriter = "Print only errors, warnings and the output of --json";
 inline constexpr const char* kQuietReport = "Show no progress";
 
+/// Scenes store seeds as integers of TOML.
+inline constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+
 void add_help(CLI::App* command);
 void add_general(CLI::App* command, PrintOptions& options, const char* json, const char* quiet);
 void add_overwrite(CLI::App* command, Replace& replace);
@@ -25,6 +30,10 @@ void add_trust(CLI::App* command, ReadOptions& options);
 /// Adds what files of plain numbers leave open; --rate if the command uses the times of frames.
 void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times);
 void add_tare_frames(CLI::App* command, ReadOptions& options);
+void add_sensor(CLI::App* command, PlanOptions& plan);
+void add_solver(CLI::App* command, PlanOptions& plan);
+void add_contacts(CLI::App* command, ContactOptions& options);
+void add_device(CLI::App* command, DeviceOptions& options);
 
 /// Adds a command; its options live as long as the work.
 template <class Options>
@@ -39,6 +48,10 @@ std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Wor
   command->callback([=, &work] { work = [=] { run(*options); }; });
   return {command, options};
 }
+
+void add_pace(CLI::App& parent, Work& work);
+void add_stream(CLI::App& parent, Work& work);
+void add_body(CLI::App& parent, Work& work);
 
 /// Adds `calibrate` and its steps.
 void add_calibrate(CLI::App& parent, Work& work);

@@ -87,9 +87,9 @@ std::optional<Rank> rank_of_array_task() {
 }  // namespace
 
 std::optional<Rank> launcher_rank() {
-  const std::optional<Rank> process = rank_of_process();
-  const std::optional<Rank> task = rank_of_array_task();
-  if (!process || process->size == 1) return task ? task : process;
+  std::optional<Rank> process = rank_of_process();
+  std::optional<Rank> task = rank_of_array_task();
+  if (task && (!process || process->size == 1)) return task;
   if (!task) return process;
   // Each task of the array starts several processes.
   return checked({task->rank * process->size + process->rank, task->size * process->size,

@@ -126,7 +126,7 @@ bool ControlChannel::read_from(
     const std::function<std::string(std::uint64_t client, std::string_view line)>& handle) {
   pollfd ready = {.fd = client.input, .events = POLLIN, .revents = 0};
   if (::poll(&ready, 1, 0) != 1) return true;
-  std::array<char, kMostLineBytes> bytes;
+  std::array<char, kMostLineBytes> bytes{};
   const ssize_t count = read(client.input, bytes.data(), bytes.size());
   if (count < 0) return errno == EAGAIN || errno == EINTR;
   if (count == 0) return false;

@@ -108,7 +108,8 @@ class StreamSession::Sinks final : public ForceSink {
   void finish_later(const std::string& name, std::uint64_t client) {
     const auto sink = std::ranges::find(sinks_, name, &LiveSink::name);
     if (sink == sinks_.end()) return;
-    Finishing& last = finishing_.emplace_back(client, std::move(*sink));
+    finishing_.push_back({.client = client, .sink = std::move(*sink)});
+    Finishing& last = finishing_.back();
     sinks_.erase(sink);
     last.done = std::async(std::launch::async, [to = last.sink.get()] { to->finish(); });
   }

@@ -117,7 +117,7 @@ PF_WIDE void average(const Values& fixed, const Values& moving, const Values& hi
           slope_square[i] * moving[i] * moving[i] + (friction * friction - slope_square[i]) * total;
       const float sum_of = slope[i] * moving[i] + std::sqrt(under > 0 ? under : 0.0F);
       const float free = total / sum_of;
-      const float slip = (sum_of > 0) & (free < high[i]) ? free : high[i];
+      const float slip = ((sum_of > 0) & (free < high[i])) ? free : high[i];
       const float sum = slip + high[i];
       mean[i] += share * ((1 - sticks) * slip + sticks * 0.5F * sum);
       square[i] += share * ((1 - sticks) * slip * slip +

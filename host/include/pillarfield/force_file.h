@@ -65,7 +65,7 @@ void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& inf
 /// writer and those that join_parts() wrote. Parts are opened when a frame of theirs is read.
 class ForceFileReader {
  public:
-  /// Throws Error if the file is of another format or damaged.
+  /// `options` hold for its parts too. Throws Error if the file is of another format or damaged.
   explicit ForceFileReader(const std::filesystem::path& path, const ReadOptions& options = {});
   ~ForceFileReader();
   ForceFileReader(ForceFileReader&&) noexcept;
@@ -84,7 +84,7 @@ class ForceFileReader {
   [[nodiscard]] std::uint64_t parts() const;
 
   /// Opens every part of a joined file and returns those that are absent or cannot be used.
-  [[nodiscard]] std::vector<LostPart> examine_parts() const;
+  [[nodiscard]] std::vector<LostPart> examine_parts(const StepProgress& progress = {}) const;
 
   /// Reads a frame, with its uncertainty if the file has it, and returns its time, s.
   double read(std::uint64_t index, ForceField& forces) const;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -68,11 +69,20 @@ struct LostPart {
 /// "part 7 (frames 600 to 699)".
 [[nodiscard]] std::string name_of(const LostPart& part);
 
+/// A sentence for each lost part, "It lacks part 7 (frames 600 to 699): REASON.", and one for all
+/// beyond the first ten.
+[[nodiscard]] std::vector<std::string> sentences_about(const std::vector<LostPart>& lost);
+
+/// Called often during a long work on parts, with the steps done so far and all of them; both may
+/// stay as they were. What it throws ends the work.
+using StepProgress = std::function<void(std::uint64_t done, std::uint64_t all)>;
+
 struct JoinOptions {
   bool copy = false;        ///< copy all values, so that the parts may be removed
   bool allow_lost = false;  ///< join although parts are lost
   Replace replace = Replace::results;
   ReadOptions read;  ///< of the parts
+  StepProgress progress = {};
 };
 
 /// What join_parts() found.
@@ -86,8 +96,8 @@ struct JoinedParts {
 /// planes are virtual datasets over the parts, or with JoinOptions::copy a file like any other.
 /// Frames of lost parts have NaN forces, NaN times and status::kInconsistent.
 ///
-/// Throws Error if there are no parts, if they differ in source, plan, calibration or count, or
-/// unless JoinOptions::allow_lost if one is lost.
+/// Throws Error if there are no parts, if they differ in source, plan, calibration or count, unless
+/// JoinOptions::allow_lost if one is lost, or if lost ones claim far more than the others hold.
 JoinedParts join_parts(const std::filesystem::path& output, const JoinOptions& options = {});
 
 }  // namespace pillarfield

@@ -34,10 +34,9 @@ class CurvatureFollower;
 /// What a frame leaves to the next one: hysteresis and creep of the sensels (SenselMemory), and the
 /// curvature of the skin. Empty: at rest, and flat.
 struct SensorState {
-  std::vector<float> values;               ///< counts, [states, sensel rows, cols], plays first
-  std::vector<std::uint32_t> last_active;  ///< the last frame with load, [sensel rows, cols]
-  std::uint32_t frame = 0;                 ///< number of frames so far
-  std::vector<float> tare;                 ///< of the bent skin, counts, [sensel rows, cols]
+  std::vector<std::uint32_t> states;  ///< as Memory of the kernels, [pillar rows, cols, words]
+  std::uint32_t frame = 0;            ///< number of frames so far
+  std::vector<float> tare;            ///< of the bent skin, counts, [sensel rows, cols]
   std::shared_ptr<CurvatureFollower> curvature;  ///< made with the first frame of a bent skin
 };
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pillarfield/frame_statistics.h"
@@ -16,7 +17,7 @@ namespace pillarfield {
 ///     if (const auto* plane = tare.add(frame, arrived)) processor.set_tare(*plane);
 class LiveTare {
  public:
-  LiveTare(const Skin& skin, SenselType type) : skin_(skin), type_(type) {}
+  LiveTare(Skin skin, SenselType type) : skin_(std::move(skin)), type_(type) {}
 
   /// Begins with the next frame; forgets frames added so far. `preloaded` accepts an area that
   /// reads far above the rest (TareOptions).

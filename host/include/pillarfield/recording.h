@@ -52,7 +52,7 @@ class FrameSource {
 [[nodiscard]] std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
                                                        const ReadOptions& options = {});
 
-/// Writes a recording, format "pillarfield-recording" version 1 (docs/formats.md).
+/// Writes a recording, format "pillarfield-recording" (docs/formats.md).
 ///
 /// Writes to `path` + ".part", which finish() renames to `path`. If the process dies, open_frames()
 /// reads every flushed frame from the part. The destructor without finish() keeps a part that has

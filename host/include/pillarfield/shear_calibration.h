@@ -12,8 +12,8 @@ namespace pillarfield {
 /// Frames of the skin under a body at rest with a known total tangential force on the skin.
 struct KnownShear {
   const FrameStatistics& frames;
-  double shear_x_n;  ///< + right
-  double shear_y_n;  ///< + up
+  double shear_x_n = 0;  ///< + right
+  double shear_y_n = 0;  ///< + up
   /// Total normal force. If set, the solved shear is scaled by it over the solved normal force, so
   /// that errors of k and creep, which both share, cancel.
   std::optional<double> normal_n = {};

@@ -89,7 +89,7 @@ File open_to_read(const std::filesystem::path& path, bool probing) {
   return file;
 }
 
-void require_format(const File& file, std::string_view format, int version) {
+int require_format(const File& file, std::string_view format, int newest) {
   const auto found = read_text(file, file.id.get(), "format");
   if (!found) {
     throw Error(file.path.string(),
@@ -100,14 +100,15 @@ void require_format(const File& file, std::string_view format, int version) {
     throw Error(file.path.string(), fmt::format("its format is '{:.60}', not '{}'", *found, format),
                 advice_for(*found, format));
   }
-  const auto found_version = read_number(file, file.id.get(), "version");
-  if (!found_version) throw Error(file.path.string(), "has no attribute 'version'", kLayout);
-  if (*found_version != version) {
-    throw Error(
-        file.path.string(),
-        fmt::format("its version is {}; this program reads version {}", *found_version, version),
-        "use a newer program");
+  const auto version = read_number(file, file.id.get(), "version");
+  if (!version) throw Error(file.path.string(), "has no attribute 'version'", kLayout);
+  for (int known = 1; known <= newest; ++known) {
+    if (*version == known) return known;
   }
+  throw Error(file.path.string(),
+              fmt::format("its version is {}; this program reads version 1{}", *version,
+                          newest > 1 ? fmt::format(" to {}", newest) : ""),
+              "use a newer program");
 }
 
 File create(const OutputFile& output) {

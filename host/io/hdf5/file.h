@@ -25,8 +25,9 @@ struct File {
 /// first and last values on opening.
 [[nodiscard]] File open_to_read(const std::filesystem::path& path, bool probing = false);
 
-/// Throws Error unless the root attributes `format` and `version` have these values.
-void require_format(const File& file, std::string_view format, int version);
+/// Returns the root attribute `version`. Throws Error unless it is 1 to `newest`, and `format` as
+/// given.
+int require_format(const File& file, std::string_view format, int newest);
 
 /// Creates an HDF5 file in an empty output, which must stay open. Flushed data survive the death of
 /// the process. Create groups, attributes and datasets before start_appending(); after it, datasets

@@ -24,7 +24,6 @@
 #include "io/hdf5/virtual_frames.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
-#include "pillarfield/interrupt.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -33,11 +32,18 @@ namespace {
 constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint8_t kNoStatus = status::kInconsistent;
 
+/// Lost parts may claim any number of frames, which the others cannot confirm: more bytes than
+/// these are refused.
+constexpr double kMostBytesPerFoundByte = 100;
+constexpr double kAlwaysAllowedBytes = 64 << 20;
+constexpr double kBytesOfMapping = 2000;  ///< memory of HDF5 for a plane of a part, measured: 1600
+
 /// The parts in a folder.
 struct FoundParts {
   ForceFileInfo info;  ///< of the first part found
   std::map<std::uint64_t, std::filesystem::path> files;
   JoinedParts joined;
+  double bytes = 0;  ///< of their files
 
   [[nodiscard]] FrameRange frames(std::uint64_t index) const {
     ForcePart part = *info.part;
@@ -74,6 +80,32 @@ void add_part(FoundParts& found, const std::filesystem::path& file, std::uint64_
                 "solve it again");
   }
   found.files[index] = file;
+  std::error_code failed;
+  const auto bytes = std::filesystem::file_size(file, failed);
+  if (!failed) found.bytes += static_cast<double>(bytes);
+}
+
+/// Bytes of a value of each plane and of the status.
+double bytes_of_pillar(const ForceFileInfo& info) {
+  return 1 + 4 * static_cast<double>(planes_of(info).size());
+}
+
+/// Throws Error if times and lost parts, with `copy` as NaN, take far more than the parts found.
+void require_plausible(const FoundParts& found, const std::string& folder, bool copy) {
+  if (found.joined.lost.empty()) return;
+  double lost = 0;
+  for (const LostPart& part : found.joined.lost) lost += static_cast<double>(part.frames.frames());
+  const double pillars = static_cast<double>(found.info.rows) * found.info.cols;
+  const double mappings =
+      static_cast<double>(found.joined.lost.size() * (planes_of(found.info).size() + 1));
+  const double bytes =
+      8 * static_cast<double>(found.joined.frames) +
+      (copy ? lost * pillars * bytes_of_pillar(found.info) : mappings * kBytesOfMapping);
+  if (bytes <= kAlwaysAllowedBytes + kMostBytesPerFoundByte * found.bytes) return;
+  throw Error(folder,
+              fmt::format("claims {} frames in {} lost parts, {:.3g} times the bytes of the others",
+                          lost, found.joined.lost.size(), bytes / found.bytes),
+              copy ? "solve more of them, or join without --copy" : "solve more of them");
 }
 
 /// The files in a folder with the name of a part, by index.
@@ -90,11 +122,21 @@ std::map<std::uint64_t, std::filesystem::path> files_in(const std::filesystem::p
   return files;
 }
 
+/// Steps of joining `parts`: each is examined, and then opened for times, contacts and planes.
+std::uint64_t steps_of(const FoundParts& found, std::uint64_t parts, bool copy) {
+  std::uint64_t steps = found.info.contacts ? 3 : 2;
+  if (copy) steps += planes_of(found.info).size() + 1;
+  return steps * parts;
+}
+
 FoundParts find_parts(const std::filesystem::path& output, const JoinOptions& options) {
   const std::filesystem::path folder = part_file(output, 1).parent_path();
   FoundParts found;
   std::map<std::uint64_t, std::string> unreadable;
-  for (const auto& [index, file] : files_in(folder)) {
+  const auto files = files_in(folder);
+  std::uint64_t examined = 0;
+  for (const auto& [index, file] : files) {
+    if (options.progress) options.progress(examined++, steps_of(found, files.size(), options.copy));
     std::optional<ForceFileReader> reader;
     try {
       reader.emplace(file, options.read);
@@ -124,6 +166,7 @@ FoundParts find_parts(const std::filesystem::path& output, const JoinOptions& op
          damaged != unreadable.end() ? damaged->second : file + " is absent"});
   }
   const auto& lost = found.joined.lost;
+  if (options.allow_lost) require_plausible(found, folder.string(), options.copy);
   if (lost.empty() || options.allow_lost) return found;
   throw Error(folder.string(),
               fmt::format("lacks {} of {} parts: {}{}", lost.size(), part.count,
@@ -137,6 +180,9 @@ class Joined {
   Joined(const std::filesystem::path& output, const FoundParts& found, const JoinOptions& options)
       : found_(found),
         info_(found.info),
+        copy_(options.copy),
+        progress_(options.progress),
+        done_(found.files.size()),
         output_(output, OutputKind::forces, options.replace),
         file_(hdf5::create(output_)) {
     info_.part.reset();
@@ -154,51 +200,61 @@ class Joined {
     }
   }
 
-  void write(bool copy) {
-    write_times(copy);
+  void write() {
+    write_times();
     for (const ResultPlane& plane : planes_of(info_)) {
       const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
-      copy ? copy_plane(name.c_str(), H5T_IEEE_F32LE, kNoForce)
-           : map_plane(name.c_str(), H5T_IEEE_F32LE, &kNoForce);
+      copy_ ? copy_plane(name.c_str(), H5T_IEEE_F32LE, kNoForce)
+            : map_plane(name.c_str(), H5T_IEEE_F32LE, &kNoForce);
     }
-    copy ? copy_plane(force_format::kStatus, H5T_STD_U8LE, kNoStatus)
-         : map_plane(force_format::kStatus, H5T_STD_U8LE, &kNoStatus);
+    copy_ ? copy_plane(force_format::kStatus, H5T_STD_U8LE, kNoStatus)
+          : map_plane(force_format::kStatus, H5T_STD_U8LE, &kNoStatus);
     if (info_.contacts) write_contacts();
     hdf5::close(file_);
     output_.commit();
   }
 
  private:
-  void write_times(bool copy);
+  void write_times();
   void map_plane(const char* name, hid_t stored_type, const void* fill);
   [[nodiscard]] hdf5::StoredFrames open_plane(const hdf5::File& file, const char* name,
                                               const FrameRange& range) const;
   template <class Value>
   void copy_plane(const char* name, hid_t type, Value lost);
   void write_contacts();
-  [[nodiscard]] std::optional<hdf5::File> open(std::uint64_t index) const;
+  void report() const;
+  [[nodiscard]] std::optional<hdf5::File> open(std::uint64_t index);
 
   const FoundParts& found_;
   ForceFileInfo info_;
+  bool copy_;
+  StepProgress progress_;
+  std::uint64_t done_;  ///< steps
   OutputFile output_;
   hdf5::File file_;
 };
 
-/// One part at a time is open, since a process may open few files.
-std::optional<hdf5::File> Joined::open(std::uint64_t index) const {
+void Joined::report() const {
+  if (progress_) progress_(done_, steps_of(found_, found_.files.size(), copy_));
+}
+
+/// Opens a part for the next step. One at a time is open, since a process may open few files.
+std::optional<hdf5::File> Joined::open(std::uint64_t index) {
   const auto found = found_.files.find(index);
   if (found == found_.files.end()) return std::nullopt;
+  report();
+  ++done_;
   return hdf5::open_to_read(found->second);
 }
 
-void Joined::write_times(bool copy) {
+void Joined::write_times() {
   std::vector<double> times(found_.joined.frames, std::numeric_limits<double>::quiet_NaN());
   for (const auto& [index, file] : found_.files) {
     const FrameRange range = found_.frames(index);
     hdf5::StoredFrames(*open(index), force_format::kTime, 0)
         .get_all(0, range.frames(), H5T_NATIVE_DOUBLE, times.data() + range.first);
   }
-  if (!copy) return hdf5::write_numbers(file_, force_format::kTime, times);
+  if (!copy_) return hdf5::write_numbers(file_, force_format::kTime, times);
   hdf5::ExtendibleDataset target(file_, force_format::kTime, H5T_IEEE_F64LE, {});
   target.append(H5T_NATIVE_DOUBLE, times.data(), times.size());
 }
@@ -215,16 +271,27 @@ void Joined::map_plane(const char* name, hid_t stored_type, const void* fill) {
                               {found_.joined.frames, info_.rows, info_.cols}, parts, fill);
 }
 
-/// Value of a dataset in pillars that nothing touches.
+/// What a copy of a part's plane takes from it.
 template <class Value>
-Value fill_value(const hdf5::File& file, const char* name, hid_t type) {
+struct PlaneLayout {
+  Value idle = 0;  ///< value in pillars that nothing touches
+  hdf5::Tiling tiling = hdf5::Tiling::squares;
+};
+
+template <class Value>
+PlaneLayout<Value> layout_of(const hdf5::File& file, const char* name, hid_t type, hsize_t cols) {
   const std::string failure = fmt::format("the layout of {} cannot be read", name);
   const hdf5::Handle dataset = hdf5::open_object(file, name);
   const hdf5::Handle layout =
       hdf5::own(H5Dget_create_plist(dataset.get()), file.path, failure, hdf5::kDamaged);
-  Value value = 0;
-  hdf5::require(H5Pget_fill_value(layout.get(), type, &value), file.path, failure, hdf5::kDamaged);
-  return value;
+  PlaneLayout<Value> found;
+  hdf5::require(H5Pget_fill_value(layout.get(), type, &found.idle), file.path, failure,
+                hdf5::kDamaged);
+  std::array<hsize_t, 3> chunk{};
+  const bool is_chunked = H5Pget_layout(layout.get()) == H5D_CHUNKED &&
+                          H5Pget_chunk(layout.get(), 3, chunk.data()) == 3;
+  if (is_chunked && chunk[2] == cols) found.tiling = hdf5::Tiling::strips;
+  return found;
 }
 
 /// A plane of a part; the reader checked only those that it reads.
@@ -240,8 +307,9 @@ hdf5::StoredFrames Joined::open_plane(const hdf5::File& file, const char* name,
 
 template <class Value>
 void Joined::copy_plane(const char* name, hid_t type, Value lost) {
-  const auto idle = fill_value<Value>(*open(found_.files.begin()->first), name, type);
-  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &idle);
+  const auto layout =
+      layout_of<Value>(hdf5::open_to_read(found_.files.begin()->second), name, type, info_.cols);
+  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &layout.idle, layout.tiling);
   std::vector<Value> values(std::size_t{info_.rows} * info_.cols);
   for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
     const FrameRange range = found_.frames(index);
@@ -250,12 +318,20 @@ void Joined::copy_plane(const char* name, hid_t type, Value lost) {
     if (file) source = open_plane(*file, name, range);
     if (!source) std::ranges::fill(values, lost);
     for (std::uint64_t frame = range.first; frame < range.end; ++frame) {
-      if (is_interrupted()) throw Error(output_.part_path().string(), "interrupted", "start again");
+      report();
       if (source) source->get(frame - range.first, type, values.data());
       target.append(values.data());
     }
   }
   target.flush();
+}
+
+/// A part whose table is longer than its frames would shift those of the next parts.
+void require_frames(const ContactTables& tables, std::uint64_t frames,
+                    const std::filesystem::path& file) {
+  if (tables.frames() == frames) return;
+  throw Error(file.string(), "its table of contacts does not fit its frames",
+              "solve this part again");
 }
 
 void Joined::write_contacts() {
@@ -264,6 +340,7 @@ void Joined::write_contacts() {
     const FrameRange range = found_.frames(index);
     if (const std::optional<hdf5::File> file = open(index)) {
       tables.append(*file, range.first);
+      require_frames(tables, range.end, file->path);
     } else {
       tables.append_lost(range.frames());
     }
@@ -280,7 +357,7 @@ JoinedParts join_parts(const std::filesystem::path& output, const JoinOptions& o
     throw Error(output.string(), "a joined file is an HDF5 file", "end its name in .h5");
   }
   const FoundParts found = find_parts(output, options);
-  Joined(output, found, options).write(options.copy);
+  Joined(output, found, options).write();
   return found.joined;
 }
 

@@ -16,7 +16,7 @@ namespace pillarfield {
 /// Opens a file for reading, after probe_file() unless it is trusted.
 [[nodiscard]] hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads a recording, format "pillarfield-recording" version 1.
+/// Reads a recording, format "pillarfield-recording".
 [[nodiscard]] std::unique_ptr<FileSource> read_recording(hdf5::File file,
                                                          const ReadOptions& options);
 

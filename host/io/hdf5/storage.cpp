@@ -43,7 +43,8 @@ std::vector<hsize_t> chunk_of(const File& file, const Handle& layout, const std:
 double chunks_of(const Storage& storage) {
   double chunks = 1;
   for (std::size_t d = 0; d < storage.extent.size(); ++d) {
-    chunks *= static_cast<double>((storage.extent[d] - 1) / storage.chunk[d] + 1);
+    const hsize_t along = (storage.extent[d] - 1) / storage.chunk[d] + 1;
+    chunks *= static_cast<double>(along);
   }
   return chunks;
 }

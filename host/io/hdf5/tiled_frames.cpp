@@ -9,37 +9,40 @@
 namespace pillarfield::hdf5 {
 namespace {
 
-/// Wanted size of a tile, pillars. A square metre with 8 % of its pillars in contact takes 14 % of
-/// the room of all values, with 32 it takes 21 %; smaller tiles cost time where all are in contact.
+/// Wanted size of a square tile, pillars. A square metre with 8 % of its pillars in contact takes
+/// 14 % of the room of all values, with 32 it takes 21 %; smaller tiles cost time.
 constexpr hsize_t kTile = 14;
+constexpr hsize_t kStripRows = 56;             ///< wanted
 constexpr hsize_t kMostPlaneBytes = 12 << 20;  ///< memory for the frames of a chunk
 constexpr hsize_t kMostChunkFrames = 16;       ///< frames from flush to flush
+constexpr hsize_t kAloneBytes = 1 << 20;       ///< strips of larger planes hold one frame
 
 /// Size of tiles that cover `size`.
-hsize_t tile_of(hsize_t size) {
-  const hsize_t tiles = std::max<hsize_t>(1, (size + kTile / 2) / kTile);
+hsize_t tile_of(hsize_t size, hsize_t wanted) {
+  const hsize_t tiles = std::max<hsize_t>(1, (size + wanted / 2) / wanted);
   return (size + tiles - 1) / tiles;
 }
 
 /// Frames of a chunk: a power of two.
-hsize_t frames_of(hsize_t plane_bytes) {
+hsize_t frames_of(hsize_t plane_bytes, Tiling tiling) {
+  if (tiling == Tiling::strips && plane_bytes > kAloneBytes) return 1;
   return std::bit_floor(std::clamp<hsize_t>(kMostPlaneBytes / plane_bytes, 1, kMostChunkFrames));
 }
 
 }  // namespace
 
 TiledFrames::TiledFrames(const File& file, const char* name, hid_t type, hsize_t rows, hsize_t cols,
-                         const void* fill)
+                         const void* fill, Tiling tiling)
     : path_(file.path),
       failure_(fmt::format("{} cannot be written", name)),
       write_status_(file.write_status),
       value_bytes_(H5Tget_size(type)),
       rows_(rows),
       cols_(cols),
-      tile_rows_(tile_of(rows)),
-      tile_cols_(tile_of(cols)) {
+      chunk_frames_(frames_of(rows * cols * value_bytes_, tiling)),
+      tile_rows_(tile_of(rows, tiling == Tiling::strips ? kStripRows : kTile)),
+      tile_cols_(tiling == Tiling::strips ? cols : tile_of(cols, kTile)) {
   const hsize_t tile_values = tile_rows_ * tile_cols_;
-  chunk_frames_ = frames_of(rows * cols * value_bytes_);
   fill_.resize(chunk_frames_ * tile_values * value_bytes_);
   for (std::size_t at = 0; at < fill_.size(); at += value_bytes_) {
     std::memcpy(fill_.data() + at, fill, value_bytes_);
@@ -85,19 +88,48 @@ bool TiledFrames::is_filled(const std::byte* frame, const Tile& tile) const {
   return true;
 }
 
-void TiledFrames::put(const std::byte* frame, Tile& tile) {
-  if (!tile.stored) {
-    if (is_filled(frame, tile)) return;
+/// Makes a tile stored from the current frame on. Only what no later frame overwrites is filled.
+void TiledFrames::start(Tile& tile) const {
+  const bool is_cut = tile.rows < tile_rows_ || tile.cols < tile_cols_;
+  const hsize_t frames_before = frames_ % chunk_frames_;
+  if (tile.values.empty() || is_cut) {
     tile.values = fill_;
-    tile.stored = true;
+  } else {
+    std::memcpy(tile.values.data(), fill_.data(),
+                frames_before * tile_rows_ * tile_cols_ * value_bytes_);
   }
+  tile.stored = true;
+}
+
+void TiledFrames::put(const std::byte* frame, Tile& tile) {
+  if (!tile.stored && is_filled(frame, tile)) return;
+  if (is_in_place(tile)) return write(tile, frames_, frame + tile.row * cols_ * value_bytes_);
+  if (!tile.stored) start(tile);
   for (hsize_t row = 0; row < tile.rows; ++row) {
     std::memcpy(row_in(tile, row), frame + ((tile.row + row) * cols_ + tile.col) * value_bytes_,
                 tile.cols * value_bytes_);
   }
 }
 
+/// Whether the values of a tile lie in a frame as in the file.
+bool TiledFrames::is_in_place(const Tile& tile) const {
+  return chunk_frames_ == 1 && tile.cols == cols_ && tile.rows == tile_rows_;
+}
+
+void TiledFrames::extend(std::uint64_t frames) {
+  const hsize_t extent[] = {frames, rows_, cols_};
+  require(H5Dset_extent(dataset_.get(), extent), path_, failure_);
+}
+
+/// Writes the chunk of a tile that begins at the frame `first`.
+void TiledFrames::write(const Tile& tile, std::uint64_t first, const std::byte* values) {
+  const hsize_t start[] = {first, tile.row, tile.col};
+  require(H5Dwrite_chunk(dataset_.get(), H5P_DEFAULT, 0, start, fill_.size(), values), path_,
+          failure_);
+}
+
 void TiledFrames::append(const void* frame) {
+  if (chunk_frames_ == 1) extend(frames_ + 1);
   for (Tile& tile : tiles_) put(static_cast<const std::byte*>(frame), tile);
   ++frames_;
   if (frames_ % chunk_frames_ == 0) flush();
@@ -105,16 +137,12 @@ void TiledFrames::append(const void* frame) {
 
 void TiledFrames::flush() {
   if (flushed_ == frames_) return;
-  const hsize_t extent[] = {frames_, rows_, cols_};
-  require(H5Dset_extent(dataset_.get(), extent), path_, failure_);
-  const hsize_t first = (frames_ - 1) / chunk_frames_ * chunk_frames_;
+  extend(frames_);
+  const std::uint64_t first = (frames_ - 1) / chunk_frames_ * chunk_frames_;
   const bool is_whole = frames_ % chunk_frames_ == 0;
   for (Tile& tile : tiles_) {
     if (!tile.stored) continue;
-    const hsize_t start[] = {first, tile.row, tile.col};
-    require(H5Dwrite_chunk(dataset_.get(), H5P_DEFAULT, 0, start, tile.values.size(),
-                           tile.values.data()),
-            path_, failure_);
+    write(tile, first, tile.values.data());
     if (is_whole) tile.stored = false;
   }
   flushed_ = frames_;

@@ -11,6 +11,10 @@
 
 namespace pillarfield::hdf5 {
 
+/// Tiles of planes: squares, or for planes most of whose values are stored anyway, strips of whole
+/// rows, which are fewer and lie in memory as in the file.
+enum class Tiling { squares, strips };
+
 /// A dataset [frames, rows, cols] that is extended frame by frame, in chunks of several frames of a
 /// tile. A chunk all of whose values are the fill value takes no room in the file.
 class TiledFrames {
@@ -19,7 +23,7 @@ class TiledFrames {
 
   /// `type` is the type of the values in memory and in the file, `fill` one of them.
   TiledFrames(const File& file, const char* name, hid_t type, hsize_t rows, hsize_t cols,
-              const void* fill);
+              const void* fill, Tiling tiling = Tiling::squares);
 
   /// Appends a frame; the file has it after the next flush().
   void append(const void* frame);
@@ -41,8 +45,12 @@ class TiledFrames {
   };
 
   void create(const File& file, const char* name, hid_t type, const void* fill);
+  void extend(std::uint64_t frames);
+  [[nodiscard]] bool is_in_place(const Tile& tile) const;
+  void write(const Tile& tile, std::uint64_t first, const std::byte* values);
   [[nodiscard]] std::byte* row_in(Tile& tile, hsize_t row) const;
   [[nodiscard]] bool is_filled(const std::byte* frame, const Tile& tile) const;
+  void start(Tile& tile) const;
   void put(const std::byte* frame, Tile& tile);
 
   std::filesystem::path path_;

@@ -83,7 +83,7 @@ FoundContent content_by_beginning(const std::filesystem::path& path) {
 FoundContent content_of(const std::filesystem::path& path) {
   const DetectedFormat detected = detect_format(path);
   if (detected.kind == FileKind::hdf5) return hdf5_content(path);
-  const FoundContent found = content_by_beginning(path);
+  FoundContent found = content_by_beginning(path);
   if (found.kind || detected.frames == nullptr) return found;
   return {std::nullopt, fmt::format("is a {}", detected.frames->name)};
 }

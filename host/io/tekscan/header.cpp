@@ -73,15 +73,15 @@ std::string unit_name(std::string_view text) {
   return lower_case(name);
 }
 
-template <std::size_t N>
-std::optional<double> size_of_unit(const Unit (&units)[N], std::string_view text) {
+template <std::size_t count>
+std::optional<double> size_of_unit(const Unit (&units)[count], std::string_view text) {
   const auto* const known = std::ranges::find(units, unit_name(text), &Unit::name);
   return known == std::end(units) ? std::nullopt : std::optional(known->size);
 }
 
 /// A number above zero and its unit, as "0.127 centimeters".
-template <std::size_t N>
-double measure_in(const Unit (&units)[N], const std::string& place, std::string_view key,
+template <std::size_t count>
+double measure_in(const Unit (&units)[count], const std::string& place, std::string_view key,
                   std::string_view value, std::string_view unit_mend) {
   const std::size_t split = std::min(value.find_first_of(" \t"), value.size());
   const auto unit = size_of_unit(units, value.substr(split));

@@ -15,6 +15,7 @@
 namespace pillarfield {
 namespace {
 
+constexpr std::uint64_t kMostBodySensels = std::uint64_t{1} << 24;  ///< nearly 7 m²
 constexpr Range kBodyRateHz = {1, 1e5};
 constexpr Range kBodyRefreshS = {1e-3, 3600};
 constexpr Range kBodyPlaceMm = {-1e5, 1e5};
@@ -70,6 +71,16 @@ SolverPlan plan_of_patch(const Simulator& simulator) {
   return plan;
 }
 
+/// Throws Error if the body, with a patch of this scene, has more than kMostBodySensels: a short
+/// file may describe a thousand large patches.
+void require_size(TomlSection& section, const BodyFile& body, const Scene& scene) {
+  std::uint64_t sensels = scene.skin.sensels();
+  for (const BodyFile::Simulated& other : body.simulated) sensels += other.scene.skin.sensels();
+  if (sensels <= kMostBodySensels) return;
+  section.fail("size_mm", fmt::format("makes a body of {} sensels", sensels),
+               fmt::format("at most {} in all patches", kMostBodySensels));
+}
+
 void read_patch(TomlSection& section, const std::filesystem::path& folder, BodyFile& body) {
   BodyPatch patch;
   const auto name = section.text("name");
@@ -81,6 +92,7 @@ void read_patch(TomlSection& section, const std::filesystem::path& folder, BodyF
   simulated.scene = load_scene(folder / *scene_file);
   simulated.scene.rate_hz = body.skin.rate_hz;
   read_size(section, simulated.scene);
+  require_size(section, body, simulated.scene);
   if (const auto seed = section.whole_number("seed", 0, INT64_MAX)) {
     simulated.scene.seed = static_cast<std::uint64_t>(*seed);
   }
@@ -143,13 +155,14 @@ BodyFile parse_body(std::string_view text, const std::filesystem::path& name) {
 }
 
 BodyFile load_body(const std::filesystem::path& path) {
-  std::error_code failed;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
-  std::ifstream file(path, std::ios::binary);
   constexpr std::uintmax_t kMostBytes = 1 << 20;
-  if (failed || bytes > kMostBytes || !file.is_open()) {
-    throw Error(path.string(), "cannot be read as a body", "name a TOML file of at most 1 MiB");
-  }
+  const Error unreadable(path.string(), "cannot be read as a body",
+                         "name a TOML file of at most 1 MiB");
+  // Check the size first: only regular files have one, and opening a pipe may block.
+  std::error_code failed;
+  if (std::filesystem::file_size(path, failed) > kMostBytes || failed) throw unreadable;
+  std::ifstream file(path, std::ios::binary);
+  if (!file.is_open()) throw unreadable;
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return parse_body(text, path);
 }

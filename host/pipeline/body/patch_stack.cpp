@@ -73,7 +73,6 @@ std::vector<std::vector<std::size_t>> PatchStack::divide(const Device& device,
 
 PatchStack::PatchStack(const Device& device, const BodySkin& skin, std::vector<std::size_t> members)
     : members_(std::move(members)),
-      row_bytes_(0),
       solves_all_(!may_solve_changes(skin.patches[members_.front()].plan)),
       frame_(SenselType::u8, 2, 2),
       processor_([&] {

@@ -46,7 +46,7 @@ class PatchStack {
 
   std::vector<std::size_t> members_;
   std::vector<Place> places_;
-  std::size_t row_bytes_;
+  std::size_t row_bytes_ = 0;
   bool solves_all_;
   bool solved_ = false;
   FrameBuffer frame_;

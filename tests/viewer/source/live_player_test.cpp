@@ -105,7 +105,7 @@ struct LiveFixture {
     for (int i = 0; i < count; ++i) wire->send(reading);
     wait_until([&] { return player->status().solved == sent; });
   }
-  ShownField newest() {
+  ShownField newest() const {
     std::optional<ShownField> newest;
     wait_until([&] { return (newest = player->take()).has_value(); });
     return *newest;
@@ -189,7 +189,7 @@ TEST(LivePlayer, ContactsAndPeaksComeWhenAskedFor) {
   live.player->set_peak(true);
   live.send(100, 2);
   ShownField field;
-  live.wait_until([&] {
+  LiveFixture::wait_until([&] {
     live.send(50);
     field = live.newest();
     return field.contacts != nullptr && field.peak != nullptr;
@@ -204,7 +204,7 @@ TEST(LivePlayer, ATareIsTakenFromUntouchedReadingsOnly) {
   LiveFixture live;
   live.player->tare();
   EXPECT_TRUE(live.player->status().taring);
-  live.wait_until([&] {
+  LiveFixture::wait_until([&] {
     live.send(0, 1);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     return !live.player->status().taring;
@@ -222,7 +222,7 @@ TEST(LivePlayer, RecordsTheRawFrames) {
   EXPECT_EQ(live.player->status().recording, path.string());
   live.send(20, 30);
   live.player->stop_recording();
-  live.wait_until([&] { return live.player->status().messages == 1; });
+  LiveFixture::wait_until([&] { return live.player->status().messages == 1; });
   live.send(30);
   const auto recorded = open_frames(path);
   EXPECT_EQ(recorded->frames(), 30U);
@@ -242,7 +242,7 @@ TEST(LivePlayer, ASensorMayStopAndEnd) {
   EXPECT_LT(live.player->status().silent_s, 0.1);
   EXPECT_FALSE(live.player->status().ended);
   live.wire->end();
-  live.wait_until([&] { return live.player->status().ended; });
+  LiveFixture::wait_until([&] { return live.player->status().ended; });
   EXPECT_EQ(live.newest().forces.normal[2 * 8 + 2], 1);
 }
 

@@ -132,8 +132,8 @@ struct ChartFrame {
   AppState& state;
   Span whole;
   Span time;
-  double lasts_s;
-  double label_width;
+  double lasts_s = 0;
+  double label_width = 0;
 };
 
 /// Exact values of a frame.

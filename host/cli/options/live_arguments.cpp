@@ -1,0 +1,145 @@
+// The options of the commands that run in real time, their help and its examples.
+
+#include <limits>
+
+#include "cli/options/shared_arguments.h"
+
+namespace pillarfield::cli {
+namespace {
+
+void add_stream_ends(CLI::App* command, StreamOptions& options) {
+  Group output(command, "Output");
+  output
+      .text("--to", options.sinks, "SINK",
+            "Send forces on, any number of times: shm:NAME, udp:ADDRESS:PORT, foxglove[:PORT], "
+            "FILE.mcap, or a file as solve writes it")
+      ->allow_extra_args(false);
+  output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
+  add_overwrite(command, options.replace);
+  Group run(command, "Run");
+  run.number("--seconds", options.seconds, "SECONDS", "End after this time [at the source's end]",
+             1e-3, 1e9);
+  run.whole("--frames", options.frames, "N", "End after this many frames", 1,
+            std::numeric_limits<std::int64_t>::max());
+  run.number("--end-when-idle", options.most_idle_s, "SECONDS",
+             "End when no frame came for this time [wait for the sensor]", 0.01, 1e9);
+  run.number("--tare", options.tare_s, "SECONDS",
+             "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
+  command
+      ->add_option("--control", options.control,
+                   "Take lines of control from a socket that the program makes, or from standard "
+                   "input (-): tare, pause, resume, record FILE, record stop, health, quit")
+      ->type_name("SOCKET|-")
+      ->group("Run");
+  run.number("--health-interval", options.health_interval_s, "SECONDS",
+             "Time between reports of health [1]", 0.05, 3600);
+}
+
+void add_body_input(CLI::App* command, BodyOptions& options) {
+  Group(command, "Input")
+      .file("BODY", options.file, "Patches, poses and scenes (TOML), see docs/whole_body.md");
+  Group(command, "Device")
+      .text("--device", options.device.name, "DEVICE",
+            "OpenCL device, by index or part of its name [the best]; see info --devices");
+}
+
+}  // namespace
+
+void add_pace(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<PaceOptions>(
+      parent, work, pace, "pace",
+      "Solve frames at a fixed rate and report the latency of their forces.",
+      "  pillarfield pace scenes/demo.toml --seconds 2\n"
+      "  pillarfield pace scenes/demo.toml --rate 500 --everything --seconds 2\n");
+  command->alias("live");
+  Group input(command, "Input");
+  input.file("SOURCE", options->source,
+             "Scene (TOML), or frames as of solve, replayed from memory");
+  add_tare_frames(command, options->plan.read);
+  add_plain_data(command, options->plan.read, false);
+  input.whole("--memory-limit", options->memory_limit_mib, "MIB",
+              "Memory limit of the frames loaded beforehand [1024]", 1, 1U << 20U);
+  Group pacing(command, "Pace");
+  pacing.number("--rate", options->rate_hz, "HZ", "Frames per second [1000]", 0.01, 1e5);
+  pacing.number("--seconds", options->seconds, "SECONDS", "Duration of the run [10]");
+  pacing.number("--deadline", options->deadline_ms, "MS",
+                "Latency above which a frame counts as missed [one period]", 1e-3, 1e6);
+  pacing.whole("--backlog", options->backlog_frames, "FRAMES",
+               "Drop a frame that is late by more periods [4]", 0, 1000);
+  pacing.flag("--strict", options->strict,
+              "Fail if a frame was dropped or missed its deadline, or the run was interrupted");
+  add_sensor(command, options->plan);
+  add_solver(command, options->plan);
+  add_device(command, options->device);
+  Group device(command, "Device");
+  device.whole("--in-flight", options->frames_in_flight, "FRAMES",
+               "Number of frames in the solver at once [2]", 1, 64);
+  device.number("--spin", options->spin_us, "US", "Busy-wait for this last part of each wait [0]",
+                0, 1e6);
+  device.flag("--realtime", options->realtime,
+              "Request real-time scheduling and locked memory; warn if refused");
+  add_general(command, *options, "Print the report as JSON", kQuietReport);
+}
+
+void add_stream(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<StreamOptions>(
+      parent, work, stream, "stream",
+      "Solve live frames of a sensor and send their forces on (docs/streams.md).",
+      "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n"
+      "  pillarfield stream scenes/demo.toml --repeat --seconds 1 --to udp:127.0.0.1:9870\n");
+  Group input(command, "Input");
+  command
+      ->add_option("SOURCE", options->source,
+                   "- (packets on standard input), shm:NAME, udp:ADDRESS:PORT, serial:DEVICE, or a "
+                   "scene or file of frames, replayed at its own pace")
+      ->required()
+      ->type_name("SOURCE")
+      ->group("Input");
+  input.number("--rate", options->rate_hz, "HZ",
+               "Frames per second of a replayed file [its own], or of the sensor", 0.01, 1e5);
+  input.flag("--repeat", options->repeat, "Replay a file again and again");
+  input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
+              100'000'000);
+  add_plain_data(command, options->plan.read, false);
+  add_stream_ends(command, *options);
+  add_sensor(command, options->plan);
+  add_solver(command, options->plan);
+  add_contacts(command, options->contacts);
+  add_device(command, options->device);
+  Group(command, "Device")
+      .whole("--in-flight", options->frames_in_flight, "FRAMES",
+             "Number of frames in the solver at once [2]", 1, 64);
+  add_general(command, *options, "Print reports of health and the summary as lines of JSON",
+              kQuietWriter);
+}
+
+void add_body(CLI::App& parent, Work& work) {
+  CLI::App* const steps = parent.add_subcommand(
+      "body", "Plan and simulate the skin of a whole body; see docs/whole_body.md.");
+  steps->footer("  pillarfield body simulate scenes/body/hand.toml --loss 2\n");
+  steps->require_subcommand(1);
+  const auto [plan, plan_options] = add_command<BodyOptions>(
+      *steps, work, plan_body, "plan",
+      "Sizes and rates of a body, and the time a frame takes on this machine.",
+      "  pillarfield body plan scenes/body/hand.toml\n");
+  add_body_input(plan, *plan_options);
+  add_general(plan, *plan_options, "Print the plan as JSON", kQuietReport);
+  const auto [run, options] = add_command<BodyOptions>(
+      *steps, work, simulate_body, "simulate",
+      "Simulate the sensors of a body, lose some of their packets, and solve the others.",
+      "  pillarfield body simulate scenes/body/hand.toml --loss 5 --seconds 1\n");
+  add_body_input(run, *options);
+  Group group(run, "Run");
+  group.number("--loss", options->loss_percent, "PERCENT", "Packets lost at random [0]", 0, 99);
+  group.number("--rate", options->rate_hz, "HZ", "Frames per second [the body's]", 1, 1e5);
+  group.number("--refresh", options->refresh_s, "SECONDS",
+               "Time in which every block is sent at least once [the body's]", 1e-3, 3600);
+  group.number("--seconds", options->seconds, "SECONDS", "Duration [2]", 1e-3, 1e5);
+  group.whole("--scene-frames", options->scene_frames, "N",
+              "Most frames of a scene that are rendered and repeated [16]", 1, 10'000);
+  group.whole("--seed", options->seed, "N", "Seed of losses and delays [1]", 0, kLargestSeed);
+  add_general(run, *options, "Print the summary as JSON", kQuietReport);
+  add_help(steps);
+}
+
+}  // namespace pillarfield::cli

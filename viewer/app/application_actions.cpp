@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "viewer/app/application.h"
+
+// The pending actions of an Application: opening, recording and writing files.
+
+namespace pillarfield::viewer {
+
+/// Performs the pending actions; an Error becomes a notice.
+void Application::serve() {
+  serve_open();
+  const PendingActions asked = std::exchange(pending_, PendingActions{});
+  pending_.quit = asked.quit;
+  if (!state_.field || !shows_source()) return;
+  try {
+    if (asked.picture) write_picture();
+    if (asked.table) write_table();
+    if (asked.sequence) begin_frames(FrameWriter::Kind::pictures);
+    if (asked.video) begin_frames(FrameWriter::Kind::video);
+    if (asked.record) toggle_recording();
+    if (asked.truth) toggle_truth();
+  } catch (const Error& error) {
+    state_.notice = error.what();
+  }
+  if (asked.stop && writer_ != nullptr) {
+    writer_.reset();
+    state_.notice = "stopped writing";
+  }
+  if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop || asked.record ||
+      asked.truth) {
+    redraws_.input(Window::now_s());
+  }
+}
+
+void Application::serve_open() {
+  if (pending_.open.empty() || loading_ != nullptr) return;
+  options_.beside.clear();
+  options_.truth = false;
+  options_.first_frame = 0;
+  open(std::exchange(pending_.open, {}));
+}
+
+void Application::toggle_recording() {
+  LiveControl* const live = state_.player->live();
+  if (live == nullptr) {
+    throw Error(place_.source->name, "only a sensor can be recorded", "open a live source");
+  }
+  if (!live->status().recording.empty()) return live->stop_recording();
+  const auto path = free_path(*place_.source, "recording", ".h5");
+  live->record(path);
+  state_.notice = "recording " + path.string();
+}
+
+void Application::toggle_truth() {
+  if (loaded_.beside != nullptr) {
+    loaded_.beside->on_new_field({});
+    presenter_.clear();
+    state_.beside_field.reset();
+    loaded_.beside.reset();
+    loaded_.beside_is_truth = false;
+  } else {
+    show_truth(loaded_);
+    loaded_.beside->seek(state_.field->index);
+  }
+  set_beside();
+  drawn_settings_.reset();
+}
+
+/// All pictures, side by side.
+Pixels Application::pixels() {
+  Pixels all = read_pixels(device_, presenter_.image(0));
+  for (std::size_t i = 1; i < presenter_.places().size(); ++i) {
+    all = side_by_side(all, read_pixels(device_, presenter_.image(i)));
+  }
+  return all;
+}
+
+void Application::write_picture() {
+  if (!drawn_settings_) return;
+  const auto path = free_path(*place_.source, info_of(state_.settings.quantity).name, ".png");
+  check_outputs({options_.source}, {{path, OutputKind::png}}, Replace::nothing);
+  write_png(path, pixels(), Replace::nothing);
+  state_.notice = "wrote " + path.string();
+}
+
+void Application::write_table() {
+  const std::string frame = fmt::format("frame_{}", state_.field->index + 1);
+  const auto path = free_path(*place_.source, frame, ".csv");
+  check_outputs({options_.source}, {{path, OutputKind::forces}}, Replace::nothing);
+  write_csv(path, *state_.field, visible_pillars(place_, state_.settings), Replace::nothing);
+  state_.notice = "wrote " + path.string();
+}
+
+void Application::begin_frames(FrameWriter::Kind kind) {
+  if (writer_ != nullptr) return;
+  if (state_.player->live() != nullptr) {
+    throw Error(place_.source->name, "a sensor has no last frame to write", "record it");
+  }
+  const std::string quantity = info_of(state_.settings.quantity).name;
+  const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
+                                                     : free_sequence_path(*place_.source, quantity);
+  const PlannedOutput first =
+      kind == FrameWriter::Kind::video
+          ? PlannedOutput{path, OutputKind::video}
+          : PlannedOutput{numbered(path, 1, place_.source->frames), OutputKind::png};
+  check_outputs({options_.source}, {first}, Replace::nothing);
+  const vk::Extent2D size = extent_of(screen_.field);
+  writer_ = std::make_unique<FrameWriter>(state_, kind, path, size.width, size.height);
+}
+
+void Application::continue_frames() {
+  try {
+    if (writer_->add(pixels())) writer_.reset();
+  } catch (const Error& error) {
+    state_.notice = error.what();
+    writer_.reset();
+  }
+  redraws_.field();
+}
+
+}  // namespace pillarfield::viewer
