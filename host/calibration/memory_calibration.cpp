@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/quantile.h"
 #include "calibration/leak_sum.h"
@@ -110,7 +111,8 @@ std::optional<double> known_dead_zone(const Calibration& planes) {
   return zones.empty() ? 0 : median(zones);
 }
 
-void store(const MemoryFit& fit, const std::vector<double>& ends, double residual,
+/// `residual`: RMS over the largest load, `range`, counts.
+void store(const MemoryFit& fit, const std::vector<double>& ends, double residual, double range,
            SkinCalibration& calibration) {
   Calibration& planes = calibration.planes;
   const bool curved = ends.size() > 1;
@@ -132,7 +134,9 @@ void store(const MemoryFit& fit, const std::vector<double>& ends, double residua
   }
   ResidualError& left =
       planes.effects.residual.emplace(planes.effects.residual.value_or(ResidualError{}));
-  left.relative = std::min(1.0, std::hypot(left.relative, residual));
+  // Half of the variance counts as constant, half as proportional.
+  left.relative = std::min(1.0, std::hypot(left.relative, residual / std::numbers::sqrt2));
+  left.offset_counts = std::hypot(left.offset_counts, residual * range / std::numbers::sqrt2);
   if (calibration.threshold_factor && !planes.noise.empty()) {
     set_threshold(calibration, *calibration.threshold_factor);
   }
@@ -208,7 +212,7 @@ MemoryResult MemoryFinder::result() const {
                  result.hysteresis + result.creep_per_decade > kLeastMemory;
   result.calibration = calibration_;
   result.calibration.planes.effects.memory.reset();
-  if (result.found) store(fit, ends, result.residual_after, result.calibration);
+  if (result.found) store(fit, ends, result.residual_after, range, result.calibration);
   return result;
 }
 

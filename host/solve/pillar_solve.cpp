@@ -124,8 +124,9 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       if (!is_loaded(field, index)) continue;
       const auto [x, y] = pillar_lean(forces, index);
       const maths::Solution before = solution_at(field, index, stages.uncertainty);
-      store_solution(maths::correct_solution(before, x, y, stages), index, stages.uncertainty,
-                     field);
+      const maths::Solution after = maths::correct_solution(before, x, y, stages);
+      field.status[index] = static_cast<std::uint8_t>(after.status);
+      store_solution(after, index, stages.uncertainty, field);
     }
   }
 }

@@ -135,6 +135,9 @@ PF_INLINE void store_corrected(Solution solution, Output output, size_t index, L
   store_plane(solution.force.shear_y, (global float*)(output.planes + output.plane_bytes) + index,
               lanes);
   store_derived(solution, output, index, lanes);
+#ifdef PF_LEAN
+  store_status(solution.status, output.status + index, lanes);
+#endif
 }
 
 /* Subtracts the lean of the pressure from the shear, and derives the other results from the

@@ -213,20 +213,23 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
 
 #ifdef PF_RESIDUAL
 #ifdef PF_UNCERTAINTY
-/* Deviations with the part of the residual that is common to the sensels of a pillar (E9). */
+/* Deviations with the residual as if it were common to the sensels of a pillar (E9). */
 PF_INLINE Force with_common_residual(Force deviations, Force force, Stages stages) {
   const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE);
   deviations.shear_x = plain_length_2(deviations.shear_x, relative * force.shear_x);
   deviations.shear_y = plain_length_2(deviations.shear_y, relative * force.shear_y);
   deviations.normal = plain_length_2(deviations.normal, relative * force.normal);
+  const Real offset =
+      sqrt(PF_CONSTANT(Real, PF_RESIDUAL_VARIANCE)) * PF_CONSTANT(Real, PF_NORMAL_SCALE);
+  deviations.normal = plain_length_2(deviations.normal, offset + offset);
   return deviations;
 }
 #endif
 
-/* Noise of a sensel with what calibration leaves, counts (E9). */
+/* Noise of a sensel with the relative part of what calibration leaves, counts (E9). */
 PF_INLINE Real with_residual(Real noise, Sensel sensel, Stages stages) {
   const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE) * sensel.reading;
-  return sqrt(noise * noise + (PF_CONSTANT(Real, PF_RESIDUAL_VARIANCE) + relative * relative));
+  return sqrt(noise * noise + relative * relative);
 }
 #endif
 
@@ -335,6 +338,38 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
   return solution;
 }
 
+#ifdef PF_LEAN
+/* Flags a pillar of three or four usable sensels as ambiguous if its force alone, to within two
+ * deviations of the lean, does not load exactly these (E7). */
+PF_INLINE Bits flag_other_region(Solution solution, Lean x, Lean y, Stages stages) {
+  const Real along = PF_REAL(0.70710678118654752440);
+  Real shear_x = along * solution.force.shear_x;
+  Real shear_y = along * solution.force.shear_y;
+  const Real pitch_over_arm = PF_CONSTANT(Real, PF_LEAN);
+  Real margin_x = pitch_over_arm * x.deviation;
+  Real margin_y = pitch_over_arm * y.deviation;
+#ifdef PF_SHEAR_COEFFICIENT
+  if (PF_NAMED(shear_coefficient)) {
+    shear_x = shear_x / PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
+    shear_y = shear_y / PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+    margin_x = margin_x / PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
+    margin_y = margin_y / PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+  }
+#endif
+  const Real margin = (margin_x + margin_y) * (along + along);
+  const Real rising = shear_x + shear_y;
+  const Real falling = shear_y - shear_x;
+  const Real normal = solution.force.normal;
+  const Mask other =
+      loads_otherwise(solution.status, PF_STATUS_SENSEL_1, normal + rising, margin) ||
+      loads_otherwise(solution.status, PF_STATUS_SENSEL_2, normal + falling, margin) ||
+      loads_otherwise(solution.status, PF_STATUS_SENSEL_3, normal - rising, margin) ||
+      loads_otherwise(solution.status, PF_STATUS_SENSEL_4, normal - falling, margin);
+  return solution.status |
+         (bits_of(at_least_three(solution.status) && other) & PF_BITS(PF_STATUS_AMBIGUOUS));
+}
+#endif
+
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
 /* Corrects a solved pillar by what is known from the pillars around it: `x` and `y` are the lean of
  * its pressure. Derives direction and intervals from the corrected force. Pillars without load
@@ -352,6 +387,7 @@ PF_INLINE Solution correct_solution(Solution solution, Lean x, Lean y, Stages st
     const Real moved_y = loaded ? pitch_over_arm * y.moment : PF_REAL(0.0);
     solution.force.shear_x = solution.force.shear_x - moved_x;
     solution.force.shear_y = solution.force.shear_y - moved_y;
+    solution.status = flag_other_region(solution, x, y, stages);
 #ifdef PF_UNCERTAINTY
     if (PF_NAMED(uncertainty)) {
       moved = plain_length_2(moved_x, moved_y);

@@ -35,19 +35,26 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   const Real e = far_high - far_low;
   const Real s = high + low - one;
   const Real t = far_high + far_low - one;
-  const Real by_d = PF_REAL(0.16666666666666666667) + s * (PF_REAL(-0.139) + PF_REAL(0.366) * s) +
-                    t * (PF_REAL(-0.500) + PF_REAL(1.174) * s - PF_REAL(1.170) * t) +
-                    d * (PF_REAL(0.783) * d - PF_REAL(1.196) * e) + PF_REAL(0.243) * (e * e);
-  const Real by_e = s * (PF_REAL(0.791) - PF_REAL(1.083) * s + PF_REAL(0.981) * t) +
-                    t * (PF_REAL(0.039) + PF_REAL(0.105) * t) + PF_REAL(0.019) * (e * e);
+  const Real by_d = PF_REAL(0.16666666666666666667) + s * (PF_REAL(-0.152) + PF_REAL(0.390) * s) +
+                    t * (PF_REAL(-0.486) + PF_REAL(1.187) * s - PF_REAL(1.173) * t) +
+                    d * (PF_REAL(0.789) * d - PF_REAL(1.210) * e) + PF_REAL(0.264) * (e * e);
+  const Real by_e = s * (PF_REAL(0.798) - PF_REAL(1.144) * s + PF_REAL(1.029) * t) +
+                    t * (PF_REAL(0.032) + PF_REAL(0.090) * t) + PF_REAL(0.015) * (e * e);
   const Real part = d * by_d + e * by_e;
   const Real bounded = part < -half_pitch ? -half_pitch : (part > half_pitch ? half_pitch : part);
   const Real steep = size_of(d);
-  const Real deviation = PF_REAL(0.005) + PF_REAL(0.094) * (steep * steep * steep) +
-                         PF_REAL(0.007) * size_of(s) + PF_REAL(0.08) * (s * s) +
+  const Real deviation = PF_REAL(0.004) + PF_REAL(0.093) * (steep * steep * steep) +
+                         PF_REAL(0.009) * size_of(s) + PF_REAL(0.076) * (s * s) +
                          PF_REAL(0.011) * size_of(e - d);
   Lean lean;
   lean.moment = loaded ? own * bounded : zero;
   lean.deviation = loaded ? own * deviation : zero;
   return lean;
+}
+
+/* True if a sensel that is usable by its bit of the status is loaded by less than `margin`, or an
+ * unusable one by more than -margin. */
+PF_INLINE Mask loads_otherwise(Bits status, int bit, Real load, Real margin) {
+  const Mask usable = mask_of(status & PF_BITS(bit));
+  return (usable && load < margin) || (!usable && load > -margin);
 }

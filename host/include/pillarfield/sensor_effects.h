@@ -70,10 +70,11 @@ struct SenselMemory {
 inline constexpr std::size_t kMaxPlays = 4;
 inline constexpr std::size_t kMaxCreeps = 2;
 
-/// What calibration leaves. The standard deviation of a corrected reading V is the root of noise² +
-/// offset_counts² + (relative·V)². Curves, hysteresis and creep are common to the sensels of a
+/// What calibration leaves, beside noise, of a corrected reading V: standard deviations of
+/// relative·V and of offset_counts. Curves, hysteresis and creep are common to the sensels of a
 /// pillar, gains are not; stated deviations allow for both: `relative` is counted once as
-/// independent from sensel to sensel, and once as common to all components of the force (E9).
+/// independent from sensel to sensel, and once as common to all components of the force;
+/// `offset_counts` as common to the sensels, and so in the normal force (E9).
 struct ResidualError {
   double relative = 0;       ///< 0..1
   double offset_counts = 0;  ///< >= 0
