@@ -87,6 +87,8 @@ constexpr std::array kStages = {
           .has_memory = true},
 };
 
+static_assert(std::ranges::all_of(kStages, [](const Stage& s) { return s.reach <= kMostReach; }));
+
 }  // namespace
 
 std::vector<Stage> stages_of(const SolverPlan& plan) {

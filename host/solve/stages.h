@@ -12,6 +12,9 @@ enum class StagePlace : std::uint8_t {
   host,    ///< after the device: reads the frame's results
 };
 
+/// The most pillars beyond its own that a stage reads.
+inline constexpr std::uint32_t kMostReach = 2;
+
 /// A stage of the solve.
 struct Stage {
   const char* name = nullptr;

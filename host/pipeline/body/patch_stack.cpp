@@ -10,7 +10,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::uint32_t kGapRows = 2;  ///< sensels
+constexpr std::uint32_t kGapRows = 2 * kMostReach;  ///< sensels
 
 /// Appends the plane of a patch, and before it that of the gap.
 template <class Value>
