@@ -244,6 +244,15 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   return frames;
 }
 
+/// True if a frame holds no forces, as of a lost part in a file that was joined as a copy. Throws
+/// Error unless such frames are allowed.
+bool is_missing(const ForceField& solved, std::uint64_t index, const CompareOptions& options) {
+  if (!std::ranges::all_of(solved.normal, [](float n) { return std::isnan(n); })) return false;
+  if (options.allow_missing) return true;
+  throw Error(options.forces, fmt::format("frame {} holds no forces", index + 1),
+              "leave out such frames with --allow-missing");
+}
+
 }  // namespace
 
 void compare(const CompareOptions& options) {
@@ -268,8 +277,9 @@ void compare(const CompareOptions& options) {
       stop_if_interrupted(index, options.forces);
       while (next_lost != lost.end() && next_lost->frames.end <= index) ++next_lost;
       if (next_lost != lost.end() && next_lost->frames.first <= index) continue;
-      ++frames;
       forces.read(index, solved);
+      if (is_missing(solved, index, options)) continue;
+      ++frames;
       recording->read_truth(first + index, truth);
       comparison.add(solved.view(), truth.view());
       resultants.add(solved.view(), truth.view());

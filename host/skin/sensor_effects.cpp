@@ -54,9 +54,12 @@ void check(const SenselMemory& memory, std::string_view where) {
                 fmt::format("it may have {} and {}", kMaxPlays, kMaxCreeps));
   }
   double width = 0;
+  double slope = 1;
   for (const Play& play : memory.plays) {
     require(where, "a play's width", play.width_counts, width, kMaxKnotCounts);
     require(where, "a play's weight", play.weight, -1, 1);
+    slope += play.weight;
+    require(where, "the slope of the loading curve beyond a play", slope, 1e-3, 1e3);
     width = play.width_counts;
   }
   for (const Creep& creep : memory.creep) {

@@ -174,6 +174,9 @@ class PartsTest(PartsFolder):
                 self.assertTrue(numpy.isnan(file["force/normal"][7:15]).all())
                 self.assertTrue((file["force/status"][7:15] == 64).all())
                 self.assertFalse(numpy.isnan(file["force/normal"][:7]).any())
+        self.assertEqual(run("compare", self.output, self.recording, "--allow-missing").stdout, table)
+        self.assert_fails("compare", self.output, self.recording,
+                          names=["frame 8 holds no forces", "--allow-missing"])
         # A damaged part is named, and left out like an absent one.
         run("join", self.output, "--allow-missing")
         lost.write_bytes(b"")

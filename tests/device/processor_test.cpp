@@ -426,6 +426,9 @@ TEST(Processor, RefusesPlansOutOfRange) {
   refuses([](SolverPlan& plan) { plan.calibration.gain.assign(64, 0.0F); });
   refuses([](SolverPlan& plan) { plan.calibration.dead_zone.assign(64, std::nanf("")); });
   refuses([](SolverPlan& plan) { plan.calibration.mask.assign(64, 3); });
+  refuses([](SolverPlan& plan) {  // the loading curve falls
+    plan.calibration.effects.memory.emplace().plays = {{3, -0.5}, {5, -0.5}};
+  });
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   EXPECT_THROW(Processor(test_device(), plan, {.frames_in_flight = 0}), Error);
   EXPECT_THROW(Processor(test_device(), plan, {}, {.lanes = 3}), Error);
