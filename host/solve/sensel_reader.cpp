@@ -120,7 +120,7 @@ maths::Pillar SenselReader::recalled(const maths::Pillar& pillar, std::size_t in
     return maths::recall(pillar, maths::Memory{}, model, stages_.threshold, 1).pillar;
   }
   if (!maths::is_touched_pillar(pillar, stages_.threshold)) return pillar;
-  const auto words = static_cast<std::size_t>(1 + 2 * (model.plays + model.creeps));
+  const std::size_t words = 1 + 2 * static_cast<std::size_t>(model.plays + model.creeps);
   std::uint32_t* const stored = state_->states.data() + index * words;
   maths::Memory memory{};
   const auto for_each_pair = [&](const auto& act) {
