@@ -588,7 +588,7 @@ clock_drift_ppm = -50
 BODIES = {
     "seed_hand": BODY, "seed_small": PATCH,
     "hostile_large": "".join(PATCH.replace("palm", str(i)) + "size_mm = [2590, 2590]\n" for i in range(2)),
-    "hostile_many": "".join(PATCH.replace("palm", str(i)) for i in range(1025)),
+    "hostile_many": "patch = [" + ", ".join(f'{{name = "{i}", scene = "skin.toml"}}' for i in range(1025)) + "]\n",
     "hostile_no_patch": "rate_hz = 10\n", "hostile_rate": "rate_hz = nan\n" + PATCH,
     "hostile_repeated_name": PATCH + PATCH, "hostile_scene_of_itself": PATCH.replace("skin", "body"),
     "hostile_device": PATCH.replace("skin.toml", "/dev/zero"), "hostile_folder": PATCH.replace("skin.toml", "."),

@@ -25,7 +25,7 @@ PF_INLINE Real size_of(Real x) { return x < PF_REAL(0.0) ? -x : x; }
 PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
-  const Real half_pitch = PF_REAL(0.5);
+  const Real largest_part = PF_REAL(0.5);
   const Mask loaded = own > zero;
   const Real low = outer_part(before, own);
   const Real high = outer_part(after, own);
@@ -41,7 +41,8 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   const Real by_e = s * (PF_REAL(0.798) - PF_REAL(1.144) * s + PF_REAL(1.029) * t) +
                     t * (PF_REAL(0.032) + PF_REAL(0.090) * t) + PF_REAL(0.015) * (e * e);
   const Real part = d * by_d + e * by_e;
-  const Real bounded = part < -half_pitch ? -half_pitch : (part > half_pitch ? half_pitch : part);
+  const Real bounded =
+      part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
   const Real steep = size_of(d);
   const Real deviation = PF_REAL(0.004) + PF_REAL(0.093) * (steep * steep * steep) +
                          PF_REAL(0.009) * size_of(s) + PF_REAL(0.076) * (s * s) +

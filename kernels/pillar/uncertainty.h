@@ -261,19 +261,19 @@ static inline Real longest_shear(ScaledPillar e, DifferenceEnds a_ends, Differen
 }
 
 /* The largest |phi| of a pillar without measured sensels, rad. */
-static inline Real half_turn_of(ScaledPillar e) {
+static inline Real largest_phi_of(ScaledPillar e) {
   return e.high > PF_REAL(0.0) ? PF_REAL(3.14159265358979323846) : PF_REAL(0.0);
 }
 
 /* The interval of a pillar without measured sensels, up to the bounds of its inactive ones (U8). */
 static inline DirectionInterval inactive_interval(ScaledPillar e, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
-  const Real half_turn = half_turn_of(e);
+  const Real largest_phi = largest_phi_of(e);
   DirectionInterval interval;
   interval.theta_low = zero;
   interval.theta_high = e.high > zero ? PF_REAL(1.57079632679489661923) : zero;
-  interval.phi_low = zero - half_turn;
-  interval.phi_high = half_turn;
+  interval.phi_low = zero - largest_phi;
+  interval.phi_high = largest_phi;
   interval.magnitude_low = zero;
   const DifferenceEnds a = ends_of(e.a, e.a_unconstrained, zero, e.low);
   const DifferenceEnds b = ends_of(e.b, e.b_unconstrained, zero, e.low);
@@ -357,12 +357,12 @@ static inline DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive
   const Real slope = sqrt(from_zero ? shear_square(a_steep, b_steep, weights) : flat);
   const Real tilt = acute_angle_of(slope, e.high);
   const PhiInterval phi = phi_interval(e, a_ends, b_ends, a_steep, b_steep, weights);
-  const Real half_turn = half_turn_of(e);
+  const Real largest_phi = largest_phi_of(e);
   DirectionInterval interval;
   interval.theta_low = from_zero ? tilt : estimate.theta;
   interval.theta_high = from_zero ? (flat > zero ? quarter_turn : zero) : tilt;
-  interval.phi_low = inactive ? zero - half_turn : phi.low;
-  interval.phi_high = inactive ? half_turn : phi.high;
+  interval.phi_low = inactive ? zero - largest_phi : phi.low;
+  interval.phi_high = inactive ? largest_phi : phi.high;
   interval.magnitude_low = e.newtons * sqrt(shortest);
   interval.magnitude_high = e.newtons * sqrt(flat + e.low * e.low);
   return interval;
