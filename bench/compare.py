@@ -4,8 +4,9 @@
     compare.py --old PROGRAM --new PROGRAM [--pairs N] [--seconds S] [FILTER]
 
 Runs are interleaved, A B B A A B ..., so that drift of the machine affects both programs. For each
-case the table gives the ratio new / old of the nanoseconds per pillar within a pair of runs: median
-and deciles over all pairs. A case is faster or slower when both deciles lie on one side of 1.
+case the table gives the ratio new / old of the nanoseconds per pillar within a pair of runs, median
+and deciles over all pairs, and the ratio of the quickest runs, which other work on the machine
+disturbs least. A case is faster or slower when both deciles lie on one side of 1.
 """
 
 import argparse
@@ -65,12 +66,14 @@ def change(low, high):
 
 def compare(old, new):
     """Lines of the table. `old` and `new` hold the times of each pair."""
-    lines = [f"{'case':28} {'new / old':>10} {'10 % .. 90 %':>17}  new program"]
+    lines = [f"{'case':28} {'new / old':>10} {'10 % .. 90 %':>17} {'quickest':>9}  new program"]
     common = [name for name in old[0] if name in new[0]]
     for name in common:
         ratios = [after[name] / before[name] for before, after in zip(old, new)]
         low, middle, high = spread(ratios)
-        lines.append(f"{name:28} {middle:10.3f} {low:8.3f} {high:8.3f}  {change(low, high)}")
+        quickest = min(after[name] for after in new) / min(before[name] for before in old)
+        lines.append(f"{name:28} {middle:10.3f} {low:8.3f} {high:8.3f} {quickest:9.3f}  "
+                     f"{change(low, high)}")
     for name in sorted(set(old[0]) ^ set(new[0])):
         lines.append(f"{name:28} only in the {'old' if name in old[0] else 'new'} program")
     return lines
