@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Optional, TypeGuard, Union
 
@@ -42,7 +43,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
 
     Returns the forces of all frames, planes [T, R // 2, C // 2], or of the frame [R, C]. Arrays of
     uint8, uint16 and float32 are read in place; others are converted (docs/python.md). Python's lock
-    is released meanwhile; Ctrl+C ends it. Raises Error if a file or an option is wrong.
+    is released meanwhile; Ctrl+C ends it. Raises Error if a file or an option is wrong; warns of constants
+    that nothing gives and are assumed, counts_per_newton above all.
 
     >>> import numpy as np, pillarfield as pf
     >>> forces = pf.solve(np.full((5, 8, 12), 32, np.uint8), counts_per_newton=320)
@@ -57,24 +59,56 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         if tare_frames:
             raise Error("tare_frames", "an iterator's frames come once",
                         "give calibration=pf.calibrate.tare(unloaded)")
+        _warn_of_scale(skin, calibration, options)
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
         frames = np.asarray(frames)
     source = source_of(frames, skin, times, rate_hz)
     if tare_frames:
         calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz)
+    if source.format == "array":
+        _warn_of_scale(skin, calibration, options)
+    elif skin is None:
+        _warn_of_file(source, calibration, options)
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
 
 
-def _calibration_of(given: Any) -> Any:
-    """A calibration, its path or None, from what solve() takes."""
+def _calibration_of(given: Any) -> Optional[_core.Calibration]:
+    """A calibration or None, from what solve() takes."""
     given = getattr(given, "calibration", given)
-    if given is None or isinstance(given, (str, os.PathLike, _core.Calibration)):
+    if isinstance(given, (str, os.PathLike)):
+        return _core.Calibration.load(given)
+    if given is None or isinstance(given, _core.Calibration):
         return given
     raise Error("calibration", f"it is of the type {type(given).__name__}",
                 "give a step such as pf.calibrate.tare(unloaded), a Calibration or its path")
+
+
+def _constants_given(calibration: Optional[_core.Calibration], options: dict[str, Any]) -> set[str]:
+    """Names of the skin's constants that a calibration or options give."""
+    names = ("counts_per_newton", "threshold_counts")
+    return {name for name in names if getattr(calibration, name, None) is not None} | set(options)
+
+
+def _warn_of_scale(skin: Optional[_core.Skin], calibration: Optional[_core.Calibration],
+                   options: dict[str, Any]) -> None:
+    """Warns if nothing gives the counts per newton of readings."""
+    if skin is None and not _constants_given(calibration, options) & {"counts_per_newton", "scene"}:
+        warnings.warn(f"The frames have no counts_per_newton; {_core.Skin(2, 2).counts_per_newton:g} "
+                      "is assumed.", stacklevel=3)
+
+
+def _warn_of_file(source: _core.FrameSource, calibration: Optional[_core.Calibration],
+                  options: dict[str, Any]) -> None:
+    """Passes on the warnings about a file but those of constants that are given."""
+    given = _constants_given(calibration, options)
+    if "scene" in given:
+        return
+    for sentence in source.warnings:
+        if not any(name in sentence for name in given):
+            warnings.warn(sentence, stacklevel=3)
 
 
 def _tare_of(frames: Any, count: int, before: Any, skin: _core.Skin,

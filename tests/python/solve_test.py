@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 import unittest
+import warnings
 
 import h5py
 import numpy as np
@@ -226,6 +227,40 @@ class Errors(unittest.TestCase):
                             "itertools.repeat(np.zeros((64, 64), np.uint8))")
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
         self.assertEqual((done.stdout, done.returncode), ("ended\n", 0), done.stderr)
+
+
+class AssumedConstants(unittest.TestCase):
+    FRAMES = np.zeros((3, 8, 12), np.uint8)
+
+    def warnings_of(self, *arguments, **options):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            pf.solve(*arguments, **options)
+        self.assertEqual({warning.filename for warning in caught} - {__file__}, set())
+        return " ".join(str(warning.message) for warning in caught)
+
+    def test_warns_unless_something_gives_counts_per_newton(self):
+        for frames in (self.FRAMES, iter(self.FRAMES)):
+            self.assertEqual(self.warnings_of(frames, calibration=pf.Calibration(8, 12)),
+                             "The frames have no counts_per_newton; 320 is assumed.")
+        calibration = pf.Calibration(8, 12, counts_per_newton=5)
+        calibration.save(WORK / "scaled.h5", overwrite=True)
+        for given in ({"counts_per_newton": 320}, {"skin": pf.Skin(8, 12)}, {"calibration": calibration},
+                      {"calibration": WORK / "scaled.h5"}):
+            self.assertEqual(self.warnings_of(self.FRAMES, **given), "", given)
+            self.assertEqual(self.warnings_of(iter(self.FRAMES), **given), "", given)
+        self.assertEqual(self.warnings_of(pf.simulate(skins.scene())), "")
+
+    def test_passes_on_the_warnings_about_a_file(self):
+        path = WORK / "plain.npy"
+        np.save(path, self.FRAMES)
+        for frames in (path, pf.Recording(path, rate_hz=50)):
+            rate = {"rate_hz": 50} if frames is path else {}
+            self.assertIn("no counts_per_newton; 320 is assumed", self.warnings_of(frames, **rate))
+            rest = self.warnings_of(frames, counts_per_newton=5, threshold_counts=4, **rate)
+            self.assertIn("no sensel_pitch_mm", rest)
+            self.assertNotIn("counts", rest)
+            self.assertEqual(self.warnings_of(frames, skin=pf.Skin(8, 12), **rate), "")
 
 
 if __name__ == "__main__":
