@@ -26,6 +26,10 @@ if(PILLARFIELD_SANITIZE)
     "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1")
   set(PILLARFIELD_LEAKS_SOUGHT "ASAN_OPTIONS=${asan_options}:detect_leaks=1")
   set(PILLARFIELD_TEST_PREFIX "asan.")
+else()
+  # Freed memory is overwritten at once, so that its use shows, in libraries too.
+  list(APPEND PILLARFIELD_TEST_ENVIRONMENT
+    "MALLOC_PERTURB_=170" "GLIBC_TUNABLES=glibc.malloc.tcache_count=0")
 endif()
 
 add_custom_target(default_tests)

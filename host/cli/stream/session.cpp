@@ -66,6 +66,8 @@ class StreamSession::Source final : public FrameStream {
   void discard_waiting() override { stream_.discard_waiting(); }
 
   [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) override {
+    const std::optional<std::uint64_t>& most = session_.options_.frames;
+    if (most && taken_ >= *most) return Arrival::ended;
     const Arrival arrival = stream_.next(frame, timeout);
     if (arrival != Arrival::arrived) return arrival;
     session_.last_arrival_ = Clock::now();
@@ -74,12 +76,15 @@ class StreamSession::Source final : public FrameStream {
       session_.watch_.offer(frame.readings);
       session_.take_tare(frame.readings, frame.arrived);
     }
-    return session_.paused_ ? Arrival::timed_out : arrival;
+    if (session_.paused_) return Arrival::timed_out;
+    ++taken_;
+    return arrival;
   }
 
  private:
   StreamSession& session_;
   FrameStream& stream_;
+  std::uint64_t taken_ = 0;  ///< frames that the pipeline got
 };
 
 /// All live sinks; sinks may come and go between frames.
@@ -203,7 +208,7 @@ bool StreamSession::should_stop() {
   answer_finished();
   const auto now = Clock::now();
   if (now >= next_report_) report_health();
-  return quit_ || is_interrupted() || (options_.frames && solved_ >= *options_.frames) ||
+  return quit_ || is_interrupted() ||
          (options_.seconds && now - start_ >= nanoseconds_of(*options_.seconds)) ||
          (options_.most_idle_s && now - last_arrival_ >= nanoseconds_of(*options_.most_idle_s));
 }

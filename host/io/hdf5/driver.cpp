@@ -198,6 +198,16 @@ H5FD_class_t driver_class() {
   return driver;
 }
 
+/// The driver's identifier, which stays registered: HDF5 calls a driver's close after it has released
+/// the file's reference to it, so the last one must not be a file's.
+hid_t registered_driver() {
+  static const hid_t registered = [] {
+    const H5FD_class_t driver = driver_class();
+    return H5FDregister(&driver);
+  }();
+  return registered;
+}
+
 }  // namespace
 
 void require_written(const WriteStatus& write_status, const std::filesystem::path& file) {
@@ -212,10 +222,8 @@ Handle fault_tolerant_access(const std::shared_ptr<WriteStatus>& write_status,
   const std::filesystem::path& file = output.part_path();
   constexpr const char* kFailure = "HDF5 does not accept a file driver";
   Handle access = own(H5Pcreate(H5P_FILE_ACCESS), file, kFailure);
-  const H5FD_class_t driver = driver_class();
-  const Handle registered = own(H5FDregister(&driver), file, kFailure);
   const DriverOptions options = {output.descriptor(), write_status};
-  require(H5Pset_driver(access.get(), registered.get(), &options), file, kFailure);
+  require(H5Pset_driver(access.get(), registered_driver(), &options), file, kFailure);
   return access;
 }
 
