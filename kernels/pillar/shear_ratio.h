@@ -38,10 +38,10 @@ PF_INLINE ShearRatio shear_ratio(Real shear, Real normal, Lean lean, Real pitch_
 }
 
 /* The part in the sum of a pillar with the normal force `normal`, whose distance in pillars has the
- * square `distance`. The ratios of neighbours differ by a deviation of 0.3 (tools/lean). */
+ * square `distance`. The ratios of neighbours differ by a deviation of 0.32. */
 PF_INLINE RatioSum ratio_part(ShearRatio own, ShearRatio other, Real normal, Real distance) {
   const Real zero = PF_REAL(0.0);
-  const Real spread = PF_REAL(0.09) * distance;
+  const Real spread = PF_REAL(0.1024) * distance;
   const Mask informs = normal > zero && other.variance >= zero;
   RatioSum part;
   part.weight = informs ? PF_REAL(1.0) / (other.variance + spread) : zero;
@@ -57,10 +57,10 @@ PF_INLINE RatioSum add_ratios(RatioSum a, RatioSum b) {
 
 /* The precision-weighted mean of a pillar's own ratio and of those around it. */
 PF_INLINE ShearRatio mean_ratio(ShearRatio own, RatioSum around) {
-  const Real whole = PF_REAL(1.0) + own.variance * around.weight;
-  const Mask informed = own.variance >= PF_REAL(0.0);
-  ShearRatio mean = own;
-  mean.value = informed ? own.value + own.variance * around.difference / whole : own.value;
-  mean.variance = informed ? own.variance / whole : -own.variance;
+  const Real variance = size_of(own.variance);
+  const Real whole = PF_REAL(1.0) + variance * around.weight;
+  ShearRatio mean;
+  mean.value = own.value + variance * around.difference / whole;
+  mean.variance = variance / whole;
   return mean;
 }

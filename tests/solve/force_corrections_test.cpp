@@ -268,8 +268,8 @@ TEST(ShearRatio, IsTheMeanOfLeastVariance) {
     std::vector<maths::ShearRatio> around;
     while (around.size() < 8) {
       around.push_back({value(random), variance(random)});
-      weights += 1 / (around.back().variance + 0.09);
-      sum += around.back().value / (around.back().variance + 0.09);
+      weights += 1 / (around.back().variance + 0.1024);
+      sum += around.back().value / (around.back().variance + 0.1024);
     }
     const maths::ShearRatio mean = mean_of(own, around);
     EXPECT_NEAR(mean.value, sum / weights, 1e-12);
@@ -283,8 +283,8 @@ TEST(ShearRatio, IsItsOwnWhereItIsCertainOrNoOtherPillarInforms) {
     const maths::ShearRatio mean = mean_of({0.7, variance}, {8, {-1, -1e-4}});
     EXPECT_EQ(mean.value, 0.7);
     EXPECT_EQ(mean.variance, 0.1);
+    EXPECT_LT(mean_of({0.7, variance}, {8, {-1, 1e-4}}).value, 0);
   }
-  EXPECT_EQ(mean_of({0.7, -0.1}, {8, {-1, 1e-4}}).value, 0.7);
   EXPECT_EQ(maths::ratio_part({0.7, 0.1}, {-1, 0.1}, 0, 1).weight, 0);
 }
 
