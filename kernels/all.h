@@ -16,6 +16,7 @@
 #include "pillar/leak.h"
 #include "pillar/memory.h"
 #include "pillar/lean.h"
+#include "pillar/shear_ratio.h"
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"
 #include "pillar/uncertainty.h"

@@ -85,7 +85,8 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .ring = results.scratch_begin(),
           .wires = results.scratch_begin(),
           .frame = 0,
-          .forces = results.scratch_begin()};
+          .forces = results.scratch_begin(),
+          .ratios = results.scratch_begin()};
 }
 
 }  // namespace
@@ -105,12 +106,14 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);
   const std::size_t ring = ring_floats(plan, settings, global_[1]);
   const std::size_t forces = plan.calibration.effects.pillar_leak ? 3 * results.plane_bytes : 0;
-  results.scratch = forces + (ring + wire_floats(plan, tiles_)) * sizeof(float);
+  const std::size_t ratios = plan.calibration.effects.arm_mm ? 4 * results.plane_bytes : 0;
+  results.scratch = forces + ratios + (ring + wire_floats(plan, tiles_)) * sizeof(float);
   memory_ = settings.shares_memory ? shared_memory(device.context, results)
                                    : staged_memory(device.context, queue_, plan, results);
   layout_ = layout_of(plan, results, calibration);
-  layout_.ring += forces;
-  layout_.wires += forces + ring * sizeof(float);
+  layout_.ratios += forces;
+  layout_.ring += forces + ratios;
+  layout_.wires += forces + ratios + ring * sizeof(float);
   const auto kernel = [&](const char* name) {
     cl::Kernel made(settings.program, name);
     made.setArg(kCalibration, calibration.buffer());
@@ -123,6 +126,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   if (!plan.calibration.bend_x.empty()) bend_ = kernel("bend_tare");
   if (effects.pillar_leak) unleak_ = kernel("remove_pillar_leak");
   const bool derives = plan.angles || plan.uncertainty;
+  if (effects.arm_mm) ratios_ = kernel("find_shear_ratios");
   if (effects.arm_mm || (effects.pillar_leak && derives)) correct_ = kernel("correct_forces");
   if (!order.follows_baseline) return;
   follow_ = kernel("follow_baseline");
@@ -151,6 +155,7 @@ void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) 
   layout_.frame = ++order_->frame;
   solve(bent);
   if (unleak_() != nullptr) launch(unleak_, global_, local_);
+  if (ratios_() != nullptr) launch(ratios_, global_, local_);
   if (correct_() != nullptr) launch(correct_, global_, local_);
   memory_->download(queue_);
   queue_.flush();

@@ -84,6 +84,7 @@ class Slot {
   cl::Kernel wires_;  ///< null without crosstalk of wires
   cl::NDRange tiles_;
   cl::Kernel unleak_;   ///< null without leak between pillars
+  cl::Kernel ratios_;   ///< null without off-centre pressure
   cl::Kernel correct_;  ///< null where no force is corrected by its neighbours
   cl::Kernel bend_;     ///< null where the skin is not bent
   cl::Kernel follow_;   ///< null without a baseline rate

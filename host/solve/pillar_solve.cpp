@@ -110,6 +110,28 @@ maths::Solution solution_at(const ForceField& field, std::size_t index, bool unc
   return solution;
 }
 
+/// The mean ratio of 3 x 3 pillars along an axis, as in kernels/frame/correct_forces.cl.
+maths::ShearRatio mean_of_ratios(const std::vector<maths::ShearRatios>& ratios,
+                                 maths::ShearRatio maths::ShearRatios::*axis,
+                                 const ForceField& field, std::size_t row, std::size_t col) {
+  const PlaneView normal(field.normal, field);
+  const maths::ShearRatio own = ratios[row * field.cols + col].*axis;
+  const auto part = [&](std::size_t down, std::size_t right, int distance) {
+    const std::size_t r = row + down;
+    const std::size_t c = col + right;
+    const bool exists = r < field.rows && c < field.cols;
+    return maths::ratio_part(own, exists ? ratios[r * field.cols + c].*axis : maths::ShearRatio{},
+                             normal.at(r, c), static_cast<float>(distance));
+  };
+  const auto opposite = [&](std::size_t down, std::size_t right, int distance) {
+    return maths::add_ratios(part(-down, -right, distance), part(down, right, distance));
+  };
+  constexpr auto kBack = static_cast<std::size_t>(-1);
+  return maths::mean_ratio(
+      own, maths::add_ratios(maths::add_ratios(opposite(0, 1, 1), opposite(1, 0, 1)),
+                             maths::add_ratios(opposite(1, 1, 2), opposite(1, kBack, 2))));
+}
+
 /// Corrects solved forces by those of the pillars around, as kernels/frame/correct_forces.cl.
 void correct_forces(const maths::Stages& stages, ForceField& field) {
   if (stages.pillar_leak) {
@@ -117,14 +139,24 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       *plane = unleaked(*plane, field, stages);
     }
   }
-  const ForceFieldView forces = field.view();
+  std::vector<maths::ShearRatios> ratios(stages.arm ? field.normal.size() : 0);
+  for (std::size_t index = 0; index < ratios.size(); ++index) {
+    if (!is_loaded(field, index)) continue;
+    const auto [x, y] = pillar_lean(field.view(), index);
+    ratios[index] = maths::shear_ratios(solution_at(field, index, false).force, field.status[index],
+                                        x, y, stages);
+  }
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) {
       const std::size_t index = row * field.cols + col;
       if (!is_loaded(field, index)) continue;
-      const auto [x, y] = pillar_lean(forces, index);
+      maths::ShearRatios means{};
+      if (stages.arm) {
+        means = {mean_of_ratios(ratios, &maths::ShearRatios::x, field, row, col),
+                 mean_of_ratios(ratios, &maths::ShearRatios::y, field, row, col)};
+      }
       const maths::Solution before = solution_at(field, index, stages.uncertainty);
-      const maths::Solution after = maths::correct_solution(before, x, y, stages);
+      const maths::Solution after = maths::correct_solution(before, means, stages);
       field.status[index] = static_cast<std::uint8_t>(after.status);
       store_solution(after, index, stages.uncertainty, field);
     }

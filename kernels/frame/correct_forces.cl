@@ -108,6 +108,95 @@ PF_INLINE void unleak_row(global uchar* results, Layout layout, uint row) {
 
 #endif
 
+#ifdef PF_LEAN
+
+PF_INLINE Lean lean_along(global const float* normal, Layout layout, uint row, int col, int down,
+                          int right) {
+  return lean_between(load_near(normal, layout, row, -2 * down, col - 2 * right),
+                      load_near(normal, layout, row, -down, col - right),
+                      load_near(normal, layout, row, 0, col),
+                      load_near(normal, layout, row, down, col + right),
+                      load_near(normal, layout, row, 2 * down, col + 2 * right));
+}
+
+/* The plane of the scratch memory with values or variances of the ratios of an axis. */
+enum { kRatioX, kVarianceX, kRatioY, kVarianceY };
+PF_INLINE global float* ratio_plane(global uchar* results, Layout layout, uint plane) {
+  return (global float*)(results + layout.ratios + plane * layout.result_bytes);
+}
+
+/* Ratios of shear to normal force of a row's loaded pillars, by their own readings and lean, to the
+ * scratch memory. Reads normal forces up to PF_LEAN_REACH rows away. */
+PF_INLINE void find_ratios_of_row(global uchar* results, Layout layout, Calibration planes,
+                                  uint row) {
+  const uint cols = (uint)layout.cols;
+  const uint step = (uint)get_global_size(0);
+  global const float* const plane = (global const float*)results;
+  const size_t plane_floats = layout.result_bytes / sizeof(float);
+  global const float* const normal = plane + 2 * plane_floats;
+  global const uchar* const changed = changed_in_row(results, layout, row);
+  if (!changed) return;
+  const uint skew = skew_of(row, cols);
+  for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+       at_block += step) {
+    if (!is_changed(changed, at_block)) continue;
+    if (idle_flag(results, layout, row, at_block) != 0) continue;
+    const OwnBlock block = own_block(at_block, skew, cols);
+    const int col = (int)block.col;
+    const Bits status = load_status(results + layout.status + (size_t)row * cols, col, cols);
+    if (!any_lane(mask_of(status & PF_BITS(PF_STATUS_PRESSED)))) continue;
+    const Force force = {load_near(plane, layout, row, 0, col),
+                         load_near(plane + plane_floats, layout, row, 0, col),
+                         load_near(normal, layout, row, 0, col)};
+    const ShearRatios ratios =
+        shear_ratios(force, status, lean_along(normal, layout, row, col, 0, 1),
+                     lean_along(normal, layout, row, col, -1, 0), planes.stages);
+    const size_t index = (size_t)row * cols + block.col;
+    store_plane(ratios.x.value, ratio_plane(results, layout, kRatioX) + index, block.lanes, true);
+    store_plane(ratios.x.variance, ratio_plane(results, layout, kVarianceX) + index, block.lanes,
+                true);
+    store_plane(ratios.y.value, ratio_plane(results, layout, kRatioY) + index, block.lanes, true);
+    store_plane(ratios.y.variance, ratio_plane(results, layout, kVarianceY) + index, block.lanes,
+                true);
+  }
+}
+
+/* What find_ratios_of_row left of an axis, `first` its plane of values; of pillars without load
+ * nothing, or what an earlier frame left. */
+PF_INLINE ShearRatio load_ratio(global uchar* results, Layout layout, uint first, uint row,
+                                int down, int col) {
+  ShearRatio ratio;
+  ratio.value = load_near(ratio_plane(results, layout, first), layout, row, down, col);
+  ratio.variance = load_near(ratio_plane(results, layout, first + 1), layout, row, down, col);
+  return ratio;
+}
+
+/* The part of the two pillars that are `down` and `right`, and as far on the other side. */
+PF_INLINE RatioSum opposite_parts(global uchar* results, Layout layout, uint first, ShearRatio own,
+                                  uint row, int col, int down, int right) {
+  global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
+  const Real distance = (Real)((float)(down * down + right * right));
+  const RatioSum after = ratio_part(own, load_ratio(results, layout, first, row, down, col + right),
+                                    load_near(normal, layout, row, down, col + right), distance);
+  const RatioSum before =
+      ratio_part(own, load_ratio(results, layout, first, row, -down, col - right),
+                 load_near(normal, layout, row, -down, col - right), distance);
+  return add_ratios(before, after);
+}
+
+/* The mean ratio of 3 x 3 pillars along an axis. */
+PF_INLINE ShearRatio mean_of_ratios(global uchar* results, Layout layout, uint first, uint row,
+                                    int col) {
+  const ShearRatio own = load_ratio(results, layout, first, row, 0, col);
+  const RatioSum edges = add_ratios(opposite_parts(results, layout, first, own, row, col, 0, 1),
+                                    opposite_parts(results, layout, first, own, row, col, 1, 0));
+  const RatioSum corners = add_ratios(opposite_parts(results, layout, first, own, row, col, 1, 1),
+                                      opposite_parts(results, layout, first, own, row, col, 1, -1));
+  return mean_ratio(own, add_ratios(edges, corners));
+}
+
+#endif
+
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
 
 /* Results of PF_LANES pillars; zero where the plan does not have them. */
@@ -141,18 +230,11 @@ PF_INLINE void store_corrected(Solution solution, Output output, size_t index, L
 #endif
 }
 
-#ifdef PF_LEAN
-#define PF_LEAN_REACH 2u
-#else
-#define PF_LEAN_REACH 0u
-#endif
-
-/* Subtracts the lean of the pressure from the shear of a row, and derives the other results from
- * the corrected forces. Reads forces up to PF_LEAN_REACH rows away. */
+/* Takes the shear of a row from the mean ratios, and derives the other results from the corrected
+ * forces. Reads ratios up to PF_MEAN_REACH rows away. */
 PF_INLINE void correct_row(global uchar* results, Layout layout, Calibration planes, uint row) {
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
-  global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
   const Output output = {results, results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
   global const uchar* const changed = changed_in_row(results, layout, row);
@@ -165,24 +247,31 @@ PF_INLINE void correct_row(global uchar* results, Layout layout, Calibration pla
     const OwnBlock block = own_block(at_block, skew, cols);
     const uint col = block.col;
     if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
-    const int at = (int)col;
-    const Real own = load_near(normal, layout, row, 0, at);
-    const Lean x = lean_between(
-        load_near(normal, layout, row, 0, at - 2), load_near(normal, layout, row, 0, at - 1), own,
-        load_near(normal, layout, row, 0, at + 1), load_near(normal, layout, row, 0, at + 2));
-    const Lean y = lean_between(
-        load_near(normal, layout, row, 2, at), load_near(normal, layout, row, 1, at), own,
-        load_near(normal, layout, row, -1, at), load_near(normal, layout, row, -2, at));
+#ifdef PF_LEAN
+    const ShearRatios ratios = {mean_of_ratios(results, layout, kRatioX, row, (int)col),
+                                mean_of_ratios(results, layout, kRatioY, row, (int)col)};
+#else
+    const Real none = (Real)(0.0f);
+    const ShearRatios ratios = {{none, none}, {none, none}};
+#endif
     const Solution solution =
-        correct_solution(load_solution(results, layout, row, col), x, y, planes.stages);
+        correct_solution(load_solution(results, layout, row, col), ratios, planes.stages);
     store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
   }
 }
 
+/* Rows above and below that each pass reads. */
 #ifdef PF_PILLAR_LEAK
 #define PF_LEAK_REACH 1u
 #else
 #define PF_LEAK_REACH 0u
+#endif
+#ifdef PF_LEAN
+#define PF_LEAN_REACH 2u
+#define PF_MEAN_REACH 1u
+#else
+#define PF_LEAN_REACH 0u
+#define PF_MEAN_REACH 0u
 #endif
 
 /* Rows of a band all of whose neighbours up to `reach` rows away lie in `within`. */
@@ -199,6 +288,7 @@ PF_INLINE Band inner_rows(Band within, uint rows, uint reach) {
 typedef struct {
   Band leaking;
   Band leaning;
+  Band correcting;
 } Behind;
 
 PF_INLINE Behind rows_behind(Band band, uint rows) {
@@ -208,6 +298,7 @@ PF_INLINE Behind rows_behind(Band band, uint rows) {
   Behind behind;
   behind.leaking = inner_rows(band, rows, PF_LEAK_REACH);
   behind.leaning = inner_rows(behind.leaking, rows, PF_LEAN_REACH);
+  behind.correcting = inner_rows(behind.leaning, rows, PF_MEAN_REACH);
   return behind;
 }
 
@@ -228,10 +319,18 @@ PF_INLINE void correct_behind(Behind* behind, global uchar* results, Layout layo
   }
   end = leaking->first;
 #endif
-#if PF_CORRECTS
+#ifdef PF_LEAN
   Band* const leaning = &behind->leaning;
   while (leaning->first < leaning->end && is_complete(leaning->first, PF_LEAN_REACH, end, rows)) {
-    correct_row(results, layout, calibration, leaning->first++);
+    find_ratios_of_row(results, layout, calibration, leaning->first++);
+  }
+  end = leaning->first;
+#endif
+#if PF_CORRECTS
+  Band* const correcting = &behind->correcting;
+  while (correcting->first < correcting->end &&
+         is_complete(correcting->first, PF_MEAN_REACH, end, rows)) {
+    correct_row(results, layout, calibration, correcting->first++);
   }
 #endif
 }
@@ -251,13 +350,27 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
 }
 #endif
 
+#ifdef PF_LEAN
+/* Finds the ratios of the rows that solve_frame left. */
+kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
+                              global const uchar* restrict calibration,
+                              global uchar* restrict results, Layout layout) {
+  const Calibration planes = calibration_of(calibration, results, layout);
+  const Band band = band_of_rows((uint)layout.rows);
+  const Band done = rows_behind(band, (uint)layout.rows).leaning;
+  for (uint row = band.first; row < band.end; ++row) {
+    if (!is_in(row, done)) find_ratios_of_row(results, layout, planes, row);
+  }
+}
+#endif
+
 /* Corrects the rows that solve_frame left by those around them. */
 kernel void correct_forces(global const PF_SENSEL* restrict raw,
                            global const uchar* restrict calibration, global uchar* restrict results,
                            Layout layout) {
   const Calibration planes = calibration_of(calibration, results, layout);
   const Band band = band_of_rows((uint)layout.rows);
-  const Band done = rows_behind(band, (uint)layout.rows).leaning;
+  const Band done = rows_behind(band, (uint)layout.rows).correcting;
   for (uint row = band.first; row < band.end; ++row) {
     if (!is_in(row, done)) correct_row(results, layout, planes, row);
   }

@@ -340,14 +340,11 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
 
 #ifdef PF_LEAN
 /* Flags a pillar of three or four usable sensels as ambiguous if its force alone, to within two
- * deviations of the lean, does not load exactly these (E7). */
-PF_INLINE Bits flag_other_region(Solution solution, Lean x, Lean y, Stages stages) {
+ * deviations of the correction, `margin_x` and `margin_y`, does not load exactly these (E7). */
+PF_INLINE Bits flag_other_region(Solution solution, Real margin_x, Real margin_y, Stages stages) {
   const Real along = PF_REAL(0.70710678118654752440);
   Real shear_x = along * solution.force.shear_x;
   Real shear_y = along * solution.force.shear_y;
-  const Real pitch_over_arm = PF_CONSTANT(Real, PF_LEAN);
-  Real margin_x = pitch_over_arm * x.deviation;
-  Real margin_y = pitch_over_arm * y.deviation;
 #ifdef PF_SHEAR_COEFFICIENT
   if (PF_NAMED(shear_coefficient)) {
     shear_x = shear_x / PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
@@ -370,31 +367,47 @@ PF_INLINE Bits flag_other_region(Solution solution, Lean x, Lean y, Stages stage
 }
 #endif
 
+#ifdef PF_LEAN
+/* The ratios of a pillar that leans by `x` and `y`. Four sensels whose noise is a quarter of the
+ * threshold have this noise in each component. */
+PF_INLINE ShearRatios shear_ratios(Force force, Bits status, Lean x, Lean y, Stages stages) {
+  const Real pitch_over_arm = PF_CONSTANT(Real, PF_LEAN);
+  const Real noise =
+      PF_REAL(0.5) * PF_CONSTANT(Real, PF_THRESHOLD) * PF_CONSTANT(Real, PF_SHEAR_SCALE);
+  const Mask informs = at_least_three(status) && !mask_of(status & PF_BITS(PF_STATUS_INCONSISTENT));
+  ShearRatios ratios;
+  ratios.x = shear_ratio(force.shear_x, force.normal, x, pitch_over_arm, noise, informs);
+  ratios.y = shear_ratio(force.shear_y, force.normal, y, pitch_over_arm, noise, informs);
+  return ratios;
+}
+#endif
+
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
-/* Corrects a solved pillar by what is known from the pillars around it: `x` and `y` are the lean of
- * its pressure. Derives direction and intervals from the corrected force. Pillars without load
+/* Corrects a solved pillar by what is known from the pillars around it, its ratios of shear to
+ * normal force. Derives direction and intervals from the corrected force. Pillars without load
  * stay.
  */
-PF_INLINE Solution correct_solution(Solution solution, Lean x, Lean y, Stages stages) {
+PF_INLINE Solution correct_solution(Solution solution, ShearRatios ratios, Stages stages) {
   const Mask loaded = mask_of(solution.status & PF_BITS(PF_STATUS_PRESSED));
 #ifdef PF_UNCERTAINTY
   Real moved = PF_REAL(0.0);
 #endif
 #ifdef PF_LEAN
   if (PF_NAMED(arm)) {
-    const Real pitch_over_arm = PF_CONSTANT(Real, PF_LEAN);
-    const Real moved_x = loaded ? pitch_over_arm * x.moment : PF_REAL(0.0);
-    const Real moved_y = loaded ? pitch_over_arm * y.moment : PF_REAL(0.0);
-    solution.force.shear_x = solution.force.shear_x - moved_x;
-    solution.force.shear_y = solution.force.shear_y - moved_y;
-    solution.status = flag_other_region(solution, x, y, stages);
+    const Real normal = solution.force.normal;
+    const Mask has_ratio = loaded && normal > PF_REAL(0.0);
+    const Force before = solution.force;
+    const Real deviation_x = has_ratio ? normal * sqrt(ratios.x.variance) : PF_REAL(0.0);
+    const Real deviation_y = has_ratio ? normal * sqrt(ratios.y.variance) : PF_REAL(0.0);
+    solution.force.shear_x = has_ratio ? normal * ratios.x.value : before.shear_x;
+    solution.force.shear_y = has_ratio ? normal * ratios.y.value : before.shear_y;
+    solution.status = flag_other_region(solution, deviation_x, deviation_y, stages);
 #ifdef PF_UNCERTAINTY
     if (PF_NAMED(uncertainty)) {
-      moved = plain_length_2(moved_x, moved_y);
-      solution.deviations.shear_x = plain_length_2(
-          solution.deviations.shear_x, loaded ? pitch_over_arm * x.deviation : PF_REAL(0.0));
-      solution.deviations.shear_y = plain_length_2(
-          solution.deviations.shear_y, loaded ? pitch_over_arm * y.deviation : PF_REAL(0.0));
+      moved = plain_length_2(solution.force.shear_x - before.shear_x,
+                             solution.force.shear_y - before.shear_y);
+      solution.deviations.shear_x = plain_length_2(solution.deviations.shear_x, deviation_x);
+      solution.deviations.shear_y = plain_length_2(solution.deviations.shear_y, deviation_y);
     }
 #endif
   }

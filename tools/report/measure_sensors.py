@@ -21,7 +21,7 @@ LEAST_COUNTS = 8  # of the largest load of a pillar that counts
 LIMIT_95 = 1.959964
 AMBIGUOUS = 16
 COMPONENTS = ("shear_x", "shear_y", "normal")
-ORDER = ("wires", "tare", "bending", "one pressure", "pressures", "leak", "shear", "memory", "arm")
+ORDER = ("wires", "tare", "bending", "one pressure", "pressures", "leak", "shear", "arm", "memory")
 IDEAL = scenes.Effect("ideal sensor", "", ())
 
 
@@ -141,16 +141,8 @@ class Sensor:
         """The calibration after these steps and the tare."""
         calibration = None
         for step in sorted((*steps, "tare"), key=ORDER.index):
-            if step in scenes.CONSTANTS:
-                self.set_constants(calibration, scenes.CONSTANTS[step])
-            else:
-                calibration = self.calibrate(step, calibration)
+            calibration = self.calibrate(step, calibration)
         return calibration
-
-    def set_constants(self, calibration, values):
-        """Constants of a skin that no experiment finds."""
-        with h5py.File(Path(self.folder, calibration), "r+") as file:
-            file.require_group("calibration/effects").attrs.update(values)
 
     def taken_for_ideal(self):
         """Tare, and counts per newton of one known weight."""
@@ -210,12 +202,9 @@ def measure_ideal(program, folder, stiffness):
     result = {"ideal": sensor.score()}
     absent = {}
     for effect in scenes.EFFECTS.values():
-        steps = tuple(step for step in effect.steps if step not in scenes.CONSTANTS)
-        if steps not in absent:
-            absent[steps] = sensor.score_calibrated(sensor.calibrated(steps))
-    result["absent"] = {name: absent[tuple(step for step in effect.steps
-                                           if step not in scenes.CONSTANTS)]
-                        for name, effect in scenes.EFFECTS.items()}
+        if effect.steps not in absent:
+            absent[effect.steps] = sensor.score_calibrated(sensor.calibrated(effect.steps))
+    result["absent"] = {name: absent[effect.steps] for name, effect in scenes.EFFECTS.items()}
     return result
 
 

@@ -184,6 +184,15 @@ def tips(sensor):
                                   for direction, path in zip((30, 120), paths)))
 
 
+def balls(sensor):
+    """Four balls that press straight down, of 100 counts on average."""
+    places = ((-11.3, -10.8, 5), (10.7, -11.1, 6), (-10.4, 11.2, 7), (11.4, 10.6, 8))
+    return scene(sensor, frames=100, rate_hz=20, contacts="".join(
+        f'[[contact]]\nshape = "sphere"\nmotion = "press"\ncontact_radius_mm = {radius}\n'
+        f"position_mm = [{x}, {y}]\nload_n = {kilopascals(100) / 1000 * math.pi * radius**2:g}\n"
+        for x, y, radius in places))
+
+
 # The places of a second body: alone, in the rows of the first one, its columns, and neither.
 OTHERS_MM = {"alone": None, "in_rows": (-5, 16), "in_columns": (-16, 5), "in_neither": (-5, 5)}
 
@@ -217,6 +226,8 @@ def experiment(name, effect):
                      contacts=pressed(int(name[5:])))
     if name == "cycles":
         return cycles(effect.sensor)
+    if name == "balls":
+        return balls(effect.sensor)
     if name == "tips":
         return tips(effect.sensor)
     if name in OTHERS_MM:
@@ -242,12 +253,10 @@ CALIBRATIONS = {
                   ("--pressure-kpa", ",".join(f"{kilopascals(int(name[5:]))}"
                                               for name in PRESSURES))),
     "leak": ("leak", ("tips",), ()),
+    "arm": ("arm", ("balls",), ()),
     "memory": ("memory", ("cycles",), ("--pressure", "cycles.csv")),
     "shear": ("shear", tuple(PULLS_DEG), ("--shear-n", shears_n())),
     "bending": ("bending", tuple(CYLINDERS),
                 ("--radius-mm", ",".join(f"{CYLINDER_MM}" for _ in CYLINDERS), "--axis-deg",
                  ",".join(f"{values[0]}" for values in CYLINDERS.values()))),
 }
-
-# Steps without an experiment: attributes of /calibration/effects.
-CONSTANTS = {"arm": {"arm_mm": 0.224}}
