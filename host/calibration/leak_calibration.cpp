@@ -235,7 +235,9 @@ class LeakFinder::Fit {
   [[nodiscard]] double largest_reading() const {
     float largest = 0;
     for (const Press* press : presses_) {
-      largest = std::max(largest, std::ranges::max(press->readings));
+      for (const float reading : press->readings) {
+        if (reading > largest) largest = reading;  // Missing ones are NaN.
+      }
     }
     return largest;
   }

@@ -136,7 +136,8 @@ void store(const MemoryFit& fit, const std::vector<double>& ends, double residua
       planes.effects.residual.emplace(planes.effects.residual.value_or(ResidualError{}));
   // Half of the variance counts as constant, half as proportional.
   left.relative = std::min(1.0, std::hypot(left.relative, residual / std::numbers::sqrt2));
-  left.offset_counts = std::hypot(left.offset_counts, residual * range / std::numbers::sqrt2);
+  left.offset_counts =
+      std::hypot(left.offset_counts, residual * range / std::numbers::sqrt2) / scale;
   if (calibration.threshold_factor && !planes.noise.empty()) {
     set_threshold(calibration, *calibration.threshold_factor);
   }

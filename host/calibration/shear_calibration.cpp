@@ -79,10 +79,10 @@ PillarSums sum_pillars(const ForceField& field, const SkinCalibration& calibrati
     sums.shear_x += field.shear_x[i];
     sums.shear_y += field.shear_y[i];
     sums.normal += normal;
-    if ((field.status[i] & status::kAmbiguous) != 0) sums.ambiguous += normal;
+    const bool ambiguous = (field.status[i] & status::kAmbiguous) != 0;
+    if (ambiguous && !is_determined(field.status[i])) sums.ambiguous += normal;
     const double spread = residual.relative * k * normal;
-    sums.variance +=
-        (noise + residual.offset_counts * residual.offset_counts + spread * spread) / (2 * k * k);
+    sums.variance += (noise + spread * spread) / (2 * k * k);
   }
   return sums;
 }

@@ -249,7 +249,7 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
 bool is_missing(const ForceField& solved, std::uint64_t index, const CompareOptions& options) {
   if (!std::ranges::all_of(solved.normal, [](float n) { return std::isnan(n); })) return false;
   if (options.allow_missing) return true;
-  throw Error(options.forces, fmt::format("frame {} holds no forces", index + 1),
+  throw Error(options.forces, fmt::format("frame {} holds no forces", index),
               "leave out such frames with --allow-missing");
 }
 
@@ -286,6 +286,9 @@ void compare(const CompareOptions& options) {
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
+  }
+  if (frames == 0 && all_frames > 0) {
+    throw Error(options.forces, "no frame holds forces", "solve its parts again");
   }
   const std::vector<Row> rows = rows_of(comparison);
   if (options.json) {

@@ -99,7 +99,7 @@ PF_INLINE void prefetch_tile_row(global const PF_SENSEL* raw, Calibration calibr
 
 PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
                                   Layout layout, Tile tile) {
-  if (tile.cols < PF_LANES) return (TileRange){0.0f, -1.0f};
+  if (tile.cols < PF_LANES) return (TileRange){(float)(PF_ACTIVATION_NEVER), -1.0f};
   LaneRange range = {(SenselLanes)(0), (SenselLanes)((PF_SENSEL)(PF_ACTIVATION_NEVER))};
   for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
     prefetch_tile_row(raw, calibration, layout, tile, row);

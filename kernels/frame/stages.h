@@ -362,8 +362,11 @@ PF_INLINE Bits flag_other_region(Solution solution, Real margin_x, Real margin_y
       loads_otherwise(solution.status, PF_STATUS_SENSEL_2, normal + falling, margin) ||
       loads_otherwise(solution.status, PF_STATUS_SENSEL_3, normal - rising, margin) ||
       loads_otherwise(solution.status, PF_STATUS_SENSEL_4, normal - falling, margin);
-  return solution.status |
-         (bits_of(at_least_three(solution.status) && other) & PF_BITS(PF_STATUS_AMBIGUOUS));
+  /* A fourth sensel that is missing or saturated may bear any load. */
+  const Bits unknown = PF_BITS(PF_STATUS_SATURATED | PF_STATUS_INCONSISTENT);
+  const Mask known = usable_are(solution.status, 15) ||
+                     (at_least_three(solution.status) && !mask_of(solution.status & unknown));
+  return solution.status | (bits_of(known && other) & PF_BITS(PF_STATUS_AMBIGUOUS));
 }
 #endif
 

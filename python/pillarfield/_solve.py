@@ -21,6 +21,9 @@ from ._scene import Simulation
 if TYPE_CHECKING:
     from .calibrate import Step
 
+_SCALE_ASSUMED = (f"The frames have no counts_per_newton; {_core.Skin(2, 2).counts_per_newton:g} "
+                  "is assumed.")
+
 
 def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulation], *,
           skin: Optional[_core.Skin] = None,
@@ -59,17 +62,15 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         if tare_frames:
             raise Error("tare_frames", "an iterator's frames come once",
                         "give calibration=pf.calibrate.tare(unloaded)")
-        _warn_of_scale(skin, calibration, options)
+        _warn([_SCALE_ASSUMED], _constants_given(skin, calibration, options))
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
         frames = np.asarray(frames)
     source = source_of(frames, skin, times, rate_hz)
     if tare_frames:
         calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz)
-    if source.format == "array":
-        _warn_of_scale(skin, calibration, options)
-    elif skin is None:
-        _warn_of_file(source, calibration, options)
+    _warn([_SCALE_ASSUMED] if source.format == "array" else source.warnings,
+          _constants_given(skin, calibration, options))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
@@ -86,27 +87,18 @@ def _calibration_of(given: Any) -> Optional[_core.Calibration]:
                 "give a step such as pf.calibrate.tare(unloaded), a Calibration or its path")
 
 
-def _constants_given(calibration: Optional[_core.Calibration], options: dict[str, Any]) -> set[str]:
-    """Names of the skin's constants that a calibration or options give."""
-    names = ("counts_per_newton", "threshold_counts")
+def _constants_given(skin: Optional[_core.Skin], calibration: Optional[_core.Calibration],
+                     options: dict[str, Any]) -> set[str]:
+    """Names of the skin's constants that a skin, a calibration, a scene or options give."""
+    names = {"sensel_pitch_mm", "counts_per_newton", "threshold_counts"}
+    if skin is not None or "scene" in options:
+        return names
     return {name for name in names if getattr(calibration, name, None) is not None} | set(options)
 
 
-def _warn_of_scale(skin: Optional[_core.Skin], calibration: Optional[_core.Calibration],
-                   options: dict[str, Any]) -> None:
-    """Warns if nothing gives the counts per newton of readings."""
-    if skin is None and not _constants_given(calibration, options) & {"counts_per_newton", "scene"}:
-        warnings.warn(f"The frames have no counts_per_newton; {_core.Skin(2, 2).counts_per_newton:g} "
-                      "is assumed.", stacklevel=3)
-
-
-def _warn_of_file(source: _core.FrameSource, calibration: Optional[_core.Calibration],
-                  options: dict[str, Any]) -> None:
-    """Passes on the warnings about a file but those of constants that are given."""
-    given = _constants_given(calibration, options)
-    if "scene" in given:
-        return
-    for sentence in source.warnings:
+def _warn(sentences: Iterable[str], given: set[str]) -> None:
+    """Warns by each sentence but those about constants that are given."""
+    for sentence in sentences:
         if not any(name in sentence for name in given):
             warnings.warn(sentence, stacklevel=3)
 
@@ -118,7 +110,11 @@ def _tare_of(frames: Any, count: int, before: Any, skin: _core.Skin,
         frames = Recording(frames, rate_hz=rate_hz)
     if isinstance(frames, Recording):
         before = before or frames.calibration
-    first = getattr(frames, "frames", frames)[:max(count, 0)]
+    frames = getattr(frames, "frames", frames)
+    if getattr(frames, "ndim", 3) != 3 or not 10 <= count < len(frames):
+        raise Error("tare_frames", f"{count} of {len(frames)} frames cannot be the unloaded ones",
+                    "give 10 or more, but fewer than there are")
+    first = frames[:count]
     return tare(first, before, skin=skin).calibration
 
 

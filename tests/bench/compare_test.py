@@ -50,13 +50,13 @@ class Statistics(unittest.TestCase):
         old = [{"case": 10.0 * slow} for slow in range(1, 11)]
         new = [{"case": 8.0 * slow} for slow in range(1, 11)]
         line = compare.compare(old, new)[1].split()
-        self.assertEqual(line, ["case", "0.800", "0.800", "0.800", "faster"])
+        self.assertEqual(line, ["case", "0.800", "0.800", "0.800", "0.800", "faster"])
 
     def test_cases_of_only_one_program_are_named(self):
         text = "\n".join(compare.compare([{"a": 1.0, "b": 1.0}] * 2, [{"b": 1.0, "c": 1.0}] * 2))
         self.assertRegex(text, r"a +only in the old program")
         self.assertRegex(text, r"c +only in the new program")
-        self.assertRegex(text, r"b +1\.000 +1\.000 +1\.000  same")
+        self.assertRegex(text, r"b +1\.000 +1\.000 +1\.000 +1\.000  same")
 
 
 class Reports(unittest.TestCase):

@@ -176,7 +176,7 @@ class PartsTest(PartsFolder):
                 self.assertFalse(numpy.isnan(file["force/normal"][:7]).any())
         self.assertEqual(run("compare", self.output, self.recording, "--allow-missing").stdout, table)
         self.assert_fails("compare", self.output, self.recording,
-                          names=["frame 8 holds no forces", "--allow-missing"])
+                          names=["frame 7 holds no forces", "--allow-missing"])
         # A damaged part is named, and left out like an absent one.
         run("join", self.output, "--allow-missing")
         lost.write_bytes(b"")

@@ -200,6 +200,32 @@ TEST_P(SensorEffectsOnDevice, WiresMakeSenselsActive) {
   }
 }
 
+/// A tile of two columns whose readings lie just below the threshold above a large tare.
+TEST_P(SensorEffectsOnDevice, WiresOfANarrowTileMakeSenselsActive) {
+  const Path& path = GetParam();
+  if (path.type == SenselType::u8) return;
+  SolverPlan plan = bare_plan(16, 66, path.type);
+  plan.skin.threshold_counts = 12;
+  plan.calibration.tare.assign(plan.skin.sensels(), 1000);
+  plan.calibration.effects.wires = {16, 64, 1e-7, 1e-5, 1e-3};
+  FrameBuffer frame(path.type, 16, 66);
+  for (const std::size_t i : {4 * 66 + 64, 4 * 66 + 65, 5 * 66 + 64, 5 * 66 + 65}) {
+    if (path.type == SenselType::u16) {
+      frame.readings<std::uint16_t>()[i] = 1004;
+    } else {
+      frame.readings<float>()[i] = 1004;
+    }
+  }
+  Processor processor(test_device(), plan, {.memory = path.memory},
+                      {.lanes = path.lanes, .paths = {.skip_idle = true}});
+  const ForceField expected = solve_on_host(plan, frame.view());
+  EXPECT_EQ(expected.status[2 * 33 + 32], status::kUsable);
+  for (int repeated = 0; repeated < 3; ++repeated) {
+    processor.submit(frame.view());
+    expect_same_bits(processor.receive(), expected.view());
+  }
+}
+
 TEST_P(SensorEffectsOnDevice, CorrectionsOfForcesHaveTheBitsOfTheHost) {
   SensorEffects effects;
   effects.arm_mm = 0.3;

@@ -247,6 +247,26 @@ TEST(Lean, FlagsPillarsWhoseForceAloneWouldLoadOtherSensels) {
   }
 }
 
+/// A masked or saturated sensel may bear the load that the force alone gives it.
+TEST(Lean, DoesNotFlagPillarsWithAnUnknownSensel) {
+  SensorEffects effects;
+  effects.arm_mm = 0.5;
+  for (const bool saturated : {false, true}) {
+    SolverPlan plan = pressed_plan(5, 5, effects);
+    plan.skin.full_scale_counts = 250;
+    FrameBuffer frame(plan.sensel_type, 10, 10);
+    for (float& reading : frame.readings<float>()) reading = 200;
+    if (saturated) frame.readings<float>()[44] = 255;
+    if (!saturated) {
+      plan.calibration.mask.assign(100, kGood);
+      plan.calibration.mask[44] = kMissing;
+    }
+    const ForceField solved = solve_on_host(plan, frame.view());
+    EXPECT_EQ(solved.status[12] & status::kUsable, status::kUsable & ~status::kSensel2);
+    EXPECT_EQ(solved.status[12] & status::kAmbiguous, 0) << saturated;
+  }
+}
+
 // --- The ratio of shear to normal force ---
 
 maths::ShearRatio mean_of(maths::ShearRatio own, const std::vector<maths::ShearRatio>& around) {
