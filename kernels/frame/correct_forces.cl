@@ -2,13 +2,6 @@
  * (stage PF_PILLAR_LEAK) and off-centre pressure (stage PF_LEAN). Only loaded pillars change. */
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
 
-/* 1 if correct_row() follows unleak_row(). */
-#if defined(PF_LEAN) || defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
-#define PF_CORRECTS 1
-#else
-#define PF_CORRECTS 0
-#endif
-
 /* Values of PF_LANES pillars of a row from column `col` on; zero outside. */
 PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
 #if PF_LANES == 1
@@ -82,26 +75,32 @@ PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int 
                              (Real)(PF_PILLAR_LEAK_EDGE), (Real)(PF_PILLAR_LEAK_CORNER));
 }
 
-/* Forces of a row as solve_frame left them in the scratch memory, to the planes of the result. */
-PF_INLINE void unleak_row(global uchar* results, Layout layout, uint row) {
+/* Forces as solve_frame left them in the scratch memory, to the planes of the result. A work-item
+ * corrects blocks as in solve_frame. */
+kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
+                               global const uchar* restrict calibration,
+                               global uchar* restrict results, Layout layout) {
+  const Band band = band_of_rows((uint)layout.rows);
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
-  global const uchar* const changed = changed_in_row(results, layout, row);
-  if (!changed) return;
-  const uint skew = skew_of(row, cols);
-  for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-       at_block += step) {
-    if (!is_changed(changed, at_block)) continue;
-    if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
-    const OwnBlock block = own_block(at_block, skew, cols);
-    const uint col = block.col;
-    const Mask loaded = is_loaded(results + layout.status, layout, row, col);
-    for (uint plane = 0; plane < 3; ++plane) {
-      global const float* const solved =
-          (global const float*)(results + layout.forces + plane * layout.result_bytes);
-      global float* const to = (global float*)(results + plane * layout.result_bytes);
-      const Real force = loaded ? unleaked(solved, layout, row, (int)col) : (Real)(0.0f);
-      store_plane(force, to + (size_t)row * cols + col, block.lanes, PF_CORRECTS);
+  for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const uint col = block.col;
+      const Mask loaded = is_loaded(results + layout.status, layout, row, col);
+      for (uint plane = 0; plane < 3; ++plane) {
+        global const float* const solved =
+            (global const float*)(results + layout.forces + plane * layout.result_bytes);
+        global float* const to = (global float*)(results + plane * layout.result_bytes);
+        const Real force = loaded ? unleaked(solved, layout, row, (int)col) : (Real)(0.0f);
+        store_plane(force, to + (size_t)row * cols + col, block.lanes);
+      }
     }
   }
 }
@@ -132,134 +131,50 @@ PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uin
 
 /* Writes all but the normal forces, which other work-items read. */
 PF_INLINE void store_corrected(Solution solution, Output output, size_t index, Lanes lanes) {
-  store_plane(solution.force.shear_x, (global float*)output.planes + index, lanes, false);
+  store_plane(solution.force.shear_x, (global float*)output.planes + index, lanes);
   store_plane(solution.force.shear_y, (global float*)(output.planes + output.plane_bytes) + index,
-              lanes, false);
-  store_derived(solution, output, index, lanes, false);
+              lanes);
+  store_derived(solution, output, index, lanes);
 #ifdef PF_LEAN
   store_status(solution.status, output.status + index, lanes);
 #endif
 }
 
-#ifdef PF_LEAN
-#define PF_LEAN_REACH 2u
-#else
-#define PF_LEAN_REACH 0u
-#endif
-
-/* Subtracts the lean of the pressure from the shear of a row, and derives the other results from
- * the corrected forces. Reads forces up to PF_LEAN_REACH rows away. */
-PF_INLINE void correct_row(global uchar* results, Layout layout, Calibration planes, uint row) {
-  const uint cols = (uint)layout.cols;
-  const uint step = (uint)get_global_size(0);
-  global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
-  const Output output = {results, results, layout.result_bytes, results + layout.status,
-                         results + layout.idle};
-  global const uchar* const changed = changed_in_row(results, layout, row);
-  if (!changed) return;
-  const uint skew = skew_of(row, cols);
-  for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-       at_block += step) {
-    if (!is_changed(changed, at_block)) continue;
-    if (idle_flag(results, layout, row, at_block) != 0) continue;
-    const OwnBlock block = own_block(at_block, skew, cols);
-    const uint col = block.col;
-    if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
-    const int at = (int)col;
-    const Real own = load_near(normal, layout, row, 0, at);
-    const Lean x = lean_between(
-        load_near(normal, layout, row, 0, at - 2), load_near(normal, layout, row, 0, at - 1), own,
-        load_near(normal, layout, row, 0, at + 1), load_near(normal, layout, row, 0, at + 2));
-    const Lean y = lean_between(
-        load_near(normal, layout, row, 2, at), load_near(normal, layout, row, 1, at), own,
-        load_near(normal, layout, row, -1, at), load_near(normal, layout, row, -2, at));
-    const Solution solution =
-        correct_solution(load_solution(results, layout, row, col), x, y, planes.stages);
-    store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
-  }
-}
-
-#ifdef PF_PILLAR_LEAK
-#define PF_LEAK_REACH 1u
-#else
-#define PF_LEAK_REACH 0u
-#endif
-
-/* Rows of a band all of whose neighbours up to `reach` rows away lie in `within`. */
-PF_INLINE Band inner_rows(Band within, uint rows, uint reach) {
-  Band inner = within;
-  if (within.first != 0) inner.first = min(within.first + reach, within.end);
-  if (within.end != rows) inner.end = max(within.end, inner.first + reach) - reach;
-  return inner;
-}
-
-/* Rows that a work-item still has to correct. With several lanes it corrects them right after it
- * has solved their neighbours, while the caches hold these; the entry points below correct the rows
- * at the ends of its band. With one lane, where work-items share rows, they correct all. */
-typedef struct {
-  Band leaking;
-  Band leaning;
-} Behind;
-
-PF_INLINE Behind rows_behind(Band band, uint rows) {
-#ifndef PF_FUSED
-  band.end = band.first;
-#endif
-  Behind behind;
-  behind.leaking = inner_rows(band, rows, PF_LEAK_REACH);
-  behind.leaning = inner_rows(behind.leaking, rows, PF_LEAN_REACH);
-  return behind;
-}
-
-/* True if all rows up to `reach` below `row` come before `end`, or it is that of the skin. */
-PF_INLINE bool is_complete(uint row, uint reach, uint end, uint rows) {
-  return row + reach < end || end == rows;
-}
-
-/* Corrects the rows whose neighbours are solved now; `solved` is the end of the solved ones. */
-PF_INLINE void correct_behind(Behind* behind, global uchar* results, Layout layout,
-                              Calibration calibration, uint solved) {
-  const uint rows = (uint)layout.rows;
-  uint end = solved;
-#ifdef PF_PILLAR_LEAK
-  Band* const leaking = &behind->leaking;
-  while (leaking->first < leaking->end && is_complete(leaking->first, PF_LEAK_REACH, end, rows)) {
-    unleak_row(results, layout, leaking->first++);
-  }
-  end = leaking->first;
-#endif
-#if PF_CORRECTS
-  Band* const leaning = &behind->leaning;
-  while (leaning->first < leaning->end && is_complete(leaning->first, PF_LEAN_REACH, end, rows)) {
-    correct_row(results, layout, calibration, leaning->first++);
-  }
-#endif
-}
-
-PF_INLINE bool is_in(uint row, Band band) { return row >= band.first && row < band.end; }
-
-#ifdef PF_PILLAR_LEAK
-/* Removes the leak between pillars from the rows that solve_frame left. */
-kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
-                               global const uchar* restrict calibration,
-                               global uchar* restrict results, Layout layout) {
-  const Band band = band_of_rows((uint)layout.rows);
-  const Band done = rows_behind(band, (uint)layout.rows).leaking;
-  for (uint row = band.first; row < band.end; ++row) {
-    if (!is_in(row, done)) unleak_row(results, layout, row);
-  }
-}
-#endif
-
-/* Corrects the rows that solve_frame left by those around them. */
+/* Subtracts the lean of the pressure from the shear, and derives the other results from the
+ * corrected forces. A work-item corrects blocks as in solve_frame. */
 kernel void correct_forces(global const PF_SENSEL* restrict raw,
                            global const uchar* restrict calibration, global uchar* restrict results,
                            Layout layout) {
   const Calibration planes = calibration_of(calibration, results, layout);
   const Band band = band_of_rows((uint)layout.rows);
-  const Band done = rows_behind(band, (uint)layout.rows).leaning;
+  const uint cols = (uint)layout.cols;
+  const uint step = (uint)get_global_size(0);
+  global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
+  const Output output = {results, results, layout.result_bytes, results + layout.status,
+                         results + layout.idle};
   for (uint row = band.first; row < band.end; ++row) {
-    if (!is_in(row, done)) correct_row(results, layout, planes, row);
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) != 0) continue;
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const uint col = block.col;
+      if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
+      const int at = (int)col;
+      const Real own = load_near(normal, layout, row, 0, at);
+      const Lean x = lean_between(
+          load_near(normal, layout, row, 0, at - 2), load_near(normal, layout, row, 0, at - 1), own,
+          load_near(normal, layout, row, 0, at + 1), load_near(normal, layout, row, 0, at + 2));
+      const Lean y = lean_between(
+          load_near(normal, layout, row, 2, at), load_near(normal, layout, row, 1, at), own,
+          load_near(normal, layout, row, -1, at), load_near(normal, layout, row, -2, at));
+      const Solution solution =
+          correct_solution(load_solution(results, layout, row, col), x, y, planes.stages);
+      store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
+    }
   }
 }
 
