@@ -58,6 +58,24 @@ PF_INLINE uchar idle_flag(global const uchar* results, Layout layout, uint row, 
 #endif
 }
 
+#if defined(PF_SKIP_IDLE) && PF_LANES > 1
+typedef struct __attribute__((packed)) {
+  ulong value;
+} packed_flags;
+#endif
+
+/* Number of idle blocks from `at` on that a pass may skip together: 8 or none. */
+PF_INLINE uint idle_run(global const uchar* results, Layout layout, uint row, uint at) {
+#if defined(PF_SKIP_IDLE) && PF_LANES > 1
+  const uint blocks = blocks_of_row((uint)layout.cols);
+  if (at + 8 > blocks) return 0;
+  global const uchar* const flags = results + layout.idle + (size_t)row * blocks + at;
+  return ((global const packed_flags*)flags)->value == PF_IDLE * 0x0101010101010101ul ? 8 : 0;
+#else
+  return 0;
+#endif
+}
+
 #endif
 
 #ifdef PF_PILLAR_LEAK
@@ -89,6 +107,11 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
     const uint skew = skew_of(row, cols);
     for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
          at_block += step) {
+      const uint run = idle_run(results, layout, row, at_block);
+      if (run != 0) {
+        at_block += run - 1;
+        continue;
+      }
       if (!is_changed(changed, at_block)) continue;
       if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
       const OwnBlock block = own_block(at_block, skew, cols);
@@ -158,6 +181,11 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
     const uint skew = skew_of(row, cols);
     for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
          at_block += step) {
+      const uint run = idle_run(results, layout, row, at_block);
+      if (run != 0) {
+        at_block += run - 1;
+        continue;
+      }
       if (!is_changed(changed, at_block)) continue;
       if (idle_flag(results, layout, row, at_block) != 0) continue;
       const OwnBlock block = own_block(at_block, skew, cols);
