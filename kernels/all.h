@@ -39,10 +39,9 @@
 #include "frame/row_blocks.h"
 #include "frame/memory_planes.h"
 #include "frame/neighbours.h"
-#include "frame/store_solution.h"
 #include "frame/find_wires.cl"
 #include "frame/bend_tare.cl"
-#include "frame/correct_forces.cl"
 #include "frame/solve_frame.cl"
+#include "frame/correct_forces.cl"
 #include "frame/follow_baseline.cl"
 #endif

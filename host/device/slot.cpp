@@ -8,26 +8,15 @@
 namespace pillarfield {
 namespace {
 
-/// True if forces are corrected by those around them (kernels/frame/correct_forces.cl).
-bool corrects_forces(const SolverPlan& plan) {
-  const SensorEffects& effects = plan.calibration.effects;
-  return effects.pillar_leak || effects.arm_mm;
-}
-
 /// Global and local size of a launch. With several lanes, a work-item solves a band of rows.
 /// Several bands per compute unit balance the load; each is a work-group of its own, because
-/// drivers group them badly (PoCL: 790 rows in one group). Where forces are corrected, bands are at
-/// least 16 rows high, as the rows at their ends take a launch of their own. With one lane,
-/// work-items share a row.
+/// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row.
 struct Launch {
-  Launch(const SolverPlan& plan, int lanes, cl_uint compute_units) {
+  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
     constexpr std::size_t kGroup = 64;
     constexpr std::size_t kBandsPerUnit = 8;
-    const std::uint32_t rows = plan.skin.pillar_rows();
-    const std::uint32_t cols = plan.skin.pillar_cols();
     if (lanes > 1) {
-      const std::uint32_t most = std::max(rows / (corrects_forces(plan) ? 16 : 1), 1U);
-      global = cl::NDRange(1, std::min<std::size_t>(most, kBandsPerUnit * compute_units));
+      global = cl::NDRange(1, std::min<std::size_t>(rows, kBandsPerUnit * compute_units));
       local = cl::NDRange(1, 1);
       return;
     }
@@ -97,7 +86,8 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
       order_(&order) {
-  const Launch solve(plan, settings.lanes, device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  const Launch solve(rows_, cols_, settings.lanes,
+                     device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
   if (settings.paths.changed_only) changed_.emplace(plan, settings.lanes);

@@ -2,13 +2,6 @@
  * (stage PF_PILLAR_LEAK) and off-centre pressure (stage PF_LEAN). Only loaded pillars change. */
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
 
-/* 1 if correct_row() follows unleak_row(). */
-#if defined(PF_LEAN) || defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
-#define PF_CORRECTS 1
-#else
-#define PF_CORRECTS 0
-#endif
-
 /* Values of PF_LANES pillars of a row from column `col` on; zero outside. */
 PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
 #if PF_LANES == 1
@@ -65,6 +58,24 @@ PF_INLINE uchar idle_flag(global const uchar* results, Layout layout, uint row, 
 #endif
 }
 
+#if defined(PF_SKIP_IDLE) && PF_LANES > 1
+typedef struct __attribute__((packed)) {
+  ulong value;
+} packed_flags;
+#endif
+
+/* Number of idle blocks from `at` on that a pass may skip together: 8 or none. */
+PF_INLINE uint idle_run(global const uchar* results, Layout layout, uint row, uint at) {
+#if defined(PF_SKIP_IDLE) && PF_LANES > 1
+  const uint blocks = blocks_of_row((uint)layout.cols);
+  if (at + 8 > blocks) return 0;
+  global const uchar* const flags = results + layout.idle + (size_t)row * blocks + at;
+  return ((global const packed_flags*)flags)->value == PF_IDLE * 0x0101010101010101ul ? 8 : 0;
+#else
+  return 0;
+#endif
+}
+
 #endif
 
 #ifdef PF_PILLAR_LEAK
@@ -82,26 +93,37 @@ PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int 
                              (Real)(PF_PILLAR_LEAK_EDGE), (Real)(PF_PILLAR_LEAK_CORNER));
 }
 
-/* Forces of a row as solve_frame left them in the scratch memory, to the planes of the result. */
-PF_INLINE void unleak_row(global uchar* results, Layout layout, uint row) {
+/* Forces as solve_frame left them in the scratch memory, to the planes of the result. A work-item
+ * corrects blocks as in solve_frame. */
+kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
+                               global const uchar* restrict calibration,
+                               global uchar* restrict results, Layout layout) {
+  const Band band = band_of_rows((uint)layout.rows);
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
-  global const uchar* const changed = changed_in_row(results, layout, row);
-  if (!changed) return;
-  const uint skew = skew_of(row, cols);
-  for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-       at_block += step) {
-    if (!is_changed(changed, at_block)) continue;
-    if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
-    const OwnBlock block = own_block(at_block, skew, cols);
-    const uint col = block.col;
-    const Mask loaded = is_loaded(results + layout.status, layout, row, col);
-    for (uint plane = 0; plane < 3; ++plane) {
-      global const float* const solved =
-          (global const float*)(results + layout.forces + plane * layout.result_bytes);
-      global float* const to = (global float*)(results + plane * layout.result_bytes);
-      const Real force = loaded ? unleaked(solved, layout, row, (int)col) : (Real)(0.0f);
-      store_plane(force, to + (size_t)row * cols + col, block.lanes, PF_CORRECTS);
+  for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      const uint run = idle_run(results, layout, row, at_block);
+      if (run != 0) {
+        at_block += run - 1;
+        continue;
+      }
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const uint col = block.col;
+      const Mask loaded = is_loaded(results + layout.status, layout, row, col);
+      for (uint plane = 0; plane < 3; ++plane) {
+        global const float* const solved =
+            (global const float*)(results + layout.forces + plane * layout.result_bytes);
+        global float* const to = (global float*)(results + plane * layout.result_bytes);
+        const Real force = loaded ? unleaked(solved, layout, row, (int)col) : (Real)(0.0f);
+        store_plane(force, to + (size_t)row * cols + col, block.lanes);
+      }
     }
   }
 }
@@ -125,43 +147,51 @@ PF_INLINE global float* ratio_plane(global uchar* results, Layout layout, uint p
   return (global float*)(results + layout.ratios + plane * layout.result_bytes);
 }
 
-/* Ratios of shear to normal force of a row's loaded pillars, by their own readings and lean, to the
- * scratch memory. Reads normal forces up to PF_LEAN_REACH rows away. */
-PF_INLINE void find_ratios_of_row(global uchar* results, Layout layout, Calibration planes,
-                                  uint row) {
+/* Ratios of shear to normal force of the loaded pillars, by their own readings and lean, to the
+ * scratch memory. A work-item finds blocks as in solve_frame. */
+kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
+                              global const uchar* restrict calibration,
+                              global uchar* restrict results, Layout layout) {
+  const Calibration planes = calibration_of(calibration, results, layout);
+  const Band band = band_of_rows((uint)layout.rows);
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
   global const float* const plane = (global const float*)results;
   const size_t plane_floats = layout.result_bytes / sizeof(float);
-  global const float* const normal = plane + 2 * plane_floats;
-  global const uchar* const changed = changed_in_row(results, layout, row);
-  if (!changed) return;
-  const uint skew = skew_of(row, cols);
-  for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-       at_block += step) {
-    if (!is_changed(changed, at_block)) continue;
-    if (idle_flag(results, layout, row, at_block) != 0) continue;
-    const OwnBlock block = own_block(at_block, skew, cols);
-    const int col = (int)block.col;
-    const Bits status = load_status(results + layout.status + (size_t)row * cols, col, cols);
-    if (!any_lane(mask_of(status & PF_BITS(PF_STATUS_PRESSED)))) continue;
-    const Force force = {load_near(plane, layout, row, 0, col),
-                         load_near(plane + plane_floats, layout, row, 0, col),
-                         load_near(normal, layout, row, 0, col)};
-    const ShearRatios ratios =
-        shear_ratios(force, status, lean_along(normal, layout, row, col, 0, 1),
-                     lean_along(normal, layout, row, col, -1, 0), planes.stages);
-    const size_t index = (size_t)row * cols + block.col;
-    store_plane(ratios.x.value, ratio_plane(results, layout, kRatioX) + index, block.lanes, true);
-    store_plane(ratios.x.variance, ratio_plane(results, layout, kVarianceX) + index, block.lanes,
-                true);
-    store_plane(ratios.y.value, ratio_plane(results, layout, kRatioY) + index, block.lanes, true);
-    store_plane(ratios.y.variance, ratio_plane(results, layout, kVarianceY) + index, block.lanes,
-                true);
+  for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      const uint run = idle_run(results, layout, row, at_block);
+      if (run != 0) {
+        at_block += run - 1;
+        continue;
+      }
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) != 0) continue;
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const int col = (int)block.col;
+      const Bits status = load_status(results + layout.status + (size_t)row * cols, col, cols);
+      if (!any_lane(mask_of(status & PF_BITS(PF_STATUS_PRESSED)))) continue;
+      global const float* const normal = plane + 2 * plane_floats;
+      const Force force = {load_near(plane, layout, row, 0, col),
+                           load_near(plane + plane_floats, layout, row, 0, col),
+                           load_near(normal, layout, row, 0, col)};
+      const ShearRatios ratios =
+          shear_ratios(force, status, lean_along(normal, layout, row, col, 0, 1),
+                       lean_along(normal, layout, row, col, -1, 0), planes.stages);
+      const size_t index = (size_t)row * cols + block.col;
+      store_plane(ratios.x.value, ratio_plane(results, layout, kRatioX) + index, block.lanes);
+      store_plane(ratios.x.variance, ratio_plane(results, layout, kVarianceX) + index, block.lanes);
+      store_plane(ratios.y.value, ratio_plane(results, layout, kRatioY) + index, block.lanes);
+      store_plane(ratios.y.variance, ratio_plane(results, layout, kVarianceY) + index, block.lanes);
+    }
   }
 }
 
-/* What find_ratios_of_row left of an axis, `first` its plane of values; of pillars without load
+/* What find_shear_ratios left of an axis, `first` its plane of values; of pillars without load
  * nothing, or what an earlier frame left. */
 PF_INLINE ShearRatio load_ratio(global uchar* results, Layout layout, uint first, uint row,
                                 int down, int col) {
@@ -221,158 +251,53 @@ PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uin
 
 /* Writes all but the normal forces, which other work-items read. */
 PF_INLINE void store_corrected(Solution solution, Output output, size_t index, Lanes lanes) {
-  store_plane(solution.force.shear_x, (global float*)output.planes + index, lanes, false);
+  store_plane(solution.force.shear_x, (global float*)output.planes + index, lanes);
   store_plane(solution.force.shear_y, (global float*)(output.planes + output.plane_bytes) + index,
-              lanes, false);
-  store_derived(solution, output, index, lanes, false);
+              lanes);
+  store_derived(solution, output, index, lanes);
 #ifdef PF_LEAN
   store_status(solution.status, output.status + index, lanes);
 #endif
 }
 
-/* Takes the shear of a row from the mean ratios, and derives the other results from the corrected
- * forces. Reads ratios up to PF_MEAN_REACH rows away. */
-PF_INLINE void correct_row(global uchar* results, Layout layout, Calibration planes, uint row) {
-  const uint cols = (uint)layout.cols;
-  const uint step = (uint)get_global_size(0);
-  const Output output = {results, results, layout.result_bytes, results + layout.status,
-                         results + layout.idle};
-  global const uchar* const changed = changed_in_row(results, layout, row);
-  if (!changed) return;
-  const uint skew = skew_of(row, cols);
-  for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-       at_block += step) {
-    if (!is_changed(changed, at_block)) continue;
-    if (idle_flag(results, layout, row, at_block) != 0) continue;
-    const OwnBlock block = own_block(at_block, skew, cols);
-    const uint col = block.col;
-    if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
-#ifdef PF_LEAN
-    const ShearRatios ratios = {mean_of_ratios(results, layout, kRatioX, row, (int)col),
-                                mean_of_ratios(results, layout, kRatioY, row, (int)col)};
-#else
-    const Real none = (Real)(0.0f);
-    const ShearRatios ratios = {{none, none}, {none, none}};
-#endif
-    const Solution solution =
-        correct_solution(load_solution(results, layout, row, col), ratios, planes.stages);
-    store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
-  }
-}
-
-/* Rows above and below that each pass reads. */
-#ifdef PF_PILLAR_LEAK
-#define PF_LEAK_REACH 1u
-#else
-#define PF_LEAK_REACH 0u
-#endif
-#ifdef PF_LEAN
-#define PF_LEAN_REACH 2u
-#define PF_MEAN_REACH 1u
-#else
-#define PF_LEAN_REACH 0u
-#define PF_MEAN_REACH 0u
-#endif
-
-/* Rows of a band all of whose neighbours up to `reach` rows away lie in `within`. */
-PF_INLINE Band inner_rows(Band within, uint rows, uint reach) {
-  Band inner = within;
-  if (within.first != 0) inner.first = min(within.first + reach, within.end);
-  if (within.end != rows) inner.end = max(within.end, inner.first + reach) - reach;
-  return inner;
-}
-
-/* Rows that a work-item still has to correct. With several lanes it corrects them right after it
- * has solved their neighbours, while the caches hold these; the entry points below correct the rows
- * at the ends of its band. With one lane, where work-items share rows, they correct all. */
-typedef struct {
-  Band leaking;
-  Band leaning;
-  Band correcting;
-} Behind;
-
-PF_INLINE Behind rows_behind(Band band, uint rows) {
-#ifndef PF_FUSED
-  band.end = band.first;
-#endif
-  Behind behind;
-  behind.leaking = inner_rows(band, rows, PF_LEAK_REACH);
-  behind.leaning = inner_rows(behind.leaking, rows, PF_LEAN_REACH);
-  behind.correcting = inner_rows(behind.leaning, rows, PF_MEAN_REACH);
-  return behind;
-}
-
-/* True if all rows up to `reach` below `row` come before `end`, or it is that of the skin. */
-PF_INLINE bool is_complete(uint row, uint reach, uint end, uint rows) {
-  return row + reach < end || end == rows;
-}
-
-/* Corrects the rows whose neighbours are solved now; `solved` is the end of the solved ones. */
-PF_INLINE void correct_behind(Behind* behind, global uchar* results, Layout layout,
-                              Calibration calibration, uint solved) {
-  const uint rows = (uint)layout.rows;
-  uint end = solved;
-#ifdef PF_PILLAR_LEAK
-  Band* const leaking = &behind->leaking;
-  while (leaking->first < leaking->end && is_complete(leaking->first, PF_LEAK_REACH, end, rows)) {
-    unleak_row(results, layout, leaking->first++);
-  }
-  end = leaking->first;
-#endif
-#ifdef PF_LEAN
-  Band* const leaning = &behind->leaning;
-  while (leaning->first < leaning->end && is_complete(leaning->first, PF_LEAN_REACH, end, rows)) {
-    find_ratios_of_row(results, layout, calibration, leaning->first++);
-  }
-  end = leaning->first;
-#endif
-#if PF_CORRECTS
-  Band* const correcting = &behind->correcting;
-  while (correcting->first < correcting->end &&
-         is_complete(correcting->first, PF_MEAN_REACH, end, rows)) {
-    correct_row(results, layout, calibration, correcting->first++);
-  }
-#endif
-}
-
-PF_INLINE bool is_in(uint row, Band band) { return row >= band.first && row < band.end; }
-
-#ifdef PF_PILLAR_LEAK
-/* Removes the leak between pillars from the rows that solve_frame left. */
-kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
-                               global const uchar* restrict calibration,
-                               global uchar* restrict results, Layout layout) {
-  const Band band = band_of_rows((uint)layout.rows);
-  const Band done = rows_behind(band, (uint)layout.rows).leaking;
-  for (uint row = band.first; row < band.end; ++row) {
-    if (!is_in(row, done)) unleak_row(results, layout, row);
-  }
-}
-#endif
-
-#ifdef PF_LEAN
-/* Finds the ratios of the rows that solve_frame left. */
-kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
-                              global const uchar* restrict calibration,
-                              global uchar* restrict results, Layout layout) {
-  const Calibration planes = calibration_of(calibration, results, layout);
-  const Band band = band_of_rows((uint)layout.rows);
-  const Band done = rows_behind(band, (uint)layout.rows).leaning;
-  for (uint row = band.first; row < band.end; ++row) {
-    if (!is_in(row, done)) find_ratios_of_row(results, layout, planes, row);
-  }
-}
-#endif
-
-/* Corrects the rows that solve_frame left by those around them. */
+/* Takes the shear from the mean ratios, and derives the other results from the corrected forces. A
+ * work-item corrects blocks as in solve_frame. */
 kernel void correct_forces(global const PF_SENSEL* restrict raw,
                            global const uchar* restrict calibration, global uchar* restrict results,
                            Layout layout) {
   const Calibration planes = calibration_of(calibration, results, layout);
   const Band band = band_of_rows((uint)layout.rows);
-  const Band done = rows_behind(band, (uint)layout.rows).correcting;
+  const uint cols = (uint)layout.cols;
+  const uint step = (uint)get_global_size(0);
+  const Output output = {results, results, layout.result_bytes, results + layout.status,
+                         results + layout.idle};
   for (uint row = band.first; row < band.end; ++row) {
-    if (!is_in(row, done)) correct_row(results, layout, planes, row);
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      const uint run = idle_run(results, layout, row, at_block);
+      if (run != 0) {
+        at_block += run - 1;
+        continue;
+      }
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) != 0) continue;
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const uint col = block.col;
+      if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
+#ifdef PF_LEAN
+      const ShearRatios ratios = {mean_of_ratios(results, layout, kRatioX, row, (int)col),
+                                  mean_of_ratios(results, layout, kRatioY, row, (int)col)};
+#else
+      const Real none = (Real)(0.0f);
+      const ShearRatios ratios = {{none, none}, {none, none}};
+#endif
+      const Solution solution =
+          correct_solution(load_solution(results, layout, row, col), ratios, planes.stages);
+      store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
+    }
   }
 }
 

@@ -190,15 +190,8 @@ PF_DEFINE_STORE(readings, PF_SENSEL)
 #define PF_STORE_BLOCK(results, plane) PF_STORE_WHOLE(float, results, plane)
 #endif
 
-/* `again`: a later pass reads the values, which stay in the caches. */
-PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes, bool again) {
+PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
   if (are_all(lanes)) {
-#if PF_LANES > 1
-    if (again) {
-      PF_STORE_WHOLE(float, value, plane);
-      return;
-    }
-#endif
     PF_STORE_BLOCK(value, plane);
   } else {
 #if PF_LANES > 1

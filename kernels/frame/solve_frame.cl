@@ -106,6 +106,42 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   return solve_pillar(pillar, noise_of(block, input), calibration.stages);
 }
 
+#define PF_STORE(name, unit, value)                                   \
+  store_plane(solution.value, (global float*)(plane) + index, lanes); \
+  plane += output.plane_bytes;
+
+/* Writes what is derived from the forces of `lanes`, lane 0 at pillar `index`. */
+PF_INLINE void store_derived(Solution solution, Output output, size_t index, Lanes lanes) {
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  global uchar* plane = output.planes + 3 * output.plane_bytes;
+#endif
+#ifdef PF_ANGLES
+  PF_ANGLE_PLANES(PF_STORE)
+#endif
+#ifdef PF_UNCERTAINTY
+  PF_UNCERTAINTY_PLANES(PF_STORE)
+#endif
+}
+
+/* Writes the results of `lanes`. */
+PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
+  global uchar* plane = output.forces;
+  PF_FORCE_PLANES(PF_STORE)
+  store_derived(solution, output, index, lanes);
+  store_status(solution.status, output.status + index, lanes);
+}
+#undef PF_STORE
+
+/* Writes the results of a block; tests once for all planes whether the block is whole. */
+PF_INLINE void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
+  const Lanes whole = {0, PF_LANES};
+  if (are_all(lanes)) {
+    store_lanes(solution, output, index, whole);
+  } else {
+    store_lanes(solution, output, index, lanes);
+  }
+}
+
 /* True if a block is idle and its stored results are already those of an idle block; updates its
  * flag. */
 PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
@@ -127,6 +163,15 @@ PF_INLINE uint next_active(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
   while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
   return at;
+}
+
+/* Lanes of the block at `col` that no other block of its row writes. `place` is its aligned
+ * beginning, counted from `skew` pillars before the row. */
+PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
+  const uint first = max(place, skew) - skew;
+  const uint end = min(place + PF_LANES - skew, cols);
+  const Lanes lanes = {first - col, end - col};
+  return lanes;
 }
 
 /* Solves this work-item's blocks of a pillar row. */
@@ -194,9 +239,6 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);
   bool first = true; /* row of several without a gap */
 #endif
-#ifdef PF_FUSED
-  Behind behind = rows_behind(band, input.rows);
-#endif
   for (uint row = band.first; row < band.end; ++row) {
     global const uchar* const changed = changed_in_row(results, layout, row);
 #ifdef PF_RING
@@ -204,8 +246,5 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
     first = !changed;
 #endif
     if (changed) solve_row(input, output, row, changed);
-#ifdef PF_FUSED
-    correct_behind(&behind, results, layout, input.calibration, row + 1);
-#endif
   }
 }

@@ -37,7 +37,7 @@ std::string name_of_path(const testing::TestParamInfo<Path>& path) {
 
 constexpr int kFrames = 12;
 constexpr int kInFlight = 3;  ///< frames that may overlap on the device
-constexpr std::uint32_t kRows = 2 * 37;
+constexpr std::uint32_t kRows = 2 * 19;
 constexpr std::uint32_t kCols = 2 * 53;
 
 ResponseCurve some_curve(SenselType type) {
