@@ -44,8 +44,9 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   const Real bounded =
       part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
   const Real steep = size_of(d);
-  const Real deviation = PF_REAL(0.0026) + PF_REAL(0.061) * (steep * steep * steep) +
-                         PF_REAL(0.056) * size_of(s) + PF_REAL(0.020) * size_of(e - d);
+  const Real deviation = PF_REAL(0.004) + PF_REAL(0.093) * (steep * steep * steep) +
+                         PF_REAL(0.009) * size_of(s) + PF_REAL(0.076) * (s * s) +
+                         PF_REAL(0.011) * size_of(e - d);
   Lean lean;
   lean.moment = loaded ? own * bounded : zero;
   lean.deviation = loaded ? own * deviation : zero;

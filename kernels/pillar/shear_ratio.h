@@ -38,10 +38,10 @@ PF_INLINE ShearRatio shear_ratio(Real shear, Real normal, Lean lean, Real pitch_
 }
 
 /* The part in the sum of a pillar with the normal force `normal`, whose distance in pillars has the
- * square `distance`. The ratios of neighbours differ by a deviation of 0.32. */
+ * square `distance`. The ratios of neighbours differ by a deviation of 0.3. */
 PF_INLINE RatioSum ratio_part(ShearRatio own, ShearRatio other, Real normal, Real distance) {
   const Real zero = PF_REAL(0.0);
-  const Real spread = PF_REAL(0.1024) * distance;
+  const Real spread = PF_REAL(0.09) * distance;
   const Mask informs = normal > zero && other.variance >= zero;
   RatioSum part;
   part.weight = informs ? PF_REAL(1.0) / (other.variance + spread) : zero;

@@ -66,7 +66,8 @@ const std::array<Sensor, 7>& sensors() {
       {"gains of 5 %", [](SensorModel& s) { s.gain_spread = 0.05; }, 0.15},
       {"arm 0.5 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.5; }, 0.14},
       // The lean that the correction leaves moves the segments themselves (segment.md, section 3).
-      {"arm 0.224 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.224; }, 0.35},
+      // The pillars around bring the midpoint nearer too (E7a): its error falls by more.
+      {"arm 0.224 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.224; }, 0.6},
   }};
   return all;
 }

@@ -288,8 +288,8 @@ TEST(ShearRatio, IsTheMeanOfLeastVariance) {
     std::vector<maths::ShearRatio> around;
     while (around.size() < 8) {
       around.push_back({value(random), variance(random)});
-      weights += 1 / (around.back().variance + 0.1024);
-      sum += around.back().value / (around.back().variance + 0.1024);
+      weights += 1 / (around.back().variance + 0.09);
+      sum += around.back().value / (around.back().variance + 0.09);
     }
     const maths::ShearRatio mean = mean_of(own, around);
     EXPECT_NEAR(mean.value, sum / weights, 1e-12);

@@ -170,13 +170,11 @@ def main(program, folder):
         print(f"{' '.join('dest'[at] for at in term):8}{value:8.3f}")
     left = abs(numpy.clip(z[:, 0] / 6 + columns @ odd, -0.5, 0.5) - moment)
     d, e, s = abs(z[:, 0]), z[:, 1] - z[:, 0], abs(z[:, 2])
-    sizes = numpy.stack([numpy.ones_like(d), d**3, s, abs(e)], 1)
-    deviation = numpy.full_like(d, 0.05)
-    for _ in range(12):  # Each in proportion to its deviation.
-        # 1.15 times the mean absolute value: so intervals of E7a hold 95 %.
-        values = non_negative(sizes / deviation[:, None], 1.15 * left / deviation)
-        deviation = sizes @ values + 1e-4
-    print("deviation of 1, |d|^3, |s|, |e - d|:", *(f"{value:.4f}" for value in values))
+    sizes = numpy.stack([numpy.ones_like(d), d**3, s, s * s, abs(e)], 1)
+    weight = numpy.minimum(own / numpy.sqrt((own**2).mean()), 3**0.5)[:, None]
+    # The mean of the absolute value of a normal error is 0.8 deviations.
+    values = non_negative(sizes * weight, 1.25 * left * weight[:, 0])
+    print("deviation of 1, |d|^3, |s|, s^2, |e - d|:", *(f"{value:.3f}" for value in values))
 
 
 if __name__ == "__main__":
