@@ -11,6 +11,7 @@
 
 #include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/status.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"
 #include "same_bits.h"
@@ -209,7 +210,7 @@ TEST_P(SensorEffectsOnDevice, WiresOfANarrowTileMakeSenselsActive) {
   plan.calibration.tare.assign(plan.skin.sensels(), 1000);
   plan.calibration.effects.wires = {16, 64, 1e-7, 1e-5, 1e-3};
   FrameBuffer frame(path.type, 16, 66);
-  for (const std::size_t i : {4 * 66 + 64, 4 * 66 + 65, 5 * 66 + 64, 5 * 66 + 65}) {
+  for (const std::size_t i : {4UL * 66 + 64, 4UL * 66 + 65, 5UL * 66 + 64, 5UL * 66 + 65}) {
     if (path.type == SenselType::u16) {
       frame.readings<std::uint16_t>()[i] = 1004;
     } else {
