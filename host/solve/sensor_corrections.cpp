@@ -62,7 +62,7 @@ Patch inverse_of(Receives receives) {
         next[place_of(row, col)] = -receives(term, row, col);
       }
     }
-    term = next;
+    term.swap(next);
     double largest = 0;
     for (std::size_t place = 0; place < term.size(); ++place) {
       inverse[place] += term[place];
