@@ -65,7 +65,8 @@ class Distributed(unittest.TestCase):
                 workers, lambda client: pf.distributed.solve(client, self.recording, output, **PLAN))
             self.assertEqual(len(file), 400)
             self.assert_serial(output)
-            self.assertEqual(len(list((WORK / f"workers{workers}.h5.parts").iterdir())), 4 * workers)
+            # One a checkpoint, whatever the number of workers.
+            self.assertEqual(len(list((WORK / f"workers{workers}.h5.parts").iterdir())), 400 // 20)
 
     def test_killed_workers(self):
         rng = random.Random(21)
