@@ -198,8 +198,8 @@ H5FD_class_t driver_class() {
   return driver;
 }
 
-/// The driver's identifier, which stays registered: HDF5 calls a driver's close after it has released
-/// the file's reference to it, so the last one must not be a file's.
+/// The driver's identifier, which stays registered: HDF5 calls a driver's close after it has
+/// released the file's reference to it, so the last one must not be a file's.
 hid_t registered_driver() {
   static const hid_t registered = [] {
     const H5FD_class_t driver = driver_class();
