@@ -105,7 +105,8 @@ class Frames(unittest.TestCase):
             rate_hz = 50 if isinstance(given, pathlib.Path) else None
             self.assertTrue(same(pf.solve(given, tare_frames=30, rate_hz=rate_hz), expected))
         self.assertTrue(same(pf.solve(frames, calibration=step), expected))
-        for wrong in ({"tare_frames": 9}, {"tare_frames": -5}, {"calibration": frames[0]}):
+        for wrong in ({"tare_frames": 9}, {"tare_frames": -5}, {"tare_frames": len(frames)},
+                      {"calibration": frames[0]}):
             with self.assertRaises(pf.Error):
                 pf.solve(frames, **wrong)
         with self.assertRaisesRegex(pf.Error, "an iterator's frames come once"):
