@@ -185,6 +185,12 @@ class PartsTest(PartsFolder):
             damaged = run("compare", self.output, self.recording, "--allow-missing", *trusted)
             self.assertEqual(damaged.stdout, table)
             self.assertIn("It lacks part 2 (frames 7 to 14)", damaged.stderr)
+        parts = lost.parent
+        parts.rename(self.folder / "away")
+        nothing = run("compare", self.output, self.recording, "--allow-missing", expect=1)
+        self.assertIn("no frame holds forces", nothing.stderr.splitlines()[-1])
+        self.assertEqual(nothing.stdout, "")
+        (self.folder / "away").rename(parts)
         # A lost part that comes back is found again.
         run("join", self.output, "--allow-missing")
         self.solve("--part", "2/3")
