@@ -204,7 +204,7 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
   if (batch.pillars > 0) finish();
 }
 
-/// Writes the posterior mean and standard deviation of one pillar's normal force (C9).
+/// Writes the posterior mean and standard deviation of one pillar's normal force (C9, C9a).
 void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model,
                              const Batch& batch, std::size_t i) const {
   const std::uint32_t index = batch.index[i];
@@ -225,6 +225,11 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
     const double weight = variance / (variance + found->variance);
     mean += weight * (found->normal - mean);
     variance *= 1 - weight;
+  }
+  if (lean > 0) {
+    // The lean moves the segment, and both forces with it: the variance stays (C9a).
+    const double apart = parameters_.point_deviation * high;
+    mean += variance / (variance + apart * apart) * (model_.point * high - mean);
   }
   mean = std::min(mean, high);
   const double deviation = std::sqrt(variance);

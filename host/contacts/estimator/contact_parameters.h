@@ -38,6 +38,9 @@ struct ContactParameters {
   double regression_factor = 2.5;
   /// Least relative standard deviation of a predicted normal force.
   double prediction_deviation = 0.03;
+  /// Standard deviation of the true normal force about that of direct on a pillar that leans, as a
+  /// fraction of the segment's upper end; [0.08, 0.15].
+  double point_deviation = 0.15;
   /// Largest standard deviation of the normal force of a resolved pillar (status bit 7), as a
   /// fraction of the segment's upper end.
   double resolved_deviation = 0.1;
