@@ -40,40 +40,62 @@ typedef struct {
   Lanes lanes;
 } OwnBlock;
 
-PF_INLINE uint skew_of(uint row, uint cols) { return (uint)((size_t)row * cols % PF_LANES); }
+/* A row of blocks as in solve_frame. */
+typedef struct {
+  uint cols;
+  uint skew;
+  uint blocks;
+  global const uchar* changed; /* null if no block of the row changed */
+  global const uchar* idle;    /* idle flags; null where none are kept */
+} OwnRow;
 
-PF_INLINE OwnBlock own_block(uint at, uint skew, uint cols) {
+PF_INLINE OwnRow own_row(global const uchar* results, Layout layout, uint at) {
+  OwnRow row;
+  row.cols = (uint)layout.cols;
+  row.skew = (uint)((size_t)at * row.cols % PF_LANES);
+  row.changed = changed_in_row(results, layout, at);
+  row.blocks = row.changed ? (row.skew + row.cols + PF_LANES - 1) / PF_LANES : 0;
+#ifdef PF_SKIP_IDLE
+  row.idle = results + layout.idle + (size_t)at * blocks_of_row(row.cols);
+#else
+  row.idle = 0;
+#endif
+  return row;
+}
+
+PF_INLINE OwnBlock own_block(OwnRow row, uint at) {
   OwnBlock block;
-  block.col = min(max(at * PF_LANES, skew) - skew, cols - PF_LANES);
-  block.lanes = own_lanes(at * PF_LANES, skew, block.col, cols);
+  block.col = min(max(at * PF_LANES, row.skew) - row.skew, row.cols - PF_LANES);
+  block.lanes = own_lanes(at * PF_LANES, row.skew, block.col, row.cols);
   return block;
 }
 
-/* Idle flag of a block; zero where none are kept. */
-PF_INLINE uchar idle_flag(global const uchar* results, Layout layout, uint row, uint at) {
 #ifdef PF_SKIP_IDLE
-  return results[layout.idle + (size_t)row * blocks_of_row((uint)layout.cols) + at];
-#else
-  return 0;
-#endif
-}
-
-#if defined(PF_SKIP_IDLE) && PF_LANES > 1
 typedef struct __attribute__((packed)) {
   ulong value;
 } packed_flags;
 #endif
 
-/* Number of idle blocks from `at` on that a pass may skip together: 8 or none. */
-PF_INLINE uint idle_run(global const uchar* results, Layout layout, uint row, uint at) {
-#if defined(PF_SKIP_IDLE) && PF_LANES > 1
-  const uint blocks = blocks_of_row((uint)layout.cols);
-  if (at + 8 > blocks) return 0;
-  global const uchar* const flags = results + layout.idle + (size_t)row * blocks + at;
-  return ((global const packed_flags*)flags)->value == PF_IDLE * 0x0101010101010101ul ? 8 : 0;
+/* First of this work-item's blocks from `at` on that changed and is active, or has the idle flag
+ * `also`. */
+PF_INLINE uint next_correctable(OwnRow row, uint at, uchar also) {
+  const uint step = (uint)get_global_size(0);
+  while (at < row.blocks) {
+#ifdef PF_SKIP_IDLE
+    const ulong all_idle = PF_IDLE * 0x0101010101010101ul;
+    if (step == 1 && at + 8 <= row.blocks &&
+        ((global const packed_flags*)(row.idle + at))->value == all_idle) {
+      at += 8;
+      continue;
+    }
+    const uchar flag = row.idle[at];
+    if (is_changed(row.changed, at) && (flag == 0 || flag == also)) break;
 #else
-  return 0;
+    if (is_changed(row.changed, at)) break;
 #endif
+    at += step;
+  }
+  return at;
 }
 
 #endif
@@ -102,19 +124,10 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
   for (uint row = band.first; row < band.end; ++row) {
-    global const uchar* const changed = changed_in_row(results, layout, row);
-    if (!changed) continue;
-    const uint skew = skew_of(row, cols);
-    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-         at_block += step) {
-      const uint run = idle_run(results, layout, row, at_block);
-      if (run != 0) {
-        at_block += run - 1;
-        continue;
-      }
-      if (!is_changed(changed, at_block)) continue;
-      if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
-      const OwnBlock block = own_block(at_block, skew, cols);
+    const OwnRow own = own_row(results, layout, row);
+    for (uint at = next_correctable(own, (uint)get_global_id(0), PF_NEWLY_IDLE); at < own.blocks;
+         at = next_correctable(own, at + step, PF_NEWLY_IDLE)) {
+      const OwnBlock block = own_block(own, at);
       const uint col = block.col;
       const Mask loaded = is_loaded(results + layout.status, layout, row, col);
       for (uint plane = 0; plane < 3; ++plane) {
@@ -159,19 +172,10 @@ kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
   global const float* const plane = (global const float*)results;
   const size_t plane_floats = layout.result_bytes / sizeof(float);
   for (uint row = band.first; row < band.end; ++row) {
-    global const uchar* const changed = changed_in_row(results, layout, row);
-    if (!changed) continue;
-    const uint skew = skew_of(row, cols);
-    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-         at_block += step) {
-      const uint run = idle_run(results, layout, row, at_block);
-      if (run != 0) {
-        at_block += run - 1;
-        continue;
-      }
-      if (!is_changed(changed, at_block)) continue;
-      if (idle_flag(results, layout, row, at_block) != 0) continue;
-      const OwnBlock block = own_block(at_block, skew, cols);
+    const OwnRow own = own_row(results, layout, row);
+    for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
+         at = next_correctable(own, at + step, 0)) {
+      const OwnBlock block = own_block(own, at);
       const int col = (int)block.col;
       const Bits status = load_status(results + layout.status + (size_t)row * cols, col, cols);
       if (!any_lane(mask_of(status & PF_BITS(PF_STATUS_PRESSED)))) continue;
@@ -272,19 +276,10 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
   const Output output = {results, results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
   for (uint row = band.first; row < band.end; ++row) {
-    global const uchar* const changed = changed_in_row(results, layout, row);
-    if (!changed) continue;
-    const uint skew = skew_of(row, cols);
-    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
-         at_block += step) {
-      const uint run = idle_run(results, layout, row, at_block);
-      if (run != 0) {
-        at_block += run - 1;
-        continue;
-      }
-      if (!is_changed(changed, at_block)) continue;
-      if (idle_flag(results, layout, row, at_block) != 0) continue;
-      const OwnBlock block = own_block(at_block, skew, cols);
+    const OwnRow own = own_row(results, layout, row);
+    for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
+         at = next_correctable(own, at + step, 0)) {
+      const OwnBlock block = own_block(own, at);
       const uint col = block.col;
       if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
 #ifdef PF_LEAN

@@ -237,6 +237,40 @@ TEST_P(SensorEffectsOnDevice, CorrectionsOfForcesHaveTheBitsOfTheHost) {
   expect_host_bits(plan, true);
 }
 
+/// A contact that jumps along rows of up to 38 blocks: runs of idle blocks, skipped together, begin
+/// and end anywhere.
+TEST_P(SensorEffectsOnDevice, RunsOfIdleBlocksKeepTheBitsOfTheHost) {
+  constexpr std::uint32_t kPillars = 307;
+  SolverPlan plan = bare_plan(12, 2 * kPillars, GetParam().type);
+  plan.skin.threshold_counts = 12;
+  plan.calibration.effects.arm_mm = 0.3;
+  plan.calibration.effects.pillar_leak = {0.03, 0.01};
+  Processor processor(test_device(), plan, {.memory = GetParam().memory},
+                      {.lanes = GetParam().lanes, .paths = {.skip_idle = true}});
+  FrameBuffer buffer(plan.sensel_type, 12, 2 * kPillars);
+  const auto press = [&](auto readings, std::uint32_t first) {
+    std::fill(readings.begin(), readings.end(), 0);
+    for (std::uint32_t row = 2; row < 10; ++row) {
+      for (std::uint32_t col = first; col < first + 10; ++col) {
+        const auto reading = 20 + 7 * (row * col % 13);
+        readings[row * 2 * kPillars + col] =
+            static_cast<std::remove_reference_t<decltype(readings[0])>>(reading);
+      }
+    }
+  };
+  for (std::uint32_t index = 0; index < 24; ++index) {
+    const std::uint32_t first = index * 131 % (2 * kPillars - 10);
+    if (plan.sensel_type == SenselType::u8) {
+      press(buffer.readings<std::uint8_t>(), first);
+    } else {
+      press(buffer.readings<float>(), first);
+    }
+    SCOPED_TRACE(index);
+    processor.submit(buffer.view());
+    expect_same_bits(processor.receive(), solve_on_host(plan, buffer.view()).view());
+  }
+}
+
 /// Patterns of a bent skin.
 void add_patterns(SolverPlan& plan, double spread) {
   std::mt19937 random(3);
