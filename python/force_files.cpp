@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "io/force_planes.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/solver_plan.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
 #include "python/index_range.h"
@@ -72,11 +74,49 @@ Skin skin_of(const ForceReader& reader) {
   return skin;
 }
 
-/// Writes forces in the format of the path's extension.
-void save_forces(const std::filesystem::path& path, const py::dict& planes,
-                 const std::vector<double>& times, const Skin& skin, bool overwrite) {
+SolvedBy solved_by(const SolverPlan& plan) {
+  return {name_of(plan.estimator), plan.segment_point, plan.calibration.effects};
+}
+
+void set(ForceFileInfo& info, const std::optional<SolvedBy>& solved_by) {
+  if (!solved_by) return;
+  info.estimator = solved_by->estimator;
+  info.segment_point = solved_by->segment_point;
+  info.effects = solved_by->effects;
+}
+
+/// {"shear_x_low": float32 [frames, rows, cols], ..., "normal_high": ...}.
+py::dict component_ends_of(const py::dict& planes, const std::optional<SolvedBy>& solved_by) {
   const ForceArrays forces(planes);
   ForceFileInfo info;
+  info.uncertainty = true;
+  set(info, solved_by);
+  FramePlanes frame(info);
+  const Shape shape = {static_cast<py::ssize_t>(forces.frames()), forces.rows(), forces.cols()};
+  const std::size_t pillars = std::size_t{forces.rows()} * forces.cols();
+  py::dict arrays;
+  std::vector<std::pair<ResultPlane, float*>> ends;
+  for (const ResultPlane& plane : frame.planes()) {
+    if (plane.set != PlaneSet::component_ends) continue;
+    py::array_t<float> array(shape);
+    ends.emplace_back(plane, array.mutable_data());
+    arrays[plane.name] = array;
+  }
+  const py::gil_scoped_release unlocked;
+  for (std::size_t i = 0; i < forces.frames(); ++i) {
+    frame.set_frame(forces.frame(i));
+    for (const auto& [plane, to] : ends) std::ranges::copy(frame.of(plane), to + i * pillars);
+  }
+  return arrays;
+}
+
+/// Writes forces in the format of the path's extension.
+void save_forces(const std::filesystem::path& path, const py::dict& planes,
+                 const std::vector<double>& times, const Skin& skin,
+                 const std::optional<SolvedBy>& solved_by, bool overwrite) {
+  const ForceArrays forces(planes);
+  ForceFileInfo info;
+  set(info, solved_by);
   info.rows = forces.rows();
   info.cols = forces.cols();
   info.pillar_pitch_mm = skin.pillar_pitch_mm();
@@ -96,6 +136,8 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
 }  // namespace
 
 void bind_force_files(py::module_& module) {
+  py::class_<SolvedBy>(module, "SolvedBy", "How forces were solved.")
+      .def(py::init(&solved_by), py::arg("plan"));
   py::class_<ForceReader>(module, "ForceReader", kReader)
       .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
            py::arg("trust") = false)
@@ -103,6 +145,13 @@ void bind_force_files(py::module_& module) {
       .def_property_readonly(
           "estimator", [](const ForceReader& self) { return self.info().estimator; },
           "that solved it")
+      .def_property_readonly(
+          "solved_by",
+          [](const ForceReader& self) {
+            const ForceFileInfo& info = self.info();
+            return SolvedBy{info.estimator, info.segment_point, info.effects};
+          },
+          "what the intervals of the components depend on")
       .def_property_readonly(
           "source", [](const ForceReader& self) { return self.info().source; },
           "name of the file of frames")
@@ -116,7 +165,10 @@ void bind_force_files(py::module_& module) {
           "Planes, times and contacts of `count` frames.")
       .def("__len__", &ForceReader::frames);
   module.def("save_forces", &save_forces, py::arg("path"), py::arg("planes"), py::arg("times"),
-             py::arg("skin"), py::arg("overwrite"), "Writes forces as a file.");
+             py::arg("skin"), py::arg("solved_by"), py::arg("overwrite"),
+             "Writes forces as a file.");
+  module.def("component_ends", &component_ends_of, py::arg("planes"), py::arg("solved_by"),
+             "Ends of the 95 % intervals of the components, as planes by name.");
   module.def(
       "kind_of",
       [](const std::filesystem::path& path) {

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pillarfield/sensor_effects.h"
 #include "python/arrays.h"
 #include "solve/result_planes.h"
 
@@ -60,6 +62,13 @@ class ForceCopy {
   std::vector<float> values_;
   std::vector<std::uint8_t> status_;
   ForceFieldView view_;
+};
+
+/// What the 95 % intervals of the components depend on, beside the planes.
+struct SolvedBy {
+  std::string estimator;
+  std::optional<double> segment_point;
+  SensorEffects effects;
 };
 
 /// Arrays of planes that came from Python: {"shear_x": float32 [frames, rows, cols], ...,

@@ -15,7 +15,7 @@ from ._compare import Comparison, compare
 from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, RegionErrors, Scene,
                     SenselFinding, Skin, Surface, __version__)
 from ._error import Error
-from ._field import ForceField, Points, Uncertainty
+from ._field import ForceField, Intervals, Points, Uncertainty
 from ._live import Frame, LiveSink, LiveSource, live, sink
 from ._processor import Contacts, Processor
 from ._recording import ForceFile, Recording, open
@@ -24,7 +24,7 @@ from ._solve import save_recording, solve
 from ._status import Region, Status
 
 __all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
-           "ForceFile", "Frame", "FrameContacts", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
+           "ForceFile", "Frame", "FrameContacts", "Intervals", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
            "RegionErrors", "Scene", "SenselFinding", "Simulation", "Skin", "Status", "Surface",
            "Uncertainty", "__version__", "calibrate", "compare",
            "distributed", "live", "open", "save_recording", "scene",

@@ -47,6 +47,22 @@ class Uncertainty:
 
 
 @dataclasses.dataclass(frozen=True)
+class Intervals:
+    """Ends of the 95 % intervals of the forces, N, float32 arrays of their shape.
+
+    Noise included; a normal force is not below zero. The interval of an ambiguous pillar spans what
+    its estimator leaves possible (docs/formats.md).
+    """
+
+    shear_x_low: Floats
+    shear_x_high: Floats
+    shear_y_low: Floats
+    shear_y_high: Floats
+    normal_low: Floats
+    normal_high: Floats
+
+
+@dataclasses.dataclass(frozen=True)
 class Points:
     """Forces as vectors at points, for simulators and learning.
 
@@ -78,7 +94,7 @@ class ForceField:
     <ForceField: 1 frame of 2 x 3 pillars, 1..1 N, 0 % ambiguous>
     """
 
-    __slots__ = ("_planes", "_times", "_contacts", "_skin")
+    __slots__ = ("_planes", "_times", "_contacts", "_skin", "_solved_by")
 
     def __init__(self, shear_x: npt.ArrayLike, shear_y: npt.ArrayLike, normal: npt.ArrayLike, *,
                  status: Optional[npt.ArrayLike] = None, times: Optional[npt.ArrayLike] = None,
@@ -99,18 +115,20 @@ class ForceField:
 
     def _set(self, planes: Mapping[str, Any], times: Doubles,
              contacts: Optional[Sequence[_core.FrameContacts]],
-             skin: Optional[_core.Skin]) -> None:
+             skin: Optional[_core.Skin], solved_by: Optional[_core.SolvedBy] = None) -> None:
         self._planes = planes
         self._times = times
         self._contacts = contacts
         self._skin = skin
+        self._solved_by = solved_by
 
     @classmethod
     def _of(cls, planes: Mapping[str, Any], times: Doubles,
             contacts: Optional[Sequence[_core.FrameContacts]],
-            skin: Optional[_core.Skin]) -> ForceField:
+            skin: Optional[_core.Skin],
+            solved_by: Optional[_core.SolvedBy] = None) -> ForceField:
         field = cls.__new__(cls)
-        field._set(planes, times, contacts, skin)
+        field._set(planes, times, contacts, skin, solved_by)
         return field
 
     def _plane(self, name: str, output: str) -> Floats:
@@ -169,6 +187,13 @@ class ForceField:
                              for field in dataclasses.fields(Uncertainty)))
 
     @property
+    def intervals(self) -> Intervals:
+        """95 % intervals of the components, computed anew; with the output 'uncertainty'."""
+        self._plane("uncertainty_normal", "uncertainty")
+        ends = _core.component_ends(self._batch(), self._solved_by)
+        return Intervals(**{name: plane.reshape(self.shape) for name, plane in ends.items()})
+
+    @property
     def outputs(self) -> list[str]:
         """The optional outputs that it has: of 'angles' and 'uncertainty'."""
         names = {"theta": "angles", "uncertainty_normal": "uncertainty"}
@@ -214,7 +239,8 @@ class ForceField:
         if contacts is not None:
             contacts = contacts[frames] if isinstance(frames, slice) else [contacts[frames]]
         planes = {name: plane[frames] for name, plane in self._planes.items()}
-        return self._of(planes, np.asarray(self._times[frames]), contacts, self._skin)
+        return self._of(planes, np.asarray(self._times[frames]), contacts, self._skin,
+                        self._solved_by)
 
     def __iter__(self) -> Iterator[ForceField]:
         """The frames."""
@@ -223,7 +249,7 @@ class ForceField:
     def copy(self) -> ForceField:
         """The same field in memory of its own, writeable."""
         planes = {name: plane.copy() for name, plane in self._planes.items()}
-        return self._of(planes, self._times.copy(), self._contacts, self._skin)
+        return self._of(planes, self._times.copy(), self._contacts, self._skin, self._solved_by)
 
     def _batch(self) -> dict[str, Any]:
         """Dense planes [T, P, Q]."""
@@ -237,7 +263,8 @@ class ForceField:
         overwrite: replace any file, not only other results. Raises Error if it cannot be written.
         """
         skin = self._skin or _core.Skin(2 * self.shape[-2], 2 * self.shape[-1])
-        _core.save_forces(path, self._batch(), self._times.reshape(-1), skin, overwrite)
+        _core.save_forces(path, self._batch(), self._times.reshape(-1), skin, self._solved_by,
+                          overwrite)
 
     def __repr__(self) -> str:
         frames = len(self)

@@ -137,7 +137,8 @@ class Processor:
     def _field(self, planes: dict[str, Any]) -> ForceField:
         contacts = planes.pop("contacts", None)
         return ForceField._of(planes, np.asarray(planes.pop("times")),
-                              None if contacts is None else [contacts], self._plan.skin)
+                              None if contacts is None else [contacts], self._plan.skin,
+                              _core.SolvedBy(self._plan))
 
 
 class Contacts:

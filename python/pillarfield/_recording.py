@@ -147,7 +147,8 @@ class ForceFile:
     def __getitem__(self, frames: Union[int, slice]) -> ForceField:
         """Forces of a frame, planes [P, Q], or of a slice, [T, P, Q]."""
         planes = self._reader.read(*range_of(frames, len(self)))
-        field = ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), self.skin)
+        field = ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), self.skin,
+                               self._reader.solved_by)
         return field if isinstance(frames, slice) else field[0]
 
     def __iter__(self) -> Iterator[ForceField]:

@@ -213,4 +213,5 @@ def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibrati
 
 
 def _field_of(planes: dict[str, Any], plan: _core.Plan) -> ForceField:
-    return ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), plan.skin)
+    return ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), plan.skin,
+                          _core.SolvedBy(plan))

@@ -7,6 +7,7 @@ import struct
 import unittest
 import zlib
 
+import h5py
 import numpy as np
 
 import pillarfield as pf
@@ -38,6 +39,28 @@ class Files(unittest.TestCase):
         cls.forces = pf.solve(cls.simulation, outputs=["uncertainty"], contacts=True)
         pf.save_recording(WORK / "press.h5", cls.simulation, overwrite=True)
         cls.forces.save(WORK / "forces.h5", overwrite=True)
+
+    def test_intervals(self):
+        """Those of the file, whose ambiguous pillars span their segments; kept when saved again."""
+        ends = self.forces.intervals
+        names = ("shear_x_low", "shear_x_high", "shear_y_low", "shear_y_high", "normal_low", "normal_high")
+        again = pf.open(WORK / "forces.h5")[:]
+        again.copy()[1:].save(WORK / "again.h5", overwrite=True)
+        for path, first in (("forces.h5", 0), ("again.h5", 1)):
+            with h5py.File(WORK / path) as file:
+                for name in names:
+                    np.testing.assert_array_equal(file[f"uncertainty/{name}"], getattr(ends, name)[first:])
+        frame = self.forces[len(self.forces) // 2]
+        np.testing.assert_array_equal(frame.intervals.normal_high, ends.normal_high[len(self.forces) // 2])
+        ambiguous = (self.forces.region == pf.Region.THREE) & (self.forces.normal > 0)
+        self.assertTrue(ambiguous.any())
+        most = self.forces.normal + 1.96 * self.forces.uncertainty.normal
+        simple = pf.ForceField(self.forces.shear_x, self.forces.shear_y, self.forces.normal)
+        self.assertTrue((ends.normal_low[ambiguous] < 0.5 * self.forces.normal[ambiguous]).all())
+        determined = (self.forces.region == pf.Region.ONE)
+        np.testing.assert_allclose(ends.normal_high[determined], most[determined], rtol=1e-6)
+        with self.assertRaisesRegex(pf.Error, "uncertainty"):
+            simple.intervals
 
     def test_parts(self):
         """Parts that any engine solves, joined; a lost one reads as NaN."""
