@@ -7,6 +7,7 @@ import os
 
 import page
 import sensor_scenes as scenes
+import processors
 import speed
 from page import met_or_not, percent, text
 
@@ -158,7 +159,7 @@ def main(docs, measured, timed):
     ideal = found["ideal"]
     page.write(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
                body_rows=body_rows(found), time_rows=time_rows(bench),
-               processor=speed.processor_name(), threads=os.cpu_count(),
+               processor=processors.name(), threads=os.cpu_count(),
                goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
                ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),
                ideal_wrong=percent(share(ideal, "wrong")), ideal_coverage=coverage(ideal),

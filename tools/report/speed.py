@@ -1,7 +1,8 @@
 """speed.py DOCS BENCH LIVE: writes DOCS/performance.md with its pictures.
 
 BENCH is the output of pillarfield-bench --benchmark_format=json, LIVE that of `pillarfield pace
---json`."""
+--json`. What they say of the goals is kept in DOCS/measured, a file for each kind of processor; the
+page shows all of them."""
 
 import math
 import os
@@ -10,7 +11,8 @@ from pathlib import Path
 
 import page
 import pictures
-from page import Failure, met_or_not, percent, text
+import processors
+from page import Failure, percent, text
 
 
 class Bench:
@@ -104,18 +106,24 @@ GOALS = (
 )
 
 
-def goal_row(what, sign, limit, measured):
-    """Numbers have three significant digits, from 100 on all of their whole digits."""
+def goals(bench, live):
+    """What this run measured, by goal; None where it did not."""
+    return {what: measure(bench, live) for what, _, _, measure in GOALS}
+
+
+def goal_cell(sign, limit, measured):
+    """Three significant digits, from 100 on all of the whole digits; bold where the goal is not met."""
     if measured is None:
-        return [what, f"{sign} {limit:g}", "–", "not measured"]
+        return "–"
     met = measured >= limit if sign == "≥" else measured <= limit
-    return [what, f"{sign} {limit:g}", format(measured, ".0f" if measured >= 100 else ".3g"),
-            met_or_not(met)]
+    number = format(measured, ".0f" if measured >= 100 else ".3g")
+    return number if met else f"**{number}**"
 
 
-def goal_rows(bench, live):
-    return [goal_row(what, sign, limit, measure(bench, live))
-            for what, sign, limit, measure in GOALS]
+def goal_rows(kept):
+    """A column for each processor."""
+    for what, sign, limit, _ in GOALS:
+        yield [what, f"{sign} {limit:g}", *(goal_cell(sign, limit, one["goals"].get(what)) for one in kept)]
 
 
 # --- Error against time ---
@@ -372,13 +380,6 @@ def caches_text(caches):
     return ", ".join(texts)
 
 
-def processor_name():
-    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return "unknown"
-
-
 def loads_text(loads):
     return ", ".join(f"{load:.2f}" for load in loads)
 
@@ -398,8 +399,13 @@ def main(docs, bench_json, live_json):
     draw_variants(ways, front, folder)
     draw_sizes(found, bare, every, folder)
     draw_latency(bench, live, folder)
+    context = {"commit": "unknown"} | bench.context
+    kept = processors.keep(docs, "goals", {"date": context["date"][:10], "commit": context["commit"],
+                                           "goals": goals(bench, live)})
     page.write(
-        docs, "performance", goal_rows=goal_rows(bench, live),
+        docs, "performance", goal_rows=goal_rows(kept),
+        goal_heads=" | ".join(one["processor"] for one in kept), goal_aligns="--:|" * len(kept),
+        goal_dates="; ".join(f"{one['processor']}: {one['date']}, commit {one['commit']}" for one in kept),
         error_pillars=ways[0]["error_pillars"], variants=len(ways),
         front=front_text(front, "error_over_bound", "times the bound"),
         front_by_counts=front_text(front_by(ways, "error_counts"), "error_counts", "counts"),
@@ -409,7 +415,7 @@ def main(docs, bench_json, live_json):
         live_pillars=live["pillar_rows"] * live["pillar_cols"],
         contact_share=percent(live["contact_share"]), baseline_rows=baseline_rows(bench),
         stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
-        context={"commit": "unknown"} | bench.context, processor=processor_name(),
+        context=context, processor=processors.name(),
         caches=caches_text(bench.context["caches"]),
         system=f"{platform.freedesktop_os_release()['PRETTY_NAME']}, kernel {platform.release()}",
         load_before=loads_text(bench.context["load_avg"]), load_after=loads_text(os.getloadavg()))

@@ -3,13 +3,12 @@
 MEASURED is the output of measure_choices.py, TIMED that of pillarfield-bench of its cases choice/.
 The times are kept in DOCS/measured, a file for each kind of processor; the page shows all of them."""
 
-import json
 import math
-import re
 from pathlib import Path
 
 import page
 import pictures
+import processors
 import sensor_scenes as scenes
 import speed
 from page import percent, text
@@ -48,15 +47,9 @@ def times(bench):
 
 def keep_times(docs, bench):
     """Adds this processor's times to those kept, and returns all by processor."""
-    folder = Path(docs, "measured")
-    folder.mkdir(exist_ok=True)
-    name = speed.processor_name()
-    found = {"processor": name, "cores": bench.context["num_cpus"], "date": bench.context["date"][:10],
-             "load": bench.context["load_avg"][0], "times": times(bench)}
-    path = folder / f"choices_{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}.json"
-    path.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    kept = [page.load(path) for path in sorted(folder.glob("choices_*.json"))]
-    return sorted(kept, key=lambda one: one["processor"] != name)
+    return processors.keep(docs, "choices", {
+        "cores": bench.context["num_cpus"], "date": bench.context["date"][:10],
+        "load": bench.context["load_avg"][0], "times": times(bench)})
 
 
 def time_cells(kept, case):
