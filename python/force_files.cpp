@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/extension.h"
 #include "io/force_planes.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/force_file.h"
@@ -75,7 +76,9 @@ Skin skin_of(const ForceReader& reader) {
 }
 
 SolvedBy solved_by(const SolverPlan& plan) {
-  return {name_of(plan.estimator), plan.segment_point, plan.calibration.effects};
+  SolvedBy how{name_of(plan.estimator), plan.segment_point, plan.calibration.effects, {}};
+  set_sensor(how.contacts.emplace(), plan);
+  return how;
 }
 
 void set(ForceFileInfo& info, const std::optional<SolvedBy>& solved_by) {
@@ -112,8 +115,9 @@ py::dict component_ends_of(const py::dict& planes, const std::optional<SolvedBy>
 
 /// Writes forces in the format of the path's extension.
 void save_forces(const std::filesystem::path& path, const py::dict& planes,
-                 const std::vector<double>& times, const Skin& skin,
-                 const std::optional<SolvedBy>& solved_by, bool overwrite) {
+                 const std::vector<double>& times,
+                 const std::optional<std::vector<std::shared_ptr<FrameContacts>>>& contacts,
+                 const Skin& skin, const std::optional<SolvedBy>& solved_by, bool overwrite) {
   const ForceArrays forces(planes);
   ForceFileInfo info;
   set(info, solved_by);
@@ -123,12 +127,16 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   info.angles = planes.contains("theta");
   info.uncertainty = planes.contains("uncertainty_normal");
   info.surface = skin.surface;
+  if (contacts && solved_by && is_hdf5_name(path)) info.contacts = solved_by->contacts;
   const py::gil_scoped_release unlocked;
   const auto sink = create_force_sink(path, info, overwrite ? Replace::anything : Replace::results);
   SignalCheck check_signals;
   for (std::size_t i = 0; i < forces.frames(); ++i) {
     check_signals();
-    sink->append({.forces = forces.frame(i), .time_s = times.at(i), .sequence = i});
+    sink->append({.forces = forces.frame(i),
+                  .contacts = contacts ? contacts->at(i).get() : nullptr,
+                  .time_s = times.at(i),
+                  .sequence = i});
   }
   sink->finish();
 }
@@ -149,7 +157,7 @@ void bind_force_files(py::module_& module) {
           "solved_by",
           [](const ForceReader& self) {
             const ForceFileInfo& info = self.info();
-            return SolvedBy{info.estimator, info.segment_point, info.effects};
+            return SolvedBy{info.estimator, info.segment_point, info.effects, info.contacts};
           },
           "what the intervals of the components depend on")
       .def_property_readonly(
@@ -165,7 +173,7 @@ void bind_force_files(py::module_& module) {
           "Planes, times and contacts of `count` frames.")
       .def("__len__", &ForceReader::frames);
   module.def("save_forces", &save_forces, py::arg("path"), py::arg("planes"), py::arg("times"),
-             py::arg("skin"), py::arg("solved_by"), py::arg("overwrite"),
+             py::arg("contacts"), py::arg("skin"), py::arg("solved_by"), py::arg("overwrite"),
              "Writes forces as a file.");
   module.def("component_ends", &component_ends_of, py::arg("planes"), py::arg("solved_by"),
              "Ends of the 95 % intervals of the components, as planes by name.");

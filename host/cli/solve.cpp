@@ -30,11 +30,6 @@
 namespace pillarfield::cli {
 namespace {
 
-bool is_hdf5(const std::string& file) {
-  const std::string ending = extension_of(file);
-  return ending == ".h5" || ending == ".hdf5";
-}
-
 /// Returns the table of contacts, unless contacts go into the force file alone. Throws Error where
 /// they cannot be written as the options name them.
 std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
@@ -42,11 +37,11 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
   if (file.empty()) return std::nullopt;
   check(options.contacts, "the command line");
   if (name_same_file(file, options.output)) {
-    if (is_hdf5(options.output)) return std::nullopt;
+    if (is_hdf5_name(options.output)) return std::nullopt;
     throw Error(file, "forces and contacts cannot share this file",
                 "name another file for contacts");
   }
-  if (is_hdf5(file)) {
+  if (is_hdf5_name(file)) {
     throw Error(file, "its ending is no format of contacts",
                 fmt::format("end it in {}, or name the .h5 file of forces",
                             endings_of(OutputKind::contacts)));
@@ -94,7 +89,8 @@ SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
 ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {
   ForceFileInfo info =
       file_info(plan, device, std::filesystem::path(options.input).filename().string());
-  if (!options.contacts_file.empty() && is_hdf5(options.output)) info.contacts = options.contacts;
+  if (!options.contacts_file.empty() && is_hdf5_name(options.output))
+    info.contacts = options.contacts;
   return info;
 }
 
@@ -278,7 +274,7 @@ void solve_parts(const Job& job, SolveSummary& summary) {
 
 void check_part_options(const SolveOptions& options) {
   if (options.parts.part.empty() && options.parts.parts.empty()) return;
-  if (!is_hdf5(options.output)) {
+  if (!is_hdf5_name(options.output)) {
     throw Error(options.output, "parts are HDF5 files", "end its name in .h5");
   }
   if (options.contacts_file.empty() || name_same_file(options.contacts_file, options.output))

@@ -12,4 +12,9 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
+bool is_hdf5_name(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".h5" || extension == ".hdf5";
+}
+
 }  // namespace pillarfield

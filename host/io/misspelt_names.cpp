@@ -70,7 +70,7 @@ std::vector<KnownGroup> known_groups() {
   namespace format = recording_format;
   return {
       {"/", {"format", "version"}, {"frames", "skin", "calibration", "truth", "surface"}},
-      {format::kFrames, {}, {"raw", "time"}},
+      {format::kFrames, {}, {"raw", "time", "missing"}},
       {format::kSkin,
        {format::kPitch, format::kCountsPerNewton, format::kThreshold, format::kFullScale,
         format::kExponent, format::kReference},

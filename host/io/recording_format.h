@@ -14,6 +14,7 @@ inline constexpr int kSparseTruthSince = 2;  ///< the truth may lack chunks
 inline constexpr const char* kFrames = "/frames";
 inline constexpr const char* kRaw = "/frames/raw";
 inline constexpr const char* kTime = "/frames/time";
+inline constexpr const char* kMissing = "/frames/missing";
 
 inline constexpr const char* kSkin = "/skin";
 inline constexpr const char* kPitch = "sensel_pitch_mm";

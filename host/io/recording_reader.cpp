@@ -37,6 +37,7 @@ class Recording final : public FileSource {
   void check_times(const ReadOptions& options);
   void open_truth();
   void count_frames();
+  void warn_of_missing();
   [[nodiscard]] std::string place(const char* object) const;
 
   hdf5::File file_;
@@ -69,6 +70,7 @@ Recording::Recording(hdf5::File file, const ReadOptions& options)
   open_truth();
   count_frames();
   check_times(options);
+  warn_of_missing();
   warn_of_size();
   for (std::string& warning : misspelt_names(file_)) warnings_.push_back(std::move(warning));
 }
@@ -91,6 +93,27 @@ void Recording::check_times(const ReadOptions& options) {
     time_->get_all(first, times_s.size(), H5T_NATIVE_DOUBLE, times_s.data());
     rising.add(times_s);
   }
+}
+
+/// Float readings say so themselves.
+void Recording::warn_of_missing() {
+  if (file_.probing || type_ == SenselType::f32) return;
+  if (!hdf5::exists(file_, recording_format::kMissing)) return;
+  const hdf5::StoredFrames missing(file_, recording_format::kMissing, 0);
+  constexpr std::uint64_t kBlock = 1U << 16U;
+  const std::uint64_t frames = std::min(frames_, missing.frames());
+  std::vector<double> sensels;
+  std::uint64_t incomplete = 0;
+  for (std::uint64_t first = 0; first < frames; first += kBlock) {
+    sensels.resize(std::min(kBlock, frames - first));
+    missing.get_all(first, sensels.size(), H5T_NATIVE_DOUBLE, sensels.data());
+    incomplete += static_cast<std::uint64_t>(
+        std::ranges::count_if(sensels, [](double count) { return count > 0; }));
+  }
+  if (incomplete == 0) return;
+  warnings_.push_back(fmt::format(
+      "{} of {} frames arrived incomplete: the sensels that did not arrive hold earlier readings.",
+      incomplete, frames_));
 }
 
 std::string Recording::place(const char* object) const {

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
+#include "io/hdf5/plane.h"
 #include "io/hdf5/tiled_frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
@@ -36,6 +39,8 @@ struct RecordingWriter::State {
   void create_datasets();
   void check_frame(const FrameView& frame, double time_s, const ForceField* field) const;
   void put_truth(const ForceField& field);
+  void append(const FrameView& frame, double time_s, const ForceField* field,
+              std::uint32_t missing_sensels);
   void require_open() const;
   void flush();
   void close();
@@ -48,6 +53,9 @@ struct RecordingWriter::State {
   hdf5::File file;
   hdf5::ExtendibleDataset raw;
   hdf5::ExtendibleDataset time;
+  hdf5::ExtendibleDataset missing;  // if options.missing
+  bool has_tare;
+  std::vector<float> holed;                // a frame with NaN where sensels are missing
   std::array<hdf5::TiledFrames, 3> truth;  // shear_x, shear_y, normal
   std::uint64_t frames = 0;
   std::uint64_t flushed = 0;
@@ -61,7 +69,8 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
       options(writer_options),
       path(checked(final_path, frame_skin, sensel_type, calibration, writer_options)),
       part(path, OutputKind::recording, writer_options.replace),
-      file(hdf5::create(part)) {
+      file(hdf5::create(part)),
+      has_tare(!calibration.tare.empty()) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(recording_format::kName));
   hdf5::write_attribute(file, file.id.get(), "version",
                         options.truth ? recording_format::kSparseTruthSince : 1);
@@ -90,6 +99,7 @@ void RecordingWriter::State::create_datasets() {
   raw = {
       file, recording_format::kRaw, recording_format::stored_type_of(type), {skin.rows, skin.cols}};
   time = {file, recording_format::kTime, H5T_IEEE_F64LE, {}};
+  if (options.missing) missing = {file, recording_format::kMissing, H5T_STD_U32LE, {}};
   if (!options.truth) return;
   const hdf5::Handle truth_group = hdf5::create_group(file, recording_format::kTruth);
   for (std::size_t plane = 0; plane < truth.size(); ++plane) {
@@ -129,6 +139,17 @@ void RecordingWriter::State::put_truth(const ForceField& field) {
   }
 }
 
+void RecordingWriter::State::append(const FrameView& frame, double time_s, const ForceField* field,
+                                    std::uint32_t missing_sensels) {
+  check_frame(frame, time_s, field);
+  raw.put(frames, recording_format::memory_type_of(type), frame.data, frame.row_stride);
+  if (field != nullptr) put_truth(*field);
+  time.put(frames, H5T_NATIVE_DOUBLE, &time_s);
+  if (options.missing) missing.put(frames, H5T_NATIVE_UINT32, &missing_sensels);
+  ++frames;
+  if (frames % options.flush_every == 0) flush();
+}
+
 void RecordingWriter::State::require_open() const {
   if (file.id.valid()) return;
   throw Error(path.string(), "is finished", "start another recording");
@@ -144,6 +165,7 @@ void RecordingWriter::State::flush() {
 void RecordingWriter::State::close() {
   raw.close();
   time.close();
+  missing.close();
   for (auto& plane : truth) plane.close();
   hdf5::close(file);
 }
@@ -166,13 +188,53 @@ RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = defaul
 void RecordingWriter::append(const FrameView& frame, double time_s, const ForceField* truth) {
   const hdf5::QuietErrors quiet;
   state_->require_open();
-  state_->check_frame(frame, time_s, truth);
-  state_->raw.put(state_->frames, recording_format::memory_type_of(state_->type), frame.data,
-                  frame.row_stride);
-  if (truth != nullptr) state_->put_truth(*truth);
-  state_->time.put(state_->frames, H5T_NATIVE_DOUBLE, &time_s);
-  ++state_->frames;
-  if (state_->frames % state_->options.flush_every == 0) state_->flush();
+  state_->append(frame, time_s, truth, 0);
+}
+
+void RecordingWriter::append_incomplete(const FrameView& frame, double time_s,
+                                        std::span<const SenselBlock> missing) {
+  const hdf5::QuietErrors quiet;
+  State& state = *state_;
+  state.require_open();
+  state.check_frame(frame, time_s, nullptr);
+  if (!state.options.missing) {
+    throw Error(state.path.string(), "a frame lacks sensels", "set Options::missing");
+  }
+  std::uint32_t sensels = 0;
+  for (const SenselBlock& block : missing) {
+    if (block.first_row > frame.rows || block.rows > frame.rows - block.first_row ||
+        block.first_col > frame.cols || block.cols > frame.cols - block.first_col) {
+      throw Error(state.path.string(), "a missing block lies outside the frame", "check the block");
+    }
+    sensels += block.rows * block.cols;
+  }
+  if (state.type != SenselType::f32) return state.append(frame, time_s, nullptr, sensels);
+  const auto* const readings = static_cast<const float*>(frame.data);
+  state.holed.resize(std::size_t{frame.rows} * frame.cols);
+  for (std::size_t row = 0; row < frame.rows; ++row) {
+    std::copy_n(readings + row * frame.row_stride, frame.cols, &state.holed[row * frame.cols]);
+  }
+  for (const SenselBlock& block : missing) {
+    for (std::size_t row = block.first_row; row < block.first_row + block.rows; ++row) {
+      std::fill_n(&state.holed[row * frame.cols + block.first_col], block.cols,
+                  std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  state.append({state.holed.data(), state.type, frame.rows, frame.cols, frame.cols}, time_s,
+               nullptr, sensels);
+}
+
+void RecordingWriter::set_tare(const std::vector<float>& tare) {
+  const hdf5::QuietErrors quiet;
+  state_->require_open();
+  if (!state_->has_tare) {
+    throw Error(state_->path.string(), "was created without a tare", "give one, of zeros");
+  }
+  Calibration calibration;
+  calibration.tare = tare;
+  check(calibration, state_->skin, state_->path.string(), state_->type);
+  if (tare.empty()) return;
+  hdf5::rewrite_plane(state_->file, recording_format::kTare, H5T_NATIVE_FLOAT, tare.data());
 }
 
 void RecordingWriter::flush() {

@@ -28,6 +28,7 @@ void run_frames(FrameStream& stream, Ring& ring, const std::function<bool()>& st
     }
     if (open && ring.in_flight() < ring.capacity()) {
       StreamedFrame& frame = ring.vacant();
+      frame.sequence = expected;  // Streams may leave it where no frame arrives.
       const Arrival arrival =
           stream.next(frame, ring.in_flight() > 0 ? std::chrono::milliseconds(0) : kPatience);
       if (knows_expected && frame.sequence > expected) {

@@ -25,8 +25,9 @@ std::span<const LiveSinkKind> live_sink_kinds() {
 std::unique_ptr<LiveSink> create_live_sink(const std::string& target, const LiveSinkInfo& info) {
   const auto kinds = live_sink_kinds();
   const auto kind = std::ranges::find_if(kinds, [&](const LiveSinkKind& candidate) {
-    return candidate.prefix.starts_with('.') ? target.ends_with(candidate.prefix)
-                                             : (target + ":").starts_with(candidate.prefix);
+    if (candidate.prefix.starts_with('.')) return target.ends_with(candidate.prefix);
+    return target.starts_with(candidate.prefix) ||
+           (candidate.stands_alone && target + ":" == candidate.prefix);
   });
   if (kind != kinds.end()) return kind->create(target, info);
   if (format_by_extension(target, OutputKind::forces) != nullptr) {

@@ -11,8 +11,9 @@ namespace pillarfield {
 
 /// A kind of live sink, defined beside its class and listed in live_sink.cpp.
 struct LiveSinkKind {
-  std::string_view prefix;  ///< "udp:", or an extension ".mcap"
-  const char* form = "";    ///< for messages: "udp:ADDRESS:PORT"
+  std::string_view prefix;    ///< "udp:", or an extension ".mcap"
+  const char* form = "";      ///< for messages: "udp:ADDRESS:PORT"
+  bool stands_alone = false;  ///< the prefix without its colon is a whole target
   /// Creates the sink for the whole target.
   std::unique_ptr<LiveSink> (*create)(const std::string& target,
                                       const LiveSinkInfo& info) = nullptr;

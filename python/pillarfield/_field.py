@@ -260,11 +260,13 @@ class ForceField:
     def save(self, path: Path, *, overwrite: bool = False) -> None:
         """Writes the forces; the extension chooses the format (docs/formats.md): .h5, .csv, .npy.
 
+        Contacts are written too, in .h5.
+
         overwrite: replace any file, not only other results. Raises Error if it cannot be written.
         """
         skin = self._skin or _core.Skin(2 * self.shape[-2], 2 * self.shape[-1])
-        _core.save_forces(path, self._batch(), self._times.reshape(-1), skin, self._solved_by,
-                          overwrite)
+        _core.save_forces(path, self._batch(), self._times.reshape(-1), self._contacts, skin,
+                          self._solved_by, overwrite)
 
     def __repr__(self) -> str:
         frames = len(self)

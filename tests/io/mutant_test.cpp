@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <numeric>
 
 #include "pillarfield/recording.h"
 #include "tests/io/sample_files.h"

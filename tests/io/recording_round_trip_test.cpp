@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 #include "tests/io/sample_files.h"
 
@@ -139,6 +142,63 @@ void expect_round_trip(const Skin& skin, SenselType type, const Calibration& cal
     EXPECT_EQ(forces.shear_y, expected.shear_y);
     EXPECT_EQ(forces.normal, expected.normal);
   }
+}
+
+/// A frame of which two blocks did not arrive, after a whole one.
+void expect_incomplete_frames(SenselType type) {
+  const TemporaryDirectory directory;
+  Skin skin;
+  skin.rows = 20;
+  skin.cols = 12;
+  Calibration calibration;
+  calibration.tare.assign(skin.sensels(), 0);
+  const auto path = directory / "recording.h5";
+  RecordingWriter writer(path, skin, type, calibration, {.missing = true});
+  FrameBuffer frame(type, skin.rows, skin.cols);
+  fill_frame(1, frame);
+  writer.append(frame.view(), 0);
+  const std::array<SenselBlock, 2> lost = {{{0, 3, 4, 8}, {19, 1, 0, 12}}};
+  writer.append_incomplete(frame.view(), 1, lost);
+  const std::array<SenselBlock, 1> beyond = {{{18, 3, 0, 1}}};
+  EXPECT_THROW(writer.append_incomplete(frame.view(), 2, beyond), Error);
+  calibration.tare.assign(skin.sensels(), 3);
+  writer.set_tare(calibration.tare);
+  EXPECT_THROW(writer.set_tare({1}), Error);
+  writer.finish();
+
+  const auto source = open_frames(path);
+  ASSERT_EQ(source->frames(), 2);
+  EXPECT_EQ(source->calibration().tare, calibration.tare);
+  FrameBuffer read(type, skin.rows, skin.cols);
+  source->read(0, read);
+  EXPECT_TRUE(std::ranges::equal(read.bytes(), frame.bytes()));
+  source->read(1, read);
+  const auto warns = std::ranges::count_if(source->warnings(), [](const std::string& warning) {
+    return warning.starts_with("1 of 2 frames arrived incomplete");
+  });
+  if (type != SenselType::f32) {
+    EXPECT_EQ(warns, 1);
+    EXPECT_TRUE(std::ranges::equal(read.bytes(), frame.bytes()));
+    return;
+  }
+  EXPECT_EQ(warns, 0);
+  const auto* const before = static_cast<const float*>(frame.view().data);
+  const auto* const after = static_cast<const float*>(read.view().data);
+  for (std::uint32_t i = 0; i < skin.sensels(); ++i) {
+    const std::uint32_t row = i / skin.cols;
+    const bool is_lost = (row < 3 && i % skin.cols >= 4) || row == 19;
+    EXPECT_TRUE(is_lost ? std::isnan(after[i]) : after[i] == before[i]) << i;
+  }
+}
+
+TEST(RecordingRoundTrip, StatesFramesThatArrivedIncompleteAndATareThatCameLater) {
+  expect_incomplete_frames(SenselType::u8);
+  expect_incomplete_frames(SenselType::f32);
+  const TemporaryDirectory directory;
+  Skin skin;
+  skin.rows = skin.cols = 4;
+  RecordingWriter writer(directory / "r.h5", skin, SenselType::u8, {}, {});
+  EXPECT_THROW(writer.set_tare(std::vector<float>(16, 1)), Error);
 }
 
 TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {

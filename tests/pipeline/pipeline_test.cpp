@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -196,6 +197,34 @@ TEST(Pipeline, CountsMissingSequenceNumbers) {
   std::vector<std::uint64_t> numbers;
   for (const auto& frame : sink.frames) numbers.push_back(frame.sequence);
   EXPECT_EQ(numbers, (std::vector<std::uint64_t>{90, 91, 95, 96, 3, 4}));
+}
+
+/// Frames 10, 11, 0, 1, each after a time-out that leaves the number of the frame as it is.
+class Restarting final : public FrameStream {
+ public:
+  [[nodiscard]] const Skin& skin() const override { return kSkin; }
+  [[nodiscard]] SenselType sensel_type() const override { return SenselType::u8; }
+  [[nodiscard]] Arrival next(StreamedFrame& frame, Nanoseconds) override {
+    if (calls_ == 8) return Arrival::ended;
+    if (calls_++ % 2 == 0) return Arrival::timed_out;
+    constexpr std::array<std::uint64_t, 4> kNumbers = {10, 11, 0, 1};
+    frame.sequence = kNumbers.at(calls_ / 2 - 1);
+    press(0, frame.buffer);
+    frame.readings = frame.buffer.view();
+    return Arrival::arrived;
+  }
+
+ private:
+  std::size_t calls_ = 0;
+};
+
+TEST(Pipeline, CountsNoFrameAsLostWhereASensorBeginsAnew) {
+  Restarting stream;
+  Processor processor(test_device(), plan_of());
+  Notebook sink;
+  const PipelineStatistics done = Pipeline(stream, processor, {&sink}).run();
+  EXPECT_EQ(done.frames, 4);
+  EXPECT_EQ(done.lost, 0);
 }
 
 /// A pillar loses its force with any of its readings, and its contact loses the pillar; other

@@ -4,6 +4,7 @@
 #include "pillarfield/whole_body.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <random>
@@ -254,6 +255,45 @@ TEST(WholeBody, DoesNotUsePacketsOfFramesBeforeTheNewest) {
   EXPECT_EQ(body.patch(0).health.lost, 2U);
   EXPECT_EQ(receive(2'000'000, 50), 50) << "a sequence that began anew";
   EXPECT_EQ(body.patch(0).health.restarts, 1U);
+}
+
+TEST(WholeBody, TakesPacketsWithAChecksumOfAnyPatch) {
+  const SolverPlan plan = bare_plan(16, 32, SenselType::u8);
+  WholeBody body(test_device(), body_of({plan, plan}));
+  for (const std::uint32_t patch : {0U, 1U}) {
+    BlockPacket packet({SenselType::u8, 16, 32}, 1, 0, 9);
+    packet.header.patch = patch;
+    packet.header.content |= PILLARFIELD_CHECKED;
+    packet.header.bytes += 4;
+    uLong sum = crc32_z(0, reinterpret_cast<const Bytef*>(&packet.header), sizeof packet.header);
+    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(packet.bytes.data()), packet.bytes.size());
+    for (int byte = 0; byte < 4; ++byte) {
+      packet.bytes.push_back(static_cast<std::byte>(sum >> 8 * byte & 0xFF));
+    }
+    EXPECT_TRUE(body.receive(packet.header, packet.bytes, {})) << patch;
+    packet.bytes.front() ^= std::byte{1};
+    EXPECT_FALSE(body.receive(packet.header, packet.bytes, {})) << patch;
+  }
+}
+
+TEST(WholeBody, ASequenceMayBeginAnywhereAfterItsEndOrAPause) {
+  WholeBody body(test_device(), body_of({bare_plan(16, 32, SenselType::u8)}));
+  const FrameShape shape = {SenselType::u8, 16, 32};
+  const auto receive = [&](std::uint64_t sequence, int reading, milliseconds arrived) {
+    const BlockPacket packet(shape, sequence, 0, reading);
+    EXPECT_TRUE(body.receive(packet.header, packet.bytes, arrived));
+    body.solve();
+    return first_reading(body);
+  };
+  EXPECT_EQ(receive(900, 10, milliseconds(900)), 10);
+  EXPECT_EQ(receive(890, 20, milliseconds(901)), 10) << "late";
+  EXPECT_EQ(receive(890, 20, milliseconds(1402)), 20) << "after a pause";
+  PillarfieldPacket end = BlockPacket(shape, 891, 0, 0).header;
+  end.content = PILLARFIELD_END;
+  end.bytes = 0;
+  EXPECT_TRUE(body.receive(end, {}, milliseconds(1403)));
+  EXPECT_EQ(receive(800, 30, milliseconds(1404)), 30) << "after its end";
+  EXPECT_EQ(body.patch(0).health.restarts, 2U);
 }
 
 TEST(WholeBody, APartThatComesTwiceDoesNotCountForAnother) {

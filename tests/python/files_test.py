@@ -111,6 +111,13 @@ class Files(unittest.TestCase):
                 self.assertTrue(np.array_equal(getattr(read, name), getattr(expected, name)))
             self.assertTrue(np.array_equal(read.uncertainty.phi_low, expected.uncertainty.phi_low))
             self.assertTrue(np.array_equal(read.times, expected.times))
+        for read, expected in zip(file[:].contacts, self.forces.contacts, strict=True):
+            self.assertEqual(read.total.normal_n, expected.total.normal_n)
+            self.assertEqual([(contact.track_id, contact.normal_n) for contact in read],
+                             [(contact.track_id, contact.normal_n) for contact in expected])
+        self.assertTrue(any(file[:].contacts))
+        file[3].save(WORK / "frame.h5", overwrite=True)
+        self.assertEqual(pf.open(WORK / "frame.h5")[0].contacts[0].track_id, self.forces.contacts[3][0].track_id)
         self.forces.save(WORK / "forces.csv", overwrite=True)
         with self.assertRaises(pf.Error):
             self.forces.save(WORK / "forces.xyz")

@@ -47,7 +47,7 @@ class FilesTest(SinkTest):
         self.assertFalse(any((self.folder / name).exists() for name in names))
 
     def test_targets_that_are_none(self):
-        for target in ("a.txt", "foo:bar", "", "a.mcap/", "/nowhere/at/all.mcap"):
+        for target in ("udp", "shm", "foxglove:127.0.0.1", "a.txt", "foo:bar", "", "a.mcap/", "/nowhere/at/all.mcap"):
             with self.assertRaisesRegex(AssertionError, "sink_driver: "):
                 self.start("--to", target)
 

@@ -105,6 +105,7 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   void run();
   void run_pipeline();
   void take_tare(const StreamedFrame& frame);
+  [[nodiscard]] std::string pass_tare_on(const std::vector<float>& measured);
   void follow_clock(const SolvedFrame& frame);
   [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
   void publish(const SolvedFrame& frame);
@@ -149,8 +150,9 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   std::uint64_t messages = 0;
   std::exception_ptr failed;
 
-  mutable std::mutex recording_mutex;  ///< guards the next two members
+  mutable std::mutex recording_mutex;  ///< guards the next three members
   std::unique_ptr<LiveSink> recording;
+  bool recording_awaits_tare = false;  ///< the next tare is that of its frames
   std::future<void> finishing;
 
   std::mutex waking;  ///< guards `wake`, also while it runs
@@ -218,20 +220,35 @@ Arrival LivePlayer::State::next(StreamedFrame& frame, std::chrono::nanoseconds t
 void LivePlayer::State::take_tare(const StreamedFrame& frame) {
   if (wants_tare.exchange(false)) live_tare.start(kTareTime);
   if (!live_tare.is_running()) return;
+  std::string said;
   try {
     const std::vector<float>* const measured = live_tare.add(frame.readings, frame.arrived);
     if (measured == nullptr) return;
     processor.set_tare(*measured);
     watch.set_tare(*measured);
-    const std::scoped_lock lock(mutex);
-    tare = *measured;
+    {
+      const std::scoped_lock lock(mutex);
+      tare = *measured;
+    }
+    said = pass_tare_on(*measured);
   } catch (const Error& error) {
     taring = false;
     tell(error.what());
     return;
   }
   taring = false;
-  tell("tare taken");
+  tell(said);
+}
+
+/// A recording states one tare for all of its frames: the first one. Returns what to tell.
+std::string LivePlayer::State::pass_tare_on(const std::vector<float>& measured) {
+  const std::scoped_lock lock(recording_mutex);
+  if (recording == nullptr) return "tare taken";
+  if (!std::exchange(recording_awaits_tare, false)) {
+    return "tare taken; the recording keeps that of its start";
+  }
+  recording->set_tare(measured);
+  return "tare taken";
 }
 
 void LivePlayer::State::tell(std::string words) {
@@ -390,6 +407,9 @@ void LivePlayer::record(const std::filesystem::path& path) {
   auto sink = create_live_recording(path.string(), info);
   const std::scoped_lock lock(state_->recording_mutex);
   state_->recording = std::move(sink);
+  state_->recording_awaits_tare =
+      state_->taring ||
+      std::ranges::none_of(info.calibration.tare, [](float tare) { return tare != 0; });
 }
 
 void LivePlayer::stop_recording() {

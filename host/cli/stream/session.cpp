@@ -42,6 +42,10 @@ std::string failed_line(const std::string& why) {
   return json_text({{"ok", false}, {"error", why}});
 }
 
+bool has_tare(const LiveSinkInfo& info) {
+  return std::ranges::any_of(info.calibration.tare, [](float tare) { return tare != 0; });
+}
+
 nlohmann::ordered_json sink_json(const LiveSink& sink) {
   const LiveSinkStatistics statistics = sink.statistics();
   nlohmann::ordered_json json = {{"name", sink.name()},
@@ -132,6 +136,10 @@ class StreamSession::Sinks final : public ForceSink {
     });
   }
 
+  void set_tare(const std::vector<float>& tare) {
+    for (const auto& sink : sinks_) sink->set_tare(tare);
+  }
+
   void report(const HealthReport& health) {
     for (const auto& sink : sinks_) {
       sink->report(health);
@@ -178,6 +186,7 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
   if (!options.record.empty()) {
     sinks_->add(create_live_recording(options.record, info_));
     recording_ = options.record;
+    recording_awaits_tare_ = options.tare_s > 0 || !has_tare(info_);
   }
   if (options.tare_s > 0) tare_.start(nanoseconds_of(options.tare_s));
 }
@@ -221,12 +230,25 @@ void StreamSession::take_tare(const FrameView& frame, std::chrono::nanoseconds a
     processor_.set_tare(*tare);
     watch_.set_tare(*tare);
     info_.calibration.tare = *tare;
-    said = done_line("tare");
+    said = pass_tare_on(*tare);
   } catch (const Error& error) {
     said = failed_line(error.what());
     if (tare_client_ == 0) fmt::print(stderr, "pillarfield: {}\n", printable(error.what()));
   }
   control_.answer(std::exchange(tare_client_, 0), said);
+}
+
+/// A recording states one tare for all of its frames: the first one. Returns the answer.
+std::string StreamSession::pass_tare_on(const std::vector<float>& tare) {
+  if (recording_.empty()) return done_line("tare");
+  if (std::exchange(recording_awaits_tare_, false)) {
+    sinks_->set_tare(tare);
+    return done_line("tare");
+  }
+  const std::string warning = fmt::format(
+      "{} keeps the tare of its start; record another file for the new one", printable(recording_));
+  fmt::print(stderr, "pillarfield: {}\n", warning);
+  return json_text({{"ok", true}, {"done", "tare"}, {"warning", warning}});
 }
 
 /// Answers the clients whose recordings are complete.
@@ -378,6 +400,7 @@ std::string StreamSession::record(std::uint64_t client, const std::vector<std::s
     check_outputs(files_read(options_), {{words[1], OutputKind::recording}}, options_.replace);
     sinks_->add(create_live_recording(words[1], info_));
     recording_ = words[1];
+    recording_awaits_tare_ = tare_.is_running() || !has_tare(info_);
     return done_line("record");
   } catch (const Error& error) {
     return failed_line(error.what());

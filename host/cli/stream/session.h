@@ -49,6 +49,7 @@ class StreamSession {
 
   bool should_stop();
   void take_tare(const FrameView& frame, std::chrono::nanoseconds arrived);
+  [[nodiscard]] std::string pass_tare_on(const std::vector<float>& tare);
   void answer_finished();
   void report_health();
   [[nodiscard]] HealthReport health() const;
@@ -70,7 +71,8 @@ class StreamSession {
   std::unique_ptr<Sinks> sinks_;
   ControlChannel control_;
   std::uint64_t tare_client_ = 0;
-  std::string recording_;  ///< file being recorded; empty: none
+  std::string recording_;               ///< file being recorded; empty: none
+  bool recording_awaits_tare_ = false;  ///< the next tare is that of its frames
   bool paused_ = false;
   bool quit_ = false;
   std::uint64_t received_ = 0;

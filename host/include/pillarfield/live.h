@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pillarfield/force_file.h"
 #include "pillarfield/frame_stream.h"
@@ -64,6 +65,8 @@ class LiveSink : public ForceSink {
   [[nodiscard]] virtual LiveSinkStatistics statistics() const = 0;
   /// Passes the health of the run on, where the sink has a place for it; called between frames.
   virtual void report(const HealthReport& health) { static_cast<void>(health); }
+  /// Replaces the tare that a recording states, for all of its frames; other sinks have none.
+  virtual void set_tare(const std::vector<float>& tare) { static_cast<void>(tare); }
 };
 
 /// What a live sink says of the stream that it passes on.

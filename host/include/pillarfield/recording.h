@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,7 @@ class RecordingWriter {
     bool truth = false;                  ///< each frame comes with its true forces
     std::uint32_t flush_every = 16;      ///< frames between flushes, at least 1
     Replace replace = Replace::results;  ///< only Replace::anything replaces a recording
+    bool missing = false;                ///< frames may lack sensels
   };
   /// Creates the part. Throws Error if a constant is out of range or the file cannot be written.
   RecordingWriter(const std::filesystem::path& path, const Skin& skin, SenselType type,
@@ -75,6 +77,16 @@ class RecordingWriter {
   /// Appends a frame of the skin's size and type. Pass `truth` if and only if Options::truth is
   /// set. Throws Error if the frame does not fit or cannot be written.
   void append(const FrameView& frame, double time_s, const ForceField* truth = nullptr);
+
+  /// The same for a frame in which the blocks `missing` did not arrive: their sensels are NaN if
+  /// readings are float32, and hold what `frame` has otherwise, of which readers of the file warn.
+  /// Only with Options::missing.
+  void append_incomplete(const FrameView& frame, double time_s,
+                         std::span<const SenselBlock> missing);
+
+  /// Replaces the tare of the file, counts, [rows, cols]. Throws Error if the recording was created
+  /// without one, or a value is out of range.
+  void set_tare(const std::vector<float>& tare);
 
   /// Writes all frames so far to the file, so that they survive the death of the process.
   void flush();

@@ -35,4 +35,11 @@ void write_plane(const File& file, const char* name, hid_t stored_type, hid_t me
           failure, "check the space left on its disk");
 }
 
+void rewrite_plane(const File& file, const char* name, hid_t memory_type, const void* values) {
+  const std::string failure = fmt::format("{} cannot be written", name);
+  const Handle dataset = own(H5Dopen2(file.id.get(), name, H5P_DEFAULT), file.path, failure);
+  require(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), file.path,
+          failure, "check the space left on its disk");
+}
+
 }  // namespace pillarfield::hdf5

@@ -14,4 +14,7 @@ namespace pillarfield::hdf5 {
 void write_plane(const File& file, const char* name, hid_t stored_type, hid_t memory_type,
                  std::size_t rows, std::size_t cols, const void* values);
 
+/// Overwrites a dataset that write_plane() wrote.
+void rewrite_plane(const File& file, const char* name, hid_t memory_type, const void* values);
+
 }  // namespace pillarfield::hdf5

@@ -36,11 +36,15 @@ PatchMemory::PatchMemory(const Skin& skin, SenselType type, double refresh_s,
 
 void PatchMemory::add(const Packet& packet) {
   const PillarfieldPacket& header = packet.header;
-  if (content_of(header) == PILLARFIELD_END) return;
+  if (content_of(header) == PILLARFIELD_END) {
+    ended_ = true;
+    return;
+  }
   if (!follow_sequence(header, packet.arrived)) {
     ++health_.late;
     return;
   }
+  ended_ = false;
   ++health_.packets;
   received_ = true;
   arrived_ = packet.arrived;
@@ -64,8 +68,9 @@ bool PatchMemory::follow_sequence(const PillarfieldPacket& header, Time arrived)
   const std::uint64_t ahead = header.sequence - sequence_;
   const std::uint64_t back = sequence_ - header.sequence;
   const bool is_ahead = ahead <= kFarAhead;
-  const bool began_anew =
-      !is_ahead && (back > kFarBack || (header.sequence < kNearZero && back > kFewFrames));
+  const bool is_back = arrived - arrived_ > kLongestGap || back > kFarBack ||
+                       (header.sequence < kNearZero && back > kFewFrames);
+  const bool began_anew = ended_ || (!is_ahead && is_back);
   if (!began_ || session == Sessions::Kind::started || began_anew) {
     if (began_) ++health_.restarts;
     began_ = true;

@@ -61,6 +61,7 @@ class PatchMemory {
   PatchClock clock_;
   PatchHealth health_;
   bool began_ = false;
+  bool ended_ = false;  ///< the sensor said so after its last packet
   std::uint64_t sequence_ = 0;
   std::uint32_t parts_left_ = 0;  ///< of the newest frame
   std::vector<bool> came_;        ///< its parts

@@ -130,12 +130,12 @@ WholeBody& WholeBody::operator=(WholeBody&&) noexcept = default;
 
 bool WholeBody::receive(const PillarfieldPacket& header, std::span<const std::byte> readings,
                         std::chrono::nanoseconds arrived) {
-  Packet packet = {header, readings, arrived};
-  packet.header.patch = 0;  // A stream of its own from here on.
+  const Packet packet = {header, readings, arrived};  // Its checksum holds the patch.
+  PillarfieldPacket alone = header;
+  alone.patch = 0;  // A stream of its own.
   const bool is_known = header.patch < state_->patches.size();
   PatchMemory* const memory = is_known ? &state_->patches[header.patch].memory : nullptr;
-  if (!is_known || shape_of(packet.header) != memory->shape() ||
-      !is_intact(packet, memory->shape())) {
+  if (!is_known || shape_of(alone) != memory->shape() || !is_intact(packet, memory->shape())) {
     ++state_->invalid;
     return false;
   }

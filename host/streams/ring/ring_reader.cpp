@@ -98,6 +98,14 @@ bool RingReader::is_replaced() const {
          !is_valid(load<PillarfieldRing>(0), static_cast<std::uint64_t>(status.st_size));
 }
 
+/// For readers that poll: looks at most every kLongestWait, so that polling stays cheap.
+void RingReader::detach_if_replaced() {
+  const Time now = now_of_ring();
+  if (now - checked_ < kLongestWait) return;
+  checked_ = now;
+  if (is_replaced()) detach();
+}
+
 void RingReader::skip_to(std::uint64_t number) {
   overrun_ += number - next_;
   next_ = number;
@@ -138,7 +146,10 @@ const std::byte* RingReader::read(Time timeout) {
     const auto published = load<std::uint64_t>(offsetof(PillarfieldRing, published));
     if (published < next_) next_ = published;  // A new writer counts anew.
     if (published == next_) {
-      if (left <= 0ns) return nullptr;
+      if (left <= 0ns) {
+        detach_if_replaced();
+        return nullptr;
+      }
       wait(signal, left);
       continue;
     }

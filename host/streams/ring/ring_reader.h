@@ -42,6 +42,7 @@ class RingReader {
   [[nodiscard]] bool fits(const PillarfieldRing& ring, std::uint64_t bytes);
   void detach();
   bool is_replaced() const;
+  void detach_if_replaced();
   template <class T>
   T load(std::size_t offset) const;
   bool copy_next();
@@ -55,6 +56,7 @@ class RingReader {
   Mapping head_;  ///< for the address of the futex; never read
   PillarfieldRing ring_ = {};
   std::uint64_t rejected_inode_ = 0;
+  Time checked_{0};  ///< when a replacement was last looked for
   std::optional<RingLayout> layout_;
   std::vector<std::byte> slot_;
   std::uint64_t next_ = 0;

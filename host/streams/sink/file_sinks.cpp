@@ -36,13 +36,18 @@ class FileConsumer final : public SinkConsumer {
 class RecordingConsumer final : public SinkConsumer {
  public:
   RecordingConsumer(const std::string& path, const LiveSinkInfo& info)
-      : writer_(
-            path, info.skin, info.sensel_type, info.calibration,
-            {.flush_every = std::numeric_limits<std::uint32_t>::max(), .replace = info.replace}) {}
+      : writer_(path, info.skin, info.sensel_type, info.calibration,
+                {.flush_every = std::numeric_limits<std::uint32_t>::max(),
+                 .replace = info.replace,
+                 .missing = true}) {}
 
   [[nodiscard]] FrameParts wants(const SolvedFrame&) override { return {.readings = true}; }
   [[nodiscard]] bool consume(const SolvedFrame& frame) override {
-    writer_.append(frame.readings, frame.time_s);
+    if (frame.missing.empty()) {
+      writer_.append(frame.readings, frame.time_s);
+    } else {
+      writer_.append_incomplete(frame.readings, frame.time_s, frame.missing);
+    }
     has_unflushed_ = true;
     idle();
     return true;
@@ -55,6 +60,7 @@ class RecordingConsumer final : public SinkConsumer {
     flushed_ = now;
     has_unflushed_ = false;
   }
+  void set_tare(const std::vector<float>& tare) override { writer_.set_tare(tare); }
   void finish() override { writer_.finish(); }
 
  private:
@@ -67,8 +73,7 @@ class RecordingConsumer final : public SinkConsumer {
 
 std::unique_ptr<LiveSink> create_live_file(const std::string& path, const LiveSinkInfo& info) {
   ForceFileInfo forces = info.forces;
-  const std::string extension = extension_of(path);
-  if (extension != ".h5" && extension != ".hdf5") forces.contacts.reset();  // Forces alone.
+  if (!is_hdf5_name(path)) forces.contacts.reset();  // Forces alone.
   auto file = create_force_sink(path, forces, info.replace);
   return std::make_unique<QueuedSink>(path,
                                       std::make_unique<FileConsumer>(std::move(file), forces));

@@ -88,6 +88,7 @@ std::unique_ptr<LiveSink> create_foxglove_sink(const std::string& target,
 LiveSinkKind foxglove_sink_kind() {
   return {.prefix = kFoxglovePrefix,
           .form = "foxglove[:[ADDRESS:]PORT]",
+          .stands_alone = true,
           .create = create_foxglove_sink};
 }
 

@@ -80,6 +80,14 @@ void QueuedSink::report(const HealthReport& health) {
   changed_.notify_one();
 }
 
+void QueuedSink::set_tare(const std::vector<float>& tare) {
+  {
+    const std::scoped_lock lock(mutex_);
+    tare_ = tare;
+  }
+  changed_.notify_one();
+}
+
 void QueuedSink::finish() { end_thread(End::finished); }
 
 void QueuedSink::end_thread(End end) {
@@ -126,7 +134,14 @@ void QueuedSink::work() {
   std::unique_lock lock(mutex_);
   while (failure_.empty()) {
     const bool has_work = changed_.wait_for(
-        lock, kIdle, [&] { return !waiting_.empty() || health_ || end_ != End::none; });
+        lock, kIdle, [&] { return !waiting_.empty() || health_ || tare_ || end_ != End::none; });
+    if (tare_) {
+      const std::vector<float> tare = *std::exchange(tare_, std::nullopt);
+      lock.unlock();
+      consumer_->set_tare(tare);
+      lock.lock();
+      continue;
+    }
     if (health_) {
       const HealthReport health = *std::exchange(health_, std::nullopt);
       lock.unlock();

@@ -146,6 +146,8 @@ std::unique_ptr<LiveSink> create_ring_sink(const std::string& target, const Live
 
 }  // namespace
 
-LiveSinkKind ring_sink_kind() { return {kRingPrefix, "shm:NAME", create_ring_sink}; }
+LiveSinkKind ring_sink_kind() {
+  return {.prefix = kRingPrefix, .form = "shm:NAME", .create = create_ring_sink};
+}
 
 }  // namespace pillarfield

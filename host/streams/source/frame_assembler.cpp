@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "pillarfield/error.h"
@@ -30,7 +31,8 @@ FrameAssembler::FrameAssembler(const FrameShape& shape, PacketOrder order)
 
 void FrameAssembler::add(const Packet& packet) {
   const PillarfieldPacket& header = packet.header;
-  if (shape_of(header) != shape_ || !is_intact(packet, shape_)) {
+  const bool is_last_number = header.sequence == std::numeric_limits<std::uint64_t>::max();
+  if (is_last_number || shape_of(header) != shape_ || !is_intact(packet, shape_)) {
     ++counts_.invalid;
     return;
   }
@@ -60,7 +62,7 @@ bool FrameAssembler::began_anew(const PillarfieldPacket& header, Time arrived) c
   const std::uint64_t sequence = header.sequence;
   if (sequence >= expected) return next_ && sequence - expected > kFarAhead;
   const std::uint64_t back = expected - sequence;
-  const Time longest_gap = std::max<Time>(500ms, Time(std::llround(4 * interval_ns_)));
+  const Time longest_gap = std::max<Time>(kLongestGap, Time(std::llround(4 * interval_ns_)));
   return ended_ || back > kFarBack || (sequence < kNearZero && back > kFewFrames) ||
          arrived - last_packet_ > longest_gap;
 }

@@ -29,6 +29,9 @@ class PacketSource {
   /// Allocates the memory for frames of this shape; the last packet received stays valid.
   virtual void prepare(const FrameShape& /*shape*/) {}
 
+  /// Whether what waits is as old as its reader lets it be, as in a pipe: it is not outdated.
+  [[nodiscard]] virtual bool holds_sender_back() const { return false; }
+
   /// What was received since clear_counts().
   struct Counts {
     std::uint64_t invalid = 0;  ///< no packets

@@ -48,6 +48,7 @@ StreamHealth PacketStream::health() const {
 }
 
 void PacketStream::discard_waiting() {
+  if (source_->holds_sender_back()) return;
   const StreamHealth before = health();
   const nanoseconds until = steady_now() + 200ms;  // for a sensor that is faster than this loop
   StreamedFrame frame(sensel_type(), skin_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 namespace pillarfield {
@@ -11,5 +12,7 @@ inline constexpr std::uint64_t kFarAhead = 1 << 20;
 /// So is one near zero after at least as many frames as PartHistory can tell late packets of.
 inline constexpr std::uint64_t kNearZero = 8;
 inline constexpr std::uint64_t kFewFrames = 32;
+/// And one that is back at all after the end of the sequence, or after so long without packets.
+inline constexpr std::chrono::milliseconds kLongestGap{500};
 
 }  // namespace pillarfield

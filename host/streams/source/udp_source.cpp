@@ -105,8 +105,9 @@ void UdpSource::count_drops(msghdr& message) {
     std::uint32_t drops = 0;
     std::memcpy(&drops, CMSG_DATA(each), sizeof drops);
     const std::uint32_t more = drops - std::exchange(drops_, drops);
-    if (!std::exchange(ignores_next_drops_, false)) counts_.overrun += more;
+    if (!ignores_next_drops_) counts_.overrun += more;
   }
+  ignores_next_drops_ = false;  // Without a report nothing was dropped before this datagram.
 }
 
 /// The kernel tells of drops with the next datagram.

@@ -236,6 +236,16 @@ TEST(FrameAssembler, EndDeliversWhatCameAndAllowsARestart) {
   expect_counts(run.health(), {.frames = 3, .incomplete = 1, .restarts = 1});
 }
 
+TEST(FrameAssembler, TheLastSequenceNumberIsInvalidSinceNoneCanFollow) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 3));
+  run.add(frame_packet(kShape, ~std::uint64_t{0}));
+  run.add(frame_packet(kShape, 4));
+  for (std::uint64_t i = 100; i < 1000; i += 100) run.add(row_packets(kShape, i, 2)[0]);
+  EXPECT_EQ(run.health().invalid, 1);
+  EXPECT_LT(run.health().lost, 1000);
+}
+
 TEST(FrameAssembler, TimeNeverGoesBack) {
   AssemblerRun run(kShape);
   std::uint64_t sequence = 0;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "pillarfield/error.h"
 #include "streams/ring/ring_reader.h"
 #include "tests/base/message.h"
 #include "tests/streams/source/assembler_run.h"
@@ -126,6 +127,12 @@ TEST(RingSink, StopsAtAFrameOfAnotherSize) {
   EXPECT_EQ(sink->statistics().frames, 0);
   EXPECT_NE(sink->statistics().failure, "");
   EXPECT_FALSE(std::filesystem::exists("/dev/shm/" + results_name()));
+}
+
+TEST(LiveSink, AKindWithoutItsTargetIsNone) {
+  for (const char* target : {"shm", "udp", "shm:", "udp:"}) {
+    EXPECT_THROW((void)create_live_sink(target, info_of_skin(6, 10)), Error) << target;
+  }
 }
 
 TEST(RingSink, RefusesANameInUse) {

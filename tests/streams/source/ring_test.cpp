@@ -240,6 +240,26 @@ TEST(Ring, FollowsOneThatReplacesIt) {
   expect_counts(stream->health(), {.frames = 2, .invalid = 1, .restarts = 1});
 }
 
+TEST(Ring, APollingReaderFollowsOneThatReplacesItToo) {
+  const Name name;
+  auto writer = std::make_optional<RingWriter>(name.text(), kLayout, 4);
+  publish(*writer, frame_packet(kShape, 5));
+  const auto stream = open_live_source(name.source(), {});
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  EXPECT_EQ(stream->next(frame, 0ns), Arrival::arrived);
+  writer.reset();
+  writer.emplace(name.text(), kLayout, 4);
+  SentPacket packet = frame_packet(kShape, 1);
+  packet.header.session = 9;
+  publish(*writer, packet);
+  bool arrived = false;
+  for (int i = 0; i < 3000 && !arrived; ++i) {
+    arrived = stream->next(frame, 0ns) == Arrival::arrived;
+    if (!arrived) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_TRUE(arrived);
+}
+
 TEST(Ring, AnUnlinkedRingWithAnotherSizeIsReplaced) {
   const Name name;
   Child([&] {

@@ -71,6 +71,27 @@ TEST(StdinSource, DeliversFramesAndEnds) {
   expect_counts(stream->health(), {.frames = 4, .lost = 1, .incomplete = 1, .invalid = 1});
 }
 
+TEST(StdinSource, DiscardsNothingSinceItsDriverWaits) {
+  Stdin input;
+  for (std::uint64_t i = 0; i < 100; ++i) input.send(frame_packet(kShape, i).bytes());
+  input.end();
+  const auto stream = open_live_source("-", {});
+  stream->discard_waiting();
+  EXPECT_TRUE(take_frames(*stream, 1s, [](auto&) {}));
+  expect_counts(stream->health(), {.frames = 100});
+}
+
+TEST(StdinSource, GivesUpOnRubbishWithoutEnd) {
+  const int zeros = open("/dev/zero", O_RDONLY | O_CLOEXEC);
+  const int saved = dup(STDIN_FILENO);
+  dup2(zeros, STDIN_FILENO);
+  int asked = 0;
+  EXPECT_EQ(open_live_source("-", {.stop = [&] { return ++asked == 2; }}), nullptr);
+  dup2(saved, STDIN_FILENO);
+  close(saved);
+  close(zeros);
+}
+
 TEST(StdinSource, RefusesAnEndWithoutAFrame) {
   Stdin input;
   input.send("no packet at all");
@@ -177,6 +198,25 @@ TEST(UdpSource, DiscardsWhatWaitsWithoutCountingIt) {
   take_frames(*stream, 30ms, [&](auto& frame) { sequences.push_back(frame.sequence); });
   EXPECT_EQ(sequences, (std::vector<std::uint64_t>{95, 96}));
   expect_counts(stream->health(), {.frames = 2});
+}
+
+TEST(UdpSource, CountsTheFirstDropsAfterADiscard) {
+  const Sender sender(AF_INET);
+  const auto stream = sender.open(frame_packet(kShape, 0));
+  stream->discard_waiting();
+  SentPacket packet = frame_packet(kShape, 0);
+  for (std::uint64_t i = 1; i <= 60'000; ++i) {  // more than any buffer holds
+    packet.header.sequence = i;
+    sender.send(packet.bytes());
+  }
+  take_frames(*stream, 30ms, [](auto&) {});
+  for (std::uint64_t i = 60'001; i <= 60'002; ++i) {  // bring the number of drops
+    packet.header.sequence = i;
+    sender.send(packet.bytes());
+  }
+  take_frames(*stream, 30ms, [](auto&) {});
+  EXPECT_GT(stream->health().lost, 0);
+  EXPECT_EQ(stream->health().lost, stream->health().overrun);
 }
 
 TEST(UdpSource, CountsWhatTheKernelDroppedUnlessItIsDiscarded) {
