@@ -123,6 +123,7 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   set(info, solved_by);
   info.rows = forces.rows();
   info.cols = forces.cols();
+  info.frames = forces.frames();
   info.pillar_pitch_mm = skin.pillar_pitch_mm();
   info.angles = planes.contains("theta");
   info.uncertainty = planes.contains("uncertainty_normal");

@@ -236,7 +236,8 @@ struct Job {
 /// Solves all frames into the outputs of the options.
 void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveSummary& summary) {
   const SolveOptions& options = job.options;
-  const ForceFileInfo info = file_info(options, job.plan, job.device);
+  ForceFileInfo info = file_info(options, job.plan, job.device);
+  info.frames = job.source.frames();
   std::vector<std::unique_ptr<ForceSink>> files;
   files.push_back(create_force_sink(options.output, info, options.replace));
   if (table) {

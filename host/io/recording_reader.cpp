@@ -41,12 +41,12 @@ class Recording final : public FileSource {
   [[nodiscard]] std::string place(const char* object) const;
 
   hdf5::File file_;
+  int version_;
   hdf5::StoredFrames raw_;
   NumberType number_;                       // of the readings
   std::vector<std::byte> numbers_;          // of a frame, unless they are readings
   std::optional<hdf5::StoredFrames> time_;  // unset: see assumed_time()
-  int version_ = 1;
-  std::vector<hdf5::StoredFrames> truth_;  // empty, or shear_x, shear_y, normal
+  std::vector<hdf5::StoredFrames> truth_;   // empty, or shear_x, shear_y, normal
 };
 
 void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
@@ -58,8 +58,10 @@ void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::pat
 }
 
 Recording::Recording(hdf5::File file, const ReadOptions& options)
-    : FileSource(file.path, "recording"), file_(std::move(file)) {
-  version_ = hdf5::require_format(file_, recording_format::kName, recording_format::kNewestVersion);
+    : FileSource(file.path, "recording"),
+      file_(std::move(file)),
+      version_(
+          hdf5::require_format(file_, recording_format::kName, recording_format::kNewestVersion)) {
   raw_ = {file_, recording_format::kRaw, 2};
   open_times();
   number_ = hdf5::number_type_of(raw_, file_);

@@ -165,6 +165,23 @@ void expect_cell(const std::string& cell, T value) {
   EXPECT_EQ(read, value) << cell;
 }
 
+/// Chunks of 16 frames are stored whole: a file of one frame would take 16 times its values.
+TEST(ForceFile, OfFewFramesIsSmallWhereTheirNumberIsKnown) {
+  const TemporaryDirectory directory;
+  constexpr std::uint64_t kValueBytes = 100 * 100 * (3 * sizeof(float) + 1);
+  constexpr std::uint64_t kHeads = 40'000;
+  for (const std::uint64_t frames : {1, 2, 3, 4}) {
+    ForceFileInfo info = info_of(100, 100);
+    info.frames = frames;
+    const auto path = directory / "few.h5";
+    write(path, info, frames);
+    EXPECT_LT(std::filesystem::file_size(path), (frames + 1) * kValueBytes + kHeads) << frames;
+    info.frames = 1;  // and more come
+    write(path, info, 5);
+    EXPECT_EQ(ForceFileReader(path).frames(), 5);
+  }
+}
+
 TEST(ForceCsv, HasALineForEachPillarThatIsNotIdle) {
   for (const bool angles : {false, true}) {
     const TemporaryDirectory directory;

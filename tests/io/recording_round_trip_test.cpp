@@ -341,7 +341,8 @@ TEST(RecordingRoundTrip, LeavesOutTilesOfTheTruthThatNothingTouches) {
   const TemporaryDirectory directory;
   const FrameBuffer frame(SenselType::u8, 2 * kPillars, 2 * kPillars);
   const auto truth_of = [](std::uint64_t index) {
-    constexpr std::size_t kPlaces[] = {0, 31, 32, 33 * kPillars, kPillars * kPillars - 1};
+    constexpr std::size_t kPlace = kPillars;
+    constexpr std::size_t kPlaces[] = {0, 31, 32, 33 * kPlace, kPlace * kPlace - 1};
     ForceField truth(kPillars, kPillars);
     if (index % 6 < 5) truth.normal[kPlaces[index % 6]] = static_cast<float>(index + 1);
     if (index == 17) truth.shear_x[kPlaces[3]] = -2;

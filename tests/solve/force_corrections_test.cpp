@@ -166,10 +166,11 @@ TEST(Lean, IsOddScaleFreeBoundedAndZeroUnderEvenPressure) {
 /// two ends, in pillars from its axis.
 std::pair<Line, double> strip(double from, double to) {
   Line line{};
-  for (int at = -2; at <= 2; ++at) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double at = static_cast<double>(i) - 2;
     const double low = std::max(from, at - 0.5);
     const double high = std::min(to, at + 0.5);
-    line[static_cast<std::size_t>(at + 2)] = std::max(0.0, high - low);
+    line[i] = std::max(0.0, high - low);
   }
   const double low = std::max(from, -0.5);
   const double high = std::min(to, 0.5);
@@ -180,7 +181,8 @@ std::pair<Line, double> strip(double from, double to) {
 TEST(Lean, FollowsAnEdgeWithinThePillar) {
   double left = 0;
   double whole = 0;
-  for (double edge = -0.45; edge < 0.5; edge += 0.05) {
+  for (int step = -9; step <= 9; ++step) {
+    const double edge = 0.05 * step;
     const auto [line, exact] = strip(edge, 9);
     left += (moment(line) - exact) * (moment(line) - exact);
     whole += exact * exact;
@@ -327,10 +329,12 @@ struct EdgedPressure {
     for (auto& moment : moments) moment.resize(force.normal.size());
     for (std::size_t i = 0; i < force.normal.size(); ++i) {
       for (int part = 0; part < kParts * kParts; ++part) {
+        const int part_row = part / kParts;
+        const std::size_t row = i / 14;
         const double x = (part % kParts + 0.5) / kParts - 0.5;
-        const double y = 0.5 - (part / kParts + 0.5) / kParts;
+        const double y = 0.5 - (part_row + 0.5) / kParts;
         const double beyond = std::cos(angle) * (x + static_cast<double>(i % 14) - 6.6) +
-                              std::sin(angle) * (y + 6.7 - static_cast<double>(i / 14));
+                              std::sin(angle) * (y + 6.7 - static_cast<double>(row));
         if (beyond > 0) continue;
         force.normal[i] += 1.0F / (kParts * kParts);
         moments[0][i] += x / (kParts * kParts);

@@ -34,6 +34,7 @@ struct ForceFileInfo {
   SensorEffects effects = {};           ///< of the skin's calibration; HDF5 only
   std::optional<Surface> surface = {};  ///< of the skin; HDF5 only
   std::optional<ForcePart> part = {};   ///< it holds one part of the frames; HDF5 only
+  std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };
 
 /// Creates a sink in the format of the extension of `path` (docs/formats.md; endings_of() lists

@@ -19,9 +19,8 @@ constexpr std::size_t longest_stored(std::size_t bytes) { return bytes + bytes /
 
 }  // namespace
 
-FilteredChunks::FilteredChunks(const std::filesystem::path& file, std::string name,
-                               const Storage& storage)
-    : file_(file),
+FilteredChunks::FilteredChunks(std::filesystem::path file, std::string name, const Storage& storage)
+    : file_(std::move(file)),
       name_(std::move(name)),
       rank_(storage.extent.size()),
       filters_(storage.filters),

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMaxChunkBytes = std::size_t{128} << 20;
 class FilteredChunks {
  public:
   /// Throws Error if a chunk exceeds kMaxChunkBytes or the dataset has more than three dimensions.
-  FilteredChunks(const std::filesystem::path& file, std::string name, const Storage& storage);
+  FilteredChunks(std::filesystem::path file, std::string name, const Storage& storage);
 
   /// Copies `count` frames from `first` on, in their stored type. Throws Error if a chunk is
   /// missing or damaged.

@@ -90,11 +90,12 @@ void Hdf5Sink::create_datasets(const SolvedFrame* first) {
     const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
     const float fill =
         first == nullptr ? 0.0F : idle_value(frame_planes_.of(plane), first->forces.status);
-    planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, info_.rows, info_.cols, &fill,
-                         tiling);
+    planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, info_.rows, info_.cols, &fill, tiling,
+                         info_.frames);
   }
   constexpr std::uint8_t kIdle = 0;
-  status_ = {file_, force_format::kStatus, H5T_STD_U8LE, info_.rows, info_.cols, &kIdle, tiling};
+  status_ = {file_,  force_format::kStatus, H5T_STD_U8LE, info_.rows, info_.cols, &kIdle,
+             tiling, info_.frames};
   time_ = {file_, force_format::kTime, H5T_IEEE_F64LE, {}};
   if (info_.contacts) contacts_ = {file_, *info_.contacts};
   hdf5::start_appending(file_);

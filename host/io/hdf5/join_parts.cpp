@@ -309,7 +309,8 @@ template <class Value>
 void Joined::copy_plane(const char* name, hid_t type, Value lost) {
   const auto layout =
       layout_of<Value>(hdf5::open_to_read(found_.files.begin()->second), name, type, info_.cols);
-  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &layout.idle, layout.tiling);
+  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &layout.idle, layout.tiling,
+                           found_.joined.frames);
   std::vector<Value> values(std::size_t{info_.rows} * info_.cols);
   for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
     const FrameRange range = found_.frames(index);

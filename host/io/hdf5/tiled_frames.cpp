@@ -23,23 +23,24 @@ hsize_t tile_of(hsize_t size, hsize_t wanted) {
   return (size + tiles - 1) / tiles;
 }
 
-/// Frames of a chunk: a power of two.
-hsize_t frames_of(hsize_t plane_bytes, Tiling tiling) {
+/// Frames of a chunk, a power of two; chunks are stored whole.
+hsize_t frames_of(hsize_t plane_bytes, Tiling tiling, std::uint64_t frames) {
   if (tiling == Tiling::strips && plane_bytes > kAloneBytes) return 1;
-  return std::bit_floor(std::clamp<hsize_t>(kMostPlaneBytes / plane_bytes, 1, kMostChunkFrames));
+  const hsize_t most = frames == 0 || frames > kMostChunkFrames ? kMostChunkFrames : frames;
+  return std::bit_floor(std::clamp<hsize_t>(kMostPlaneBytes / plane_bytes, 1, most));
 }
 
 }  // namespace
 
 TiledFrames::TiledFrames(const File& file, const char* name, hid_t type, hsize_t rows, hsize_t cols,
-                         const void* fill, Tiling tiling)
+                         const void* fill, Tiling tiling, std::uint64_t frames)
     : path_(file.path),
       failure_(fmt::format("{} cannot be written", name)),
       write_status_(file.write_status),
       value_bytes_(H5Tget_size(type)),
       rows_(rows),
       cols_(cols),
-      chunk_frames_(frames_of(rows * cols * value_bytes_, tiling)),
+      chunk_frames_(frames_of(rows * cols * value_bytes_, tiling, frames)),
       tile_rows_(tile_of(rows, tiling == Tiling::strips ? kStripRows : kTile)),
       tile_cols_(tiling == Tiling::strips ? cols : tile_of(cols, kTile)) {
   const hsize_t tile_values = tile_rows_ * tile_cols_;

@@ -21,9 +21,10 @@ class TiledFrames {
  public:
   TiledFrames() = default;
 
-  /// `type` is the type of the values in memory and in the file, `fill` one of them.
+  /// `type` is the type of the values in memory and in the file, `fill` one of them; `frames` how
+  /// many will come, 0 if that is not known.
   TiledFrames(const File& file, const char* name, hid_t type, hsize_t rows, hsize_t cols,
-              const void* fill, Tiling tiling = Tiling::squares);
+              const void* fill, Tiling tiling = Tiling::squares, std::uint64_t frames = 0);
 
   /// Appends a frame; the file has it after the next flush().
   void append(const void* frame);
