@@ -170,7 +170,7 @@ TEST(ForceFile, OfFewFramesIsSmallWhereTheirNumberIsKnown) {
   const TemporaryDirectory directory;
   constexpr std::uint64_t kValueBytes = 100 * 100 * (3 * sizeof(float) + 1);
   constexpr std::uint64_t kHeads = 40'000;
-  for (const std::uint64_t frames : {1, 2, 3, 4}) {
+  for (std::uint64_t frames = 1; frames <= 4; ++frames) {
     ForceFileInfo info = info_of(100, 100);
     info.frames = frames;
     const auto path = directory / "few.h5";
