@@ -22,8 +22,12 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
     """Readings as a dense array of uint8, uint16 or float32; of type `kind` if given.
 
     Whole numbers of other types become uint16 if they fit, else float32; other numbers float32.
+    What a masked array masks is missing: NaN.
     """
-    array = np.asarray(frames)
+    if isinstance(frames, np.ma.MaskedArray) and np.any(frames.mask):
+        hidden: Any = frames.astype(np.float32)
+        frames = hidden.filled(np.nan)
+    array = array_of(frames)
     if array.dtype.kind not in "buif":
         raise Error("frames", f"their type is {array.dtype}", "give numbers")
     if kind is not None:
@@ -37,6 +41,14 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
     else:
         wanted = np.dtype(np.float32)
     return np.require(array, wanted, ["C", "A"])
+
+
+def array_of(frames: npt.ArrayLike) -> Readings:
+    """An array; raises Error for frames that differ in size."""
+    try:
+        return np.asarray(frames)
+    except ValueError as error:
+        raise Error("frames", "they differ in size", "give frames of one size") from error
 
 
 def _lies_within(array: Readings, most: int) -> bool:

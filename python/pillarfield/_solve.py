@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Path, readings_of, timed, times_of
+from ._frames import Path, array_of, readings_of, timed, times_of
 from ._recording import Recording
 from ._scene import Simulation
 
@@ -65,7 +65,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         _warn([_SCALE_ASSUMED], _constants_given(skin, calibration, options))
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
-        frames = np.asarray(frames)
+        frames = array_of(frames)
     source = source_of(frames, skin, times, rate_hz)
     if tare_frames:
         calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz)

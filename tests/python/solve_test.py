@@ -79,6 +79,16 @@ class Frames(unittest.TestCase):
                 self.assertEqual(forces.shape, (12, 20, 30))
                 self.assertTrue(np.array_equal(forces.normal, self.expected.normal))
 
+    def test_masked_readings_are_missing(self):
+        hidden = np.zeros(self.frames.shape, bool)
+        hidden[:, 8, 10] = True
+        missing = np.where(hidden, np.nan, self.frames).astype(np.float32)
+        expected = pf.solve(missing)
+        self.assertTrue(same(pf.solve(np.ma.array(self.frames, mask=hidden)), expected))
+        self.assertTrue(same(pf.solve(iter(np.ma.array(missing, mask=hidden))), expected))
+        self.assertFalse(np.array_equal(expected.status, self.expected.status))
+        self.assertTrue(np.array_equal(pf.solve(np.ma.array(self.frames)).normal, self.expected.normal))
+
     def test_unaligned_frames(self):
         memory = np.zeros(self.frames.size * 4 + 1, np.uint8)
         odd = memory[1:].view(np.float32).reshape(self.frames.shape)
@@ -188,6 +198,8 @@ class Errors(unittest.TestCase):
             (pf.Error, lambda: pf.solve(np.array([["a", "b"]]))),
             (pf.Error, lambda: pf.solve(frames.astype(complex))),
             (pf.Error, lambda: pf.solve(np.zeros((1, 1, 1), np.uint8))),
+            (pf.Error, lambda: pf.solve([frames[0], frames[0][:4]])),
+            (pf.Error, lambda: pf.solve(iter([frames[0], np.ma.array(frames[0], mask=True)]))),
             (pf.Error, lambda: pf.solve(frames, skin=pf.Skin(8, 14))),
             (pf.Error, lambda: pf.solve(frames, times=[1.0])),
             (pf.Error, lambda: pf.solve(frames, times=[1.0, 0.0], baseline_time_s=3)),
