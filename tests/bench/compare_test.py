@@ -99,7 +99,7 @@ class Program(unittest.TestCase):
         new = self.write("new", PROGRAM % 6)
         result = self.compare("--old", old, "--new", new, "--pairs", 4)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stdout, r"case +2\.000 +2\.000 +2\.000  slower")
+        self.assertRegex(result.stdout, r"case +2\.000 +2\.000 +2\.000 +2\.000  slower")
         self.assertEqual((self.folder / "old.runs").read_text(), "xxxx")
         self.assertEqual((self.folder / "new.runs").read_text(), "xxxx")
 
