@@ -32,11 +32,13 @@ times: float64 [frames], s
 skin: Skin with constants; its rows and columns are replaced by those of the array
 calibration: Calibration, or None)";
 
+using TimeArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
 /// Frames of an array. The array must not change meanwhile.
 class ArraySource final : public FrameSource {
  public:
-  ArraySource(py::array readings, const py::array_t<double, py::array::forcecast>& times,
-              const Skin& skin, const std::optional<SkinCalibration>& calibration)
+  ArraySource(py::array readings, const TimeArray& times, const Skin& skin,
+              const std::optional<SkinCalibration>& calibration)
       : readings_(std::move(readings)), type_(sensel_type_of(readings_)), skin_(skin) {
     if (readings_.ndim() != 3 || times.ndim() != 1 || times.shape(0) != readings_.shape(0)) {
       throw Error("frames", "their shape does not fit the times",
@@ -161,8 +163,7 @@ std::unique_ptr<Frames> open(
   return std::make_unique<Frames>(open_frames(path, options));
 }
 
-std::unique_ptr<Frames> of_array(const py::array& readings,
-                                 const py::array_t<double, py::array::forcecast>& times,
+std::unique_ptr<Frames> of_array(const py::array& readings, const TimeArray& times,
                                  const Skin& skin,
                                  const std::optional<SkinCalibration>& calibration) {
   return std::make_unique<Frames>(

@@ -19,8 +19,8 @@ struct IndexRange {
     const auto size = static_cast<std::int64_t>(frames);
     const auto exists = [&](std::int64_t index) { return index >= 0 && index < size; };
     if (count == 0) return;
-    if (count > frames || !exists(first) || step > size || step < -size ||
-        !exists(first + static_cast<std::int64_t>(count - 1) * step)) {
+    if (count > frames || !exists(first) || (count > 1 && (step > size || step < -size)) ||
+        (count > 1 && !exists(first + static_cast<std::int64_t>(count - 1) * step))) {
       throw pybind11::index_error("frame index out of range");
     }
   }

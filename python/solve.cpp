@@ -1,7 +1,9 @@
 #include <pybind11/stl.h>
 
+#include <array>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -35,7 +37,8 @@ class IteratorStream final : public FrameStream {
       if (PyErr_Occurred() != nullptr) throw py::error_already_set();
       return Arrival::ended;
     }
-    const auto [readings, time_s] = item.cast<std::pair<py::array, double>>();
+    const auto [readings, time_s, missing] =
+        item.cast<std::tuple<py::array, double, std::vector<std::array<std::uint32_t, 4>>>>();
     const FrameView view = frame_of(readings);
     check(view, plan_.skin, plan_.sensel_type, "frames");
     const std::span<std::byte> bytes = frame.buffer.bytes();
@@ -44,6 +47,9 @@ class IteratorStream final : public FrameStream {
     frame.time_s = time_s;
     frame.sequence = next_++;
     frame.missing.clear();
+    for (const auto& [first_row, rows, first_col, cols] : missing) {
+      frame.missing.push_back({first_row, rows, first_col, cols});
+    }
     return Arrival::arrived;
   }
 

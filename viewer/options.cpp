@@ -249,6 +249,10 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
           "--headless draws one source, without --truth");
   require(!options.headless || !is_live_source(options.source.string()),
           "a sensor needs the window; record it with 'pillarfield stream --record' first");
+  const bool may_be_sensor = options.source.empty() || is_live_source(options.source.string());
+  require(options.calibration.empty() || may_be_sensor,
+          "--calibration is that of a sensor; solve a recording with it: 'pillarfield solve "
+          "--calibration', and show the forces");
   require(!options.headless || writes,
           "--headless needs something to write: --png, --video or --csv");
 }

@@ -43,6 +43,14 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
       printable(options.output));
 }
 
+/// Files that a scene names.
+std::vector<std::filesystem::path> files_of(const Scene& scene) {
+  std::vector<std::filesystem::path> files;
+  for (const Body& body : scene.bodies) files.push_back(body.height_map);
+  if (scene.surface_map) files.push_back(scene.surface_map->path);
+  return files;
+}
+
 }  // namespace
 
 void simulate(const SimulateOptions& options) {
@@ -50,6 +58,7 @@ void simulate(const SimulateOptions& options) {
   check_outputs({options.scene}, {{options.output, OutputKind::recording}}, options.replace);
   const Simulator simulator(scene_of(options));
   const Scene& scene = simulator.scene();
+  check_outputs(files_of(scene), {{options.output, OutputKind::recording}}, options.replace);
   Skin skin = scene.skin;
   if (options.uncalibrated) skin.power_law.reset();
   RecordingWriter writer(options.output, skin, simulator.sensel_type(),

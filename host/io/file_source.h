@@ -23,6 +23,7 @@ class FileSource : public FrameSource {
   [[nodiscard]] std::uint64_t frames() const override { return frames_; }
   [[nodiscard]] const Calibration& calibration() const override { return calibration_; }
   [[nodiscard]] bool has_truth() const override { return false; }
+  void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
   void read_truth(std::uint64_t index, ForceField& truth) override;
 

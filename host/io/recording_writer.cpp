@@ -59,6 +59,7 @@ struct RecordingWriter::State {
   std::array<hdf5::TiledFrames, 3> truth;  // shear_x, shear_y, normal
   std::uint64_t frames = 0;
   std::uint64_t flushed = 0;
+  double last_time_s = 0;
 };
 
 RecordingWriter::State::State(const std::filesystem::path& final_path, const Skin& frame_skin,
@@ -119,6 +120,12 @@ void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
   check(frame, skin, type, where);
   if (!std::isfinite(time_s))
     throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
+  if (frames > 0 && time_s <= last_time_s) {
+    throw Error(
+        where,
+        fmt::format("its time is {}, and that of the frame before it {}", time_s, last_time_s),
+        "give times that rise from frame to frame");
+  }
   if ((field != nullptr) != options.truth) {
     throw Error(where, options.truth ? "has no truth" : "has a truth",
                 "set Options::truth if frames have one");
@@ -146,6 +153,7 @@ void RecordingWriter::State::append(const FrameView& frame, double time_s, const
   if (field != nullptr) put_truth(*field);
   time.put(frames, H5T_NATIVE_DOUBLE, &time_s);
   if (options.missing) missing.put(frames, H5T_NATIVE_UINT32, &missing_sensels);
+  last_time_s = time_s;
   ++frames;
   if (frames % options.flush_every == 0) flush();
 }

@@ -10,6 +10,7 @@ import numpy.typing as npt
 _Path = Union[str, os.PathLike[str]]
 _Floats = npt.NDArray[np.float32]
 _Doubles = npt.NDArray[np.float64]
+_Blocks = list[tuple[int, int, int, int]]
 _Bytes = npt.NDArray[np.uint8]
 _Vector = tuple[float, float, float]
 _Step = tuple[Calibration, dict[str, Any]]
@@ -386,7 +387,7 @@ def save_forces(path: _Path, planes: dict[str, Any], times: npt.ArrayLike,
                 solved_by: Optional[SolvedBy], overwrite: bool) -> None: ...
 def shear(loads: Sequence[FrameSource], shears_n: Sequence[tuple[float, float]],
           before: Calibration, normals_n: Optional[Sequence[float]]) -> _Step: ...
-def solve_iterator(frames: Iterator[tuple[npt.NDArray[Any], float]], plan: Plan, contacts: bool,
+def solve_iterator(frames: Iterator[tuple[npt.NDArray[Any], float, _Blocks]], plan: Plan, contacts: bool,
                    device: str) -> dict[str, Any]: ...
 def solve_part(source: FrameSource, plan: Plan, source_name: str, output: _Path, index: int,
                count: int, checkpoint_every: int, warm_up: int, contacts: bool,

@@ -14,6 +14,7 @@ from ._error import Error
 
 Readings = npt.NDArray[Any]
 Path = Union[str, os.PathLike[str]]
+Blocks = list[tuple[int, int, int, int]]
 
 _TYPES = (np.uint8, np.uint16, np.float32)
 
@@ -24,10 +25,7 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
     Whole numbers of other types become uint16 if they fit, else float32; other numbers float32.
     What a masked array masks is missing: NaN.
     """
-    if isinstance(frames, np.ma.MaskedArray) and np.any(frames.mask):
-        hidden: Any = frames.astype(np.float32)
-        frames = hidden.filled(np.nan)
-    array = array_of(frames)
+    array = array_of(missing_as_nan(frames))
     if array.dtype.kind not in "buif":
         raise Error("frames", f"their type is {array.dtype}", "give numbers")
     if kind is not None:
@@ -43,9 +41,20 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
     return np.require(array, wanted, ["C", "A"])
 
 
+def missing_as_nan(frames: npt.ArrayLike) -> npt.ArrayLike:
+    """A masked array as float32 with NaN where it masks; others as they are."""
+    if not isinstance(frames, np.ma.MaskedArray) or not np.any(frames.mask):
+        return frames
+    hidden: Any = frames.astype(np.float32)
+    return np.asarray(hidden.filled(np.nan))
+
+
 def array_of(frames: npt.ArrayLike) -> Readings:
     """An array; raises Error for frames that differ in size."""
     try:
+        if isinstance(frames, (list, tuple)) and any(isinstance(each, np.ma.MaskedArray) for each in frames):
+            stack: Any = np.ma.stack
+            frames = missing_as_nan(stack(frames))
         return np.asarray(frames)
     except ValueError as error:
         raise Error("frames", "they differ in size", "give frames of one size") from error
@@ -74,9 +83,10 @@ def times_of(count: int, times: Optional[npt.ArrayLike], rate_hz: Optional[float
     return given
 
 
-def timed(frames: Iterable[Any], kind: str, rate_hz: float) -> Iterator[tuple[Readings, float]]:
-    """Readings and time of each frame of an iterable of arrays or of Frame objects."""
+def timed(frames: Iterable[Any], kind: str,
+          rate_hz: float) -> Iterator[tuple[Readings, float, Blocks]]:
+    """Readings, time and blocks that did not arrive of each frame: an array or a Frame."""
     for index, frame in enumerate(frames):
         time_s = getattr(frame, "time_s", None)
         yield (readings_of(getattr(frame, "readings", frame), kind),
-               index / rate_hz if time_s is None else time_s)
+               index / rate_hz if time_s is None else time_s, getattr(frame, "missing", []))

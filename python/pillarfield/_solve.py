@@ -128,6 +128,13 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
     skin, times, rate_hz, calibration: as in solve()
     overwrite: replace an existing recording. Raises Error if it cannot be written.
     """
+    if isinstance(frames, (str, os.PathLike)) and (skin or calibration or times is not None):
+        frames = Recording(frames, rate_hz=rate_hz if times is None else 1.0)
+        rate_hz = None
+    if isinstance(frames, Recording) and (skin or calibration or times is not None):
+        skin, calibration = skin or frames.skin, calibration or frames.calibration
+        times = frames.times if times is None else times
+        frames = frames[:]
     source_of(frames, skin, times, rate_hz, calibration).write(path, overwrite=overwrite)
 
 
@@ -135,9 +142,13 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
               rate_hz: Optional[float] = None,
               calibration: Optional[_core.Calibration] = None) -> _core.FrameSource:
     """Frames with random access from a path, an array, a Recording or a Simulation."""
+    if isinstance(frames, (str, os.PathLike, Recording)) and times is not None:
+        raise Error("times", "files have times of their own", "give times with an array")
     if isinstance(frames, (str, os.PathLike)):
         return _core.FrameSource.open(frames, rate_hz=rate_hz)
     if isinstance(frames, Recording):
+        if rate_hz is not None:
+            raise Error("rate_hz", "this Recording was opened without it", "give it to pf.Recording()")
         return frames._source
     if isinstance(frames, Simulation):
         skin, calibration = skin or frames.skin, calibration or frames.calibration

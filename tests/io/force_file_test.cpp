@@ -168,7 +168,7 @@ void expect_cell(const std::string& cell, T value) {
 /// Chunks of 16 frames are stored whole: a file of one frame would take 16 times its values.
 TEST(ForceFile, OfFewFramesIsSmallWhereTheirNumberIsKnown) {
   const TemporaryDirectory directory;
-  constexpr std::uint64_t kValueBytes = 100 * 100 * (3 * sizeof(float) + 1);
+  constexpr std::uint64_t kValueBytes = std::uint64_t{10'000} * (3 * sizeof(float) + 1);
   constexpr std::uint64_t kHeads = 40'000;
   for (std::uint64_t frames = 1; frames <= 4; ++frames) {
     ForceFileInfo info = info_of(100, 100);

@@ -102,6 +102,20 @@ class Files(unittest.TestCase):
         with self.assertRaises(pf.Error):
             pf.save_recording(WORK / "press.h5", self.simulation)  # Recordings are not replaced.
 
+    def test_a_file_recorded_anew_takes_what_is_given(self):
+        tare = np.full((8, 12), 12.0)
+        np.save(WORK / "plain.npy", np.full((5, 8, 12), 40, np.uint8))
+        calibration = pf.Calibration(8, 12, tare=tare)
+        skin = pf.Skin(8, 12, counts_per_newton=50, full_scale_counts=200)
+        for frames in (WORK / "plain.npy", pf.Recording(WORK / "plain.npy", rate_hz=10)):
+            pf.save_recording(WORK / "anew.h5", frames, skin=skin, calibration=calibration,
+                              times=[1, 2, 3, 4, 6], overwrite=True)
+            anew = pf.open(WORK / "anew.h5")
+            self.assertEqual((anew.skin.counts_per_newton, anew.skin.full_scale_counts), (50, 200))
+            np.testing.assert_array_equal(anew.calibration.tare, tare)
+            np.testing.assert_array_equal(anew.times, [1, 2, 3, 4, 6])
+        self.assertEqual(len(anew[::100]), 1)
+
     def test_forces(self):
         file = pf.open(WORK / "forces.h5")
         self.assertIsInstance(file, pf.ForceFile)

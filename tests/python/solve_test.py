@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+import types
 import unittest
 import warnings
 
@@ -86,6 +87,7 @@ class Frames(unittest.TestCase):
         expected = pf.solve(missing)
         self.assertTrue(same(pf.solve(np.ma.array(self.frames, mask=hidden)), expected))
         self.assertTrue(same(pf.solve(iter(np.ma.array(missing, mask=hidden))), expected))
+        self.assertTrue(same(pf.solve(list(np.ma.array(self.frames, mask=hidden))), expected))
         self.assertFalse(np.array_equal(expected.status, self.expected.status))
         self.assertTrue(np.array_equal(pf.solve(np.ma.array(self.frames)).normal, self.expected.normal))
 
@@ -126,6 +128,21 @@ class Frames(unittest.TestCase):
         self.assertEqual(pf.solve(self.frames, rate_hz=50).times[3], 0.06)
         times = np.linspace(5, 6, 12)
         self.assertTrue(np.array_equal(pf.solve(self.frames, times=times).times, times))
+
+    def test_times_of_any_strides(self):
+        table = np.column_stack([np.arange(12) / 50, np.full(12, 7.0)])
+        for times in (table[:, 0], np.arange(24)[::2] / 100, list(np.arange(12) / 50), np.arange(12, dtype="f4") / 50):
+            np.testing.assert_allclose(pf.solve(self.frames, times=times).times, np.arange(12) / 50, rtol=1e-6)
+        for call in (lambda: pf.solve(WORK / "frames.npy", times=np.arange(12)),
+                     lambda: pf.save_recording(WORK / "flat.h5", self.frames, times=np.zeros(12))):
+            with self.assertRaises(pf.Error):
+                call()
+
+    def test_frames_of_a_sensor_name_what_did_not_arrive(self):
+        frame = types.SimpleNamespace(readings=self.frames[0], time_s=3.0, missing=[(8, 2, 10, 2)])
+        forces = pf.solve(iter([frame]))
+        self.assertEqual((forces.times[0], forces.status[0, 4, 5], forces.normal[0, 4, 5]),
+                         (3, pf.Status.INCONSISTENT, 0))
 
     def test_contacts_over_time(self):
         forces = pf.solve(self.simulation, contacts=True, estimator="contact")

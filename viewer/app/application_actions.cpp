@@ -36,7 +36,8 @@ void Application::serve() {
 }
 
 void Application::serve_open() {
-  if (pending_.open.empty() || loading_ != nullptr) return;
+  if (pending_.open.empty()) return;
+  loading_.reset();  // It may wait for a sensor for ever.
   options_.beside.clear();
   options_.truth = false;
   options_.first_frame = 0;

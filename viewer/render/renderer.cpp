@@ -99,9 +99,11 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField&
   set_viewport(commands, layout.plot);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_.layout(), 0, set,
                               nullptr);
-  commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                        pipelines_.heat(heat_kind_of(field, source, settings, layout.plot)));
-  commands.draw(6 * scene.grid.z * scene.grid.w, 1, 0, 0);
+  if (is_available(settings.quantity, source)) {  // A second source may lack its planes.
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                          pipelines_.heat(heat_kind_of(field, source, settings, layout.plot)));
+    commands.draw(6 * scene.grid.z * scene.grid.w, 1, 0, 0);
+  }
   if (settings.sectors && scene.block.x == 1 && scene.span.x != shader::kNoPlane && cells != 0) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.sectors());
     commands.draw(6, cells, 0, 0);

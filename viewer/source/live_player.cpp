@@ -178,7 +178,10 @@ LivePlayer::State::~State() {
   stopping = true;
   thread.join();
   if (finishing.valid()) finishing.wait();
-  if (recording != nullptr) recording->finish();
+  if (recording == nullptr) return;
+  recording->finish();
+  const std::string failure = recording->statistics().failure;
+  if (!failure.empty()) fmt::print(stderr, "pillarfield-viewer: {}\n", failure);
 }
 
 void LivePlayer::State::run() {
@@ -424,10 +427,15 @@ void LivePlayer::stop_recording() {
       std::async(std::launch::async, [this, finished = std::shared_ptr(std::move(sink))] {
         finished->finish();
         const LiveSinkStatistics statistics = finished->statistics();
-        state_->tell(statistics.failure.empty() ? fmt::format("recorded {} frames: {}",
-                                                              statistics.frames, finished->name())
-                                                : statistics.failure);
+        state_->tell(fmt::format("recorded {}: {}", recorded_words(statistics), finished->name()));
       });
+}
+
+std::string recorded_words(const LiveSinkStatistics& recorded) {
+  std::string words = fmt::format("{} frames", recorded.frames);
+  if (recorded.dropped > 0) words += fmt::format(", {} dropped", recorded.dropped);
+  if (!recorded.failure.empty()) words += ", failed: " + recorded.failure;
+  return words;
 }
 
 LiveStatus LivePlayer::status() const {

@@ -26,6 +26,9 @@ struct LiveStatus {
   std::uint64_t messages = 0;        ///< how many there were
 };
 
+/// "12 frames, 3 dropped, failed: the disk is full".
+[[nodiscard]] std::string recorded_words(const LiveSinkStatistics& recorded);
+
 /// What a user can do with a sensor.
 class LiveControl {
  public:

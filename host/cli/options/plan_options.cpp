@@ -1,11 +1,14 @@
 #include "cli/options/plan_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/tuning.h"
 
@@ -40,6 +43,12 @@ std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
 void apply_calibration(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
   const SkinCalibration calibration = read_calibration_file(options.calibration, options.read);
   require_fitting(calibration, plan.skin, source);
+  if (options.read.tare_frames > 0 && calibration.planes.effects.wires) {
+    throw Error(
+        "--tare-frames", "the tare of a skin with crosstalk of wires needs its calibration",
+        fmt::format("write one: pillarfield calibrate tare UNLOADED --calibration {} -o FILE",
+                    printable(options.calibration)));
+  }
   // The tare of --tare-frames stays.
   const std::vector<float> tare = plan.calibration.tare;
   const std::vector<float> noise = plan.calibration.noise;

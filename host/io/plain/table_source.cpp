@@ -25,9 +25,9 @@ constexpr std::size_t kMostTableReadings = std::size_t{1} << 27U;
 
 constexpr std::string_view kBlanks = " \t";
 
-std::string_view without_blanks(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+std::string_view without_blanks(std::string_view text, std::string_view blanks = kBlanks) {
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
 /// The separator of a line's cells; ' ' for any number of blanks.
@@ -41,7 +41,7 @@ char separator_of(std::string_view line) {
 /// Calls `action` with each cell of a line, without blanks around it.
 template <class Action>
 void for_each_cell(std::string_view line, char separator, Action action) {
-  line = without_blanks(line);
+  line = without_blanks(line, separator == '\t' ? " " : kBlanks);  // Outer cells may be empty.
   while (true) {
     const std::size_t end = std::min(line.find(separator), line.size());
     action(without_blanks(line.substr(0, end)));
@@ -79,6 +79,15 @@ bool resembles_numbers(std::string_view line) {
          without_blanks(line).find(separator_of(line)) != std::string_view::npos;
 }
 
+/// Whether cells count 0, 1, 2, ... as the names that programs give to columns without one.
+bool are_column_numbers(const std::vector<double>& cells) {
+  if (cells.size() < 3) return false;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] != static_cast<double>(i)) return false;
+  }
+  return true;
+}
+
 bool is_comment(std::string_view line) { return line.starts_with('#'); }
 
 /// Readings and times of a table.
@@ -88,6 +97,7 @@ struct Table {
   std::uint64_t lines = 0;   ///< with numbers
   std::uint64_t blocks = 0;  ///< of lines, between blank ones
   std::size_t cells = 0;     ///< of a line, without its time
+  bool begins_with_column_numbers = false;
 };
 
 class TableParser {
@@ -134,7 +144,10 @@ class TableParser {
     if (has_empty_end_ && cells_.size() > 1 && (!is_known || cells_.size() == line_cells_ + 1)) {
       cells_.pop_back();
     }
-    if (!is_known) begin();
+    if (!is_known) {
+      table_.begins_with_column_numbers = are_column_numbers(cells_);
+      begin();
+    }
     if (cells_.size() != line_cells_) {
       throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
                   fmt::format("lines before it have {}", line_cells_));
@@ -252,9 +265,16 @@ std::unique_ptr<FileSource> open_table(const std::filesystem::path& path,
                                     : NumberType{NumberType::Kind::real, 4};
   std::vector<std::byte> numbers = is_counts ? bytes_of_readings<std::uint16_t>(table.readings)
                                              : bytes_of_readings<float>(table.readings);
-  return array_source(path, "table of numbers",
-                      array_in_memory(path.string(), type, std::move(shape), std::move(numbers)),
-                      std::move(table.times_s), options);
+  auto source =
+      array_source(path, "table of numbers",
+                   array_in_memory(path.string(), type, std::move(shape), std::move(numbers)),
+                   std::move(table.times_s), options);
+  if (table.begins_with_column_numbers) {
+    source->warn(
+        "The first line counts 0, 1, 2, ... and is read as readings. If it names columns, save the "
+        "table without a header.");
+  }
+  return source;
 }
 
 /// Whether a text begins with two or more numbers in a line, after a line of names or none.

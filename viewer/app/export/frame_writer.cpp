@@ -45,7 +45,11 @@ FrameWriter::FrameWriter(AppState& state, Kind kind, std::filesystem::path path,
 
 FrameWriter::~FrameWriter() { state_->writing = false; }
 
-bool FrameWriter::wants_picture() const {
+bool FrameWriter::wants_picture() {
+  if (const PlayerState player = state_->player->state(); player.playing || player.frame != next_) {
+    state_->player->pause();  // The user played on or went elsewhere.
+    state_->player->seek(next_);
+  }
   if (!state_->field || state_->field->index != next_) return false;
   if (state_->beside == nullptr || state_->beside->live() != nullptr) return true;
   const std::uint64_t last = state_->beside->info().frames - 1;

@@ -22,7 +22,7 @@ class FrameWriter {
   FrameWriter& operator=(const FrameWriter&) = delete;
 
   /// True if the field on display is the frame to write.
-  [[nodiscard]] bool wants_picture() const;
+  [[nodiscard]] bool wants_picture();
 
   /// Writes the picture of that frame; returns true after the last one.
   bool add(const Pixels& pixels);

@@ -93,6 +93,7 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit) {
 void show_contacts(AppState& state, bool shown) {
   state.settings.contacts = shown;
   state.player->set_contacts(shown);
+  if (state.beside != nullptr) state.beside->set_contacts(shown);
 }
 
 void show_trails(AppState& state, bool shown) {

@@ -65,7 +65,7 @@ void sensor_panel(const Command& command) {
   faint_text(style, state_words(status).c_str());
   if (records) {
     const std::string name = std::filesystem::path(status.recording).filename().string();
-    faint_text(style, fmt::format("{}: {} frames", name, status.recorded.frames).c_str());
+    faint_text(style, fmt::format("{}: {}", name, recorded_words(status.recorded)).c_str());
   }
   value_table(style, health_lines(status));
 }

@@ -75,7 +75,7 @@ std::string sensor_words(const LiveStatus& status) {
   std::string words = fmt::format("{:.0f} Hz", status.stream.rate_hz);
   if (status.stream.lost > 0) words += "   " + plural(status.stream.lost, "frame") + " lost";
   if (!status.recording.empty()) {
-    words += fmt::format("   recording {}", plural(status.recorded.frames, "frame"));
+    words += "   recording " + recorded_words(status.recorded);
   }
   return words;
 }
