@@ -78,6 +78,26 @@ TEST_F(PlainTable, OtherNumbersAreFloats) {
   EXPECT_EQ(readings[3], 4.5f);
 }
 
+TEST_F(PlainTable, EmptyCellsBetweenTabsAreMissingAtTheEndsToo) {
+  const auto source = open("1\t2\t3\n\t5\t6\n7\t8\t\n");
+  const auto readings = all_readings(*source);
+  ASSERT_EQ(readings.size(), 9);
+  EXPECT_TRUE(std::isnan(readings[3]) && std::isnan(readings[8]));
+  EXPECT_EQ(readings[4], 5);
+  EXPECT_TRUE(has_all(refused("\t2\t3\n\t5\t6\n"), {"empty cell"}));
+}
+
+TEST_F(PlainTable, WarnsOfALineThatCountsAsAHeaderWithoutNames) {
+  const auto counts = [&](const std::string& text) {
+    return std::ranges::count_if(open(text)->warnings(), [](const std::string& warning) {
+      return warning.starts_with("The first line counts");
+    });
+  };
+  EXPECT_EQ(counts("0,1,2,3\n1,2,3,4\n"), 1);
+  EXPECT_EQ(counts("a,b,c,d\n1,2,3,4\n5,6,7,8\n"), 0);
+  EXPECT_EQ(counts("0,1\n2,3\n"), 0);
+}
+
 TEST_F(PlainTable, BlankLinesSeparateFrames) {
   const auto source = open("1,2\n3,4\n\n5,6\n7,8\n \n\n9,1\n2,3", {.rate_hz = 4});
   EXPECT_EQ(source->frames(), 3u);
