@@ -174,7 +174,7 @@ void OpenForces::read_surface_of_skin() {
 }
 
 void OpenForces::count_frames() {
-  frames = std::min(time.frames(), status.frames());
+  frames = std::min({time.frames(), status.frames(), file.readable_frames});
   for (const auto& plane : planes) frames = std::min(frames, plane.frames());
   if (contacts) frames = std::min(frames, contacts->frames());
   if (file.unclosed) {

@@ -155,7 +155,7 @@ void Recording::open_truth() {
 void Recording::count_frames() {
   const std::uint64_t times = time_ ? time_->frames() : raw_.frames();
   std::uint64_t most = std::max(raw_.frames(), times);
-  frames_ = std::min(raw_.frames(), times);
+  frames_ = std::min({raw_.frames(), times, file_.readable_frames});
   for (const auto& plane : truth_) {
     most = std::max(most, plane.frames());
     frames_ = std::min(frames_, plane.frames());

@@ -165,7 +165,7 @@ void RecordingWriter::State::require_open() const {
 
 void RecordingWriter::State::flush() {
   for (auto& plane : truth) plane.flush();
-  hdf5::flush(file);
+  hdf5::flush(file, frames);
   flushed = frames;
   part.sync_at_intervals();
 }

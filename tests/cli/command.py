@@ -46,6 +46,7 @@ def datasets(path):
         file.visititems(lambda name, item: found.update(
             {name: item[()]} if isinstance(item, h5py.Dataset) else {}))
     found.pop("flushed_bytes", None)
+    found.pop("flushed_frames", None)
     return found
 
 

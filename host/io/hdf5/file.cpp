@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr const char* kLayout = "docs/formats.md describes the expected file";
 constexpr const char* kCannotWrite = "cannot be written";
 constexpr const char* kFlushedBytes = "flushed_bytes";
+constexpr const char* kFlushedFrames = "flushed_frames";
 
 std::string advice_for(std::string_view found, std::string_view wanted) {
   if (found == "pillarfield-forces") {
@@ -48,24 +50,43 @@ std::uint64_t size_of(const std::filesystem::path& path) {
   throw Error(path.string(), failed.message(), "do not move it while it is open");
 }
 
-void note_size(const File& file) {
-  const std::uint64_t bytes = size_of(file.path);
-  require(
-      H5Dwrite(file.flushed_bytes.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &bytes),
-      file.path, kCannotWrite);
-  require(H5Dflush(file.flushed_bytes.get()), file.path, kCannotWrite);
+Handle create_note(const File& file, const char* name) {
+  constexpr hsize_t kOne = 1;
+  const Handle one = own(H5Screate_simple(1, &kOne, nullptr), file.path, kCannotWrite);
+  return own(H5Dcreate2(file.id.get(), name, H5T_STD_U64LE, one.get(), H5P_DEFAULT, H5P_DEFAULT,
+                        H5P_DEFAULT),
+             file.path, kCannotWrite);
+}
+
+void note(const File& file, const Handle& dataset, std::uint64_t number) {
+  require(H5Dwrite(dataset.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &number),
+          file.path, kCannotWrite);
+  require(H5Dflush(dataset.get()), file.path, kCannotWrite);
+}
+
+/// The size before the frames: a writer that is killed between the two has lost nothing that it
+/// has noted.
+void note_flushed(const File& file, std::uint64_t frames) {
+  note(file, file.flushed_bytes, size_of(file.path));
+  note(file, file.flushed_frames, frames);
+}
+
+std::optional<std::uint64_t> noted(const File& file, const char* name) {
+  if (!exists(file, name)) return std::nullopt;
+  const StoredFrames number(file, name, 0);
+  std::uint64_t value = 0;
+  if (number.frames() > 0) number.get(0, H5T_NATIVE_UINT64, &value);
+  return value;
 }
 
 /// Throws Error if an unclosed file is shorter than its writer had flushed.
 void require_whole(const File& file) {
-  if (!exists(file, kFlushedBytes)) return;
-  const StoredFrames number(file, kFlushedBytes, 0);
-  std::uint64_t flushed = 0;
-  if (number.frames() > 0) number.get(0, H5T_NATIVE_UINT64, &flushed);
+  const auto flushed = noted(file, kFlushedBytes);
+  if (!flushed) return;
   const std::uint64_t bytes = size_of(file.path);
-  if (bytes >= flushed) return;
+  if (bytes >= *flushed) return;
   throw Error(file.path.string(),
-              fmt::format("lost its end: {} bytes are left of {}", bytes, flushed), kDamaged);
+              fmt::format("lost its end: {} bytes are left of {}", bytes, *flushed), kDamaged);
 }
 
 }  // namespace
@@ -85,7 +106,10 @@ File open_to_read(const std::filesystem::path& path, bool probing) {
   const Handle access = reading_access(path, file.unclosed);
   file.id =
       own(H5Fopen(path.c_str(), mode, access.get()), path, "cannot be opened as HDF5", kDamaged);
-  if (file.unclosed) require_whole(file);
+  if (!file.unclosed) return file;
+  // Frames first: a running writer notes them last.
+  file.readable_frames = noted(file, kFlushedFrames).value_or(file.readable_frames);
+  require_whole(file);
   return file;
 }
 
@@ -125,12 +149,9 @@ File create(const OutputFile& output) {
 }
 
 void start_appending(File& file) {
-  constexpr hsize_t kOne = 1;
-  const Handle one = own(H5Screate_simple(1, &kOne, nullptr), file.path, kCannotWrite);
-  file.flushed_bytes = own(H5Dcreate2(file.id.get(), kFlushedBytes, H5T_STD_U64LE, one.get(),
-                                      H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                           file.path, kCannotWrite);
-  note_size(file);
+  file.flushed_bytes = create_note(file, kFlushedBytes);
+  file.flushed_frames = create_note(file, kFlushedFrames);
+  note_flushed(file, 0);
   flush(file);  // HDF5 reads back what it has written
   require(H5Fstart_swmr_write(file.id.get()), file.path, kCannotWrite);
   require_written(*file.write_status, file.path);
@@ -139,11 +160,16 @@ void start_appending(File& file) {
 void flush(const File& file) {
   require(H5Fflush(file.id.get(), H5F_SCOPE_GLOBAL), file.path, kCannotWrite);
   require_written(*file.write_status, file.path);
-  if (file.flushed_bytes.valid()) note_size(file);
+}
+
+void flush(const File& file, std::uint64_t frames) {
+  flush(file);
+  note_flushed(file, frames);
 }
 
 void close(File& file) {
   (void)file.flushed_bytes.close();
+  (void)file.flushed_frames.close();
   if (!file.id.close()) fail(file.path, kCannotWrite);
   require_written(*file.write_status, file.path);
 }

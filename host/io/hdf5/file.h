@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -17,7 +19,11 @@ struct File {
   std::shared_ptr<WriteStatus> write_status;  ///< set for created files
   bool unclosed = false;                      ///< its writer was killed or is still writing
   bool probing = false;                       ///< see open_to_read
-  Handle flushed_bytes;  ///< set after start_appending(): a number, see flush()
+  Handle flushed_bytes;                       ///< set after start_appending(): see flush()
+  Handle flushed_frames;                      ///< likewise
+  /// Frames that the writer of an unclosed file has flushed. Datasets may be longer: HDF5 would read
+  /// those of their chunks that are not in the file as zeros.
+  std::uint64_t readable_frames = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// Opens a file for reading, as a SWMR reader if its writer has not closed it. With `probing`, for
@@ -35,9 +41,12 @@ int require_format(const File& file, std::string_view format, int newest);
 [[nodiscard]] File create(const OutputFile& output);
 void start_appending(File& file);
 
-/// After start_appending() it notes the file's size too: open_to_read() refuses an unclosed file
-/// that became shorter, whose missing chunks HDF5 would read as zeros.
 void flush(const File& file);
+
+/// After start_appending(): flushes, then notes the file's size and that its datasets have so many
+/// `frames`. open_to_read() refuses an unclosed file that became shorter, whose missing chunks HDF5
+/// would read as zeros, and gives readers the frames.
+void flush(const File& file, std::uint64_t frames);
 
 /// Closes a created file whose datasets are closed. Throws Error if a write failed.
 void close(File& file);

@@ -121,7 +121,7 @@ void Hdf5Sink::flush() {
   for (auto& plane : planes_) plane.flush();
   status_.flush();
   if (info_.contacts) contacts_.write();
-  hdf5::flush(file_);
+  hdf5::flush(file_, frames_);
   flushed_ = frames_;
   part_.sync_at_intervals();
 }
