@@ -125,7 +125,7 @@ int run(const Arguments& arguments) {
   Session session{open_device(arguments.device), {}};
   session.length.seconds = arguments.seconds;
   add_context(session.device);
-  for (const auto add : {add_limit_cases, add_size_cases, add_changed_cases, add_plan_cases,
+  for (const auto add : {add_limit_cases, add_size_cases, add_plan_cases,
                          add_time_cases, add_baseline_cases, add_intrinsics_cases, add_spread_cases,
                          add_variant_cases, add_field_cases, add_choice_cases, add_render_cases}) {
     add(session);

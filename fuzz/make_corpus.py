@@ -563,40 +563,6 @@ HOSTILE_PARTS = {
 }
 
 
-def write_bodies(folder):
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in BODIES.items():
-        (folder / f"{name}.toml").write_text(text)
-
-
-PATCH = """
-[[patch]]
-name = "palm"
-scene = "skin.toml"
-"""
-BODY = """title = "Hand"
-rate_hz = 500
-refresh_s = 0.05
-""" + PATCH + """seed = 3
-size_mm = [12, 10]
-origin_mm = [0, 0, 20]
-tangent_x = [2, 0, 0]
-tangent_y = [0, 1, 0.001]
-clock_offset_s = -20.5
-clock_drift_ppm = -50
-""" + PATCH.replace("palm", "back")
-BODIES = {
-    "seed_hand": BODY, "seed_small": PATCH,
-    "hostile_large": "".join(PATCH.replace("palm", str(i)) + "size_mm = [2590, 2590]\n" for i in range(2)),
-    "hostile_many": "patch = [" + ", ".join(f'{{name = "{i}", scene = "skin.toml"}}' for i in range(1025)) + "]\n",
-    "hostile_no_patch": "rate_hz = 10\n", "hostile_rate": "rate_hz = nan\n" + PATCH,
-    "hostile_repeated_name": PATCH + PATCH, "hostile_scene_of_itself": PATCH.replace("skin", "body"),
-    "hostile_device": PATCH.replace("skin.toml", "/dev/zero"), "hostile_folder": PATCH.replace("skin.toml", "."),
-    "hostile_parallel_tangents": PATCH + "tangent_y = [1, 0, 0]\n",
-    "hostile_nested_arrays": "a=" + "[" * 5000 + "]" * 5000,
-}
-
-
 def write_calibration(program, scratch):
     """A calibration of the scene's skin in two steps, scratch/tare.h5."""
     unloaded = SCENE.split("[[contact]]")[0].replace("frames = 5", "frames = 40")
@@ -657,7 +623,6 @@ def main():
     write_hostile(options.folder)
     write_packets(options.folder)
     write_parts(options.folder / "parts", options.program)
-    write_bodies(options.folder / "body")
 
 
 if __name__ == "__main__":

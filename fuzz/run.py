@@ -22,7 +22,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TARGETS = ("recording", "forces", "parts", "calibration", "tekscan", "scene", "body", "plain", "packets")
+TARGETS = ("recording", "forces", "parts", "calibration", "tekscan", "scene", "plain", "packets")
 
 # Above the 5 s and 1 GB of the commands, since sanitizers need more.
 TIMEOUT_S = 15

@@ -32,8 +32,6 @@ void read_calibration(const std::filesystem::path& path, const ReadOptions& opti
 /// Reads a scene; also simulates the first and the last frame of a small one.
 void read_scene(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads a body, whose scene `skin.toml` lies beside it.
-void read_body(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads packets of a live source as from a pipe, and assembles their frames. Throws Error unless
 /// all bytes belong to packets of one stream, and they make a frame.
@@ -52,7 +50,6 @@ inline constexpr std::array<Target, 9> kTargets = {{
     {"calibration", read_calibration},
     {"tekscan", read_frames},
     {"scene", read_scene},
-    {"body", read_body},
     {"plain", read_plain},
     {"packets", read_packets},
 }};

@@ -32,7 +32,6 @@
 #include "frame/load_store.h"
 #include "frame/wire_vectors.h"
 #include "frame/calibration_planes.h"
-#include "frame/changed.h"
 #include "frame/idle.h"
 #include "frame/idle_tiles.h"
 #include "frame/block.h"

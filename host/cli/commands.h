@@ -100,18 +100,6 @@ struct StreamOptions : PrintOptions {
   DeviceOptions device;
 };
 
-/// Of `body plan` and `body simulate`; the latter alone uses those after `device`.
-struct BodyOptions : PrintOptions {
-  std::string file;
-  DeviceOptions device;
-  double loss_percent = 0;
-  std::optional<double> rate_hz;
-  std::optional<double> refresh_s;
-  double seconds = 2;
-  std::uint64_t seed = 1;
-  std::uint64_t scene_frames = 16;
-};
-
 struct CompareOptions : PrintOptions {
   std::string forces;
   std::string recording;
@@ -201,8 +189,6 @@ void solve(const SolveOptions& given);
 void join(const JoinCommand& command);
 void pace(const PaceOptions& options);
 void stream(const StreamOptions& options);
-void plan_body(const BodyOptions& options);
-void simulate_body(const BodyOptions& options);
 void compare(const CompareOptions& options);
 void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);

@@ -215,7 +215,6 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   all["PF_LANES"] = fmt::format("{}", lanes);
   if (paths.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
   if (paths.skip_idle) define_idle_range(plan, all);
-  if (paths.changed_only) all["PF_CHANGED"] = "";
   std::size_t place = 0;
   for (const CalibrationPlane plane : calibration_planes(plan, paths)) {
     all.emplace(macro_of(plane), fmt::format("{}", place++));

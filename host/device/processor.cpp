@@ -55,13 +55,12 @@ bool decide_sharing(Memory memory, const Device& device) {
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
-  paths.changed_only = options.changes;
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
   const std::size_t bytes = ResultLayout(plan, 0).bytes;
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   const std::size_t all = bytes * static_cast<std::size_t>(options.frames_in_flight);
-  if (cache != 0 && all > cache && !options.changes) paths.stores = Stores::streaming;
+  if (cache != 0 && all > cache) paths.stores = Stores::streaming;
   return paths;
 }
 
@@ -118,7 +117,6 @@ struct Processor::State {
     if (!wanted.calibration.bend_x.empty()) curvature.emplace(wanted);
     if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
     warm_up();
-    mark_all();
     order.rate = static_cast<float>(baseline_turn_rate(wanted));
     order.frame = 0;
     if (!calibration.has_tare()) return;
@@ -128,13 +126,6 @@ struct Processor::State {
     planes.bend_x = planes.bend_y = planes.bend_xy = {};
   }
 
-  /// Lets the next frame of each slot be solved whole.
-  void mark_all() {
-    for (const auto& slot : slots) {
-      if (slot->changed()) slot->changed()->mark_all();
-    }
-  }
-  void mark(std::span<const SenselBlock> changed);
   void submit(const FrameView& frame);
 
   /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
@@ -217,7 +208,7 @@ Processor::Processor(const Device& device, const SolverPlan& plan, const Options
     return with_opencl_errors(
         device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
   };
-  if (options.start_on_host && !options.changes && HostStart::serves(plan)) {
+  if (options.start_on_host && HostStart::serves(plan)) {
     try {
       start_ = std::make_unique<Start>(Start{device, decide_sharing(options.memory, device),
                                              HostStart(plan, options.frames_in_flight),
@@ -276,7 +267,6 @@ void Processor::State::submit(const FrameView& frame) {
     with_opencl_errors(device.info().name, [&] { slots[*slot]->submit(frame, bent); });
   } catch (...) {
     scheduler.returned()->give_back(*slot);
-    mark_all();
     throw;
   }
   scheduler.submit(*slot);
@@ -285,38 +275,7 @@ void Processor::State::submit(const FrameView& frame) {
 void Processor::submit(const FrameView& frame) {
   if (submit_on_host(frame)) return;
   check(frame, state_->skin, state_->sensel_type, kSubmit);
-  state_->mark_all();
   state_->submit(frame);
-}
-
-void Processor::submit(const FrameView& frame, std::span<const SenselBlock> changed) {
-  await_kernels();
-  check(frame, state_->skin, state_->sensel_type, kSubmit);
-  if (!state_->paths.changed_only) {
-    throw Error(kSubmit, "the processor solves whole frames", "construct it with Options::changes");
-  }
-  state_->mark(changed);
-  state_->submit(frame);
-}
-
-/// Checks all blocks before it marks one.
-void Processor::State::mark(std::span<const SenselBlock> changed) {
-  const auto is_within = [](std::uint32_t first, std::uint32_t count, std::uint32_t all) {
-    return first <= all && count <= all - first;
-  };
-  for (const SenselBlock& block : changed) {
-    if (is_within(block.first_row, block.rows, skin.rows) &&
-        is_within(block.first_col, block.cols, skin.cols)) {
-      continue;
-    }
-    throw Error(kSubmit,
-                fmt::format("a block of {} x {} sensels from ({}, {}) on reaches beyond the skin",
-                            block.rows, block.cols, block.first_row, block.first_col),
-                fmt::format("the skin has {} x {} sensels", skin.rows, skin.cols));
-  }
-  for (const auto& slot : slots) {
-    for (const SenselBlock& block : changed) slot->changed()->mark(block);
-  }
 }
 
 ForceFieldView Processor::receive() {

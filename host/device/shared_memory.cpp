@@ -19,11 +19,6 @@ class SharedMemory final : public SlotMemory {
     results_ = {context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_};
   }
 
-  void set_changed(const cl::CommandQueue& /*queue*/,
-                   std::span<const std::uint8_t> flags) override {
-    std::memcpy(pages_ + layout_.changed_begin(), flags.data(), flags.size());
-  }
-
   DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
     release(queue);
     const std::size_t bytes =

@@ -70,7 +70,6 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .result_bytes = results.plane_bytes,
           .status = results.status,
           .idle = results.bytes,
-          .changed = results.changed_begin(),
           .ring = results.scratch_begin(),
           .wires = results.scratch_begin(),
           .frame = 0,
@@ -90,9 +89,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
                      device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
-  if (settings.paths.changed_only) changed_.emplace(plan, settings.lanes);
-  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0,
-                       changed_ ? changed_->flags().size() : 0);
+  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
   if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);
   const std::size_t ring = ring_floats(plan, settings, global_[1]);
   const std::size_t forces = plan.calibration.effects.pillar_leak ? 3 * results.plane_bytes : 0;
@@ -134,10 +131,6 @@ Slot::~Slot() {
 }
 
 void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) {
-  if (changed_) {
-    memory_->set_changed(queue_, changed_->flags());
-    changed_->clear();
-  }
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   done_ = {};

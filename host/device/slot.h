@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "device/calibration_memory.h"
-#include "device/changed_blocks.h"
 #include "device/contact_stage.h"
 #include "device/device_state.h"
 #include "device/slot_memory.h"
@@ -52,9 +51,6 @@ class Slot {
   /// be in flight.
   void submit(const FrameView& frame, const std::optional<Curvature>& bent = {});
 
-  /// Blocks to solve in the next frame; none if the paths are not `changed_only`.
-  [[nodiscard]] std::optional<ChangedBlocks>& changed() { return changed_; }
-
   void wait();
 
   /// Whether wait() would return at once.
@@ -92,7 +88,6 @@ class Slot {
   cl::Event done_;    ///< behind the frame, once is_done() was asked for it; else null
   cl::Buffer frame_;  ///< keeps the frame in flight alive
   single_precision::Layout layout_{};
-  std::optional<ChangedBlocks> changed_;
   std::unique_ptr<SlotMemory> memory_;
 };
 

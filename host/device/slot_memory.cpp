@@ -4,9 +4,8 @@
 
 namespace pillarfield {
 
-ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed)
-    : plane_bytes(plane_distance(plan.skin.pillars() * sizeof(float))),
-      changed_flags(flags_of_changed) {
+ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
+    : plane_bytes(plane_distance(plan.skin.pillars() * sizeof(float))) {
   for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
     has[i] = has_planes(plan.angles, plan.uncertainty, kResultPlanes[i].set);
     planes[i] = status;

@@ -31,9 +31,8 @@ constexpr std::size_t plane_distance(std::size_t bytes) {
 /// Offsets of the planes of a result in one block of pages, bytes; the flags of idle blocks follow
 /// the planes.
 struct ResultLayout {
-  /// `block_lanes`: pillars of a block that may be idle; 0: no flags. `flags_of_changed`: bytes of
-  /// ChangedBlocks.
-  ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed = 0);
+  /// `block_lanes`: pillars of a block that may be idle; 0: no flags.
+  ResultLayout(const SolverPlan& plan, int block_lanes);
 
   std::array<std::size_t, kSolvedPlanes> planes{};  ///< offset from the first one
   std::array<bool, kSolvedPlanes> has{};            ///< planes of the plan
@@ -41,17 +40,12 @@ struct ResultLayout {
   std::size_t status = 0;
   std::size_t bytes = 0;          ///< of the block; the flags follow
   std::size_t idle_flags = 0;     ///< number of flags
-  std::size_t changed_flags = 0;  ///< bytes of ChangedBlocks, after the idle flags
   std::size_t scratch = 0;        ///< bytes that only the device uses, after the flags
   std::size_t flag_stride = 0;    ///< flags of a pillar row
   std::uint32_t lanes = 1;        ///< pillars of a flag
 
-  /// Offset of the flags of changed blocks.
-  [[nodiscard]] std::size_t changed_begin() const { return bytes + idle_flags; }
   /// Offset of the scratch memory.
-  [[nodiscard]] std::size_t scratch_begin() const {
-    return page_aligned(changed_begin() + changed_flags);
-  }
+  [[nodiscard]] std::size_t scratch_begin() const { return page_aligned(bytes + idle_flags); }
   /// Bytes of everything.
   [[nodiscard]] std::size_t all_bytes() const { return scratch_begin() + scratch; }
 };
@@ -67,9 +61,6 @@ struct DeviceFrame {
 class SlotMemory {
  public:
   virtual ~SlotMemory() = default;
-
-  /// Sets the flags of changed blocks for the frame that is uploaded next.
-  virtual void set_changed(const cl::CommandQueue& queue, std::span<const std::uint8_t> flags) = 0;
 
   /// Makes the frame's readings and memory for its results available to the next commands on
   /// `queue`.

@@ -58,11 +58,6 @@ class StagedMemory final : public SlotMemory {
     queue.finish();
   }
 
-  void set_changed(const cl::CommandQueue& queue, std::span<const std::uint8_t> flags) override {
-    queue.enqueueWriteBuffer(results_, CL_TRUE, layout_.changed_begin(), flags.size(),
-                             flags.data());
-  }
-
   DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
     const std::size_t row_bytes = frame.cols * size_of(frame.type);
     const std::size_t stride_bytes = frame.row_stride * size_of(frame.type);

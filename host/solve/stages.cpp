@@ -25,13 +25,11 @@ constexpr std::array kStages = {
     Stage{.name = "wires",
           .macro = "PF_WIRES",
           .is_named = [](const Plan& plan) { return effects(plan).wires.has_value(); },
-          .place = StagePlace::frame,
-          .reach = 1},
+          .place = StagePlace::frame},
     Stage{.name = "bend",
           .macro = "PF_BEND",
           .is_named = is_bent,
           .place = StagePlace::frame,
-          .reach = 1,
           .has_memory = true},
     Stage{"tare", "PF_TARE",
           [](const Plan& plan) {
@@ -43,8 +41,7 @@ constexpr std::array kStages = {
     Stage{"curve", "PF_CURVE", [](const Plan& plan) { return !effects(plan).curve.empty(); }},
     Stage{.name = "leak",
           .macro = "PF_LEAK",
-          .is_named = [](const Plan& plan) { return effects(plan).sensel_leak.has_value(); },
-          .reach = 1},
+          .is_named = [](const Plan& plan) { return effects(plan).sensel_leak.has_value(); }},
     Stage{.name = "memory",
           .macro = "PF_MEMORY",
           .is_named = [](const Plan& plan) { return effects(plan).memory.has_value(); },
@@ -66,33 +63,26 @@ constexpr std::array kStages = {
     Stage{.name = "pillar_leak",
           .macro = "PF_PILLAR_LEAK",
           .is_named = [](const Plan& plan) { return effects(plan).pillar_leak.has_value(); },
-          .place = StagePlace::frame,
-          .reach = 1},
+          .place = StagePlace::frame},
     Stage{.name = "lean",
           .macro = "PF_LEAN",
           .is_named = [](const Plan& plan) { return effects(plan).arm_mm.has_value(); },
-          .place = StagePlace::frame,
-          .reach = 2},
+          .place = StagePlace::frame},
     Stage{.name = "shear_ratio",
           .macro = nullptr,
           .is_named = [](const Plan& plan) { return effects(plan).arm_mm.has_value(); },
-          .place = StagePlace::frame,
-          .reach = 1},
+          .place = StagePlace::frame},
     Stage{.name = "follow_baseline",
           .macro = "PF_BASELINE",
           .is_named = [](const Plan& plan) { return plan.baseline_rate.has_value(); },
           .place = StagePlace::frame,
-          .reach = 1,
           .has_memory = true},
     Stage{.name = "estimate_contacts",
           .macro = nullptr,
           .is_named = [](const Plan& plan) { return plan.estimator == Estimator::contact; },
           .place = StagePlace::host,
-          .reach = 1,
           .has_memory = true},
 };
-
-static_assert(std::ranges::all_of(kStages, [](const Stage& s) { return s.reach <= kMostReach; }));
 
 }  // namespace
 
@@ -107,16 +97,6 @@ bool has_memory_on_device(const SolverPlan& plan) {
   return std::ranges::any_of(stages_of(plan), [](const Stage& stage) {
     return stage.has_memory && stage.place != StagePlace::host;
   });
-}
-
-bool may_solve_changes(const SolverPlan& plan) {
-  return !effects(plan).wires && std::ranges::none_of(stages_of(plan), &Stage::has_memory);
-}
-
-std::uint32_t neighbour_reach(const SolverPlan& plan) {
-  std::uint32_t reach = 0;
-  for (const Stage& stage : stages_of(plan)) reach += stage.reach;
-  return reach;
 }
 
 }  // namespace pillarfield

@@ -45,16 +45,14 @@ typedef struct {
   uint cols;
   uint skew;
   uint blocks;
-  global const uchar* changed; /* null if no block of the row changed */
-  global const uchar* idle;    /* idle flags; null where none are kept */
+  global const uchar* idle; /* idle flags; null where none are kept */
 } OwnRow;
 
 PF_INLINE OwnRow own_row(global const uchar* results, Layout layout, uint at) {
   OwnRow row;
   row.cols = (uint)layout.cols;
   row.skew = (uint)((size_t)at * row.cols % PF_LANES);
-  row.changed = changed_in_row(results, layout, at);
-  row.blocks = row.changed ? (row.skew + row.cols + PF_LANES - 1) / PF_LANES : 0;
+  row.blocks = (row.skew + row.cols + PF_LANES - 1) / PF_LANES;
 #ifdef PF_SKIP_IDLE
   row.idle = results + layout.idle + (size_t)at * blocks_of_row(row.cols);
 #else
@@ -76,12 +74,11 @@ typedef struct __attribute__((packed)) {
 } packed_flags;
 #endif
 
-/* First of this work-item's blocks from `at` on that changed and is active, or has the idle flag
- * `also`. */
+/* First of this work-item's blocks from `at` on that is active, or has the idle flag `also`. */
 PF_INLINE uint next_correctable(OwnRow row, uint at, uchar also) {
+#ifdef PF_SKIP_IDLE
   const uint step = (uint)get_global_size(0);
   while (at < row.blocks) {
-#ifdef PF_SKIP_IDLE
     const ulong all_idle = PF_IDLE * 0x0101010101010101ul;
     if (step == 1 && at + 8 <= row.blocks &&
         ((global const packed_flags*)(row.idle + at))->value == all_idle) {
@@ -89,12 +86,10 @@ PF_INLINE uint next_correctable(OwnRow row, uint at, uchar also) {
       continue;
     }
     const uchar flag = row.idle[at];
-    if (is_changed(row.changed, at) && (flag == 0 || flag == also)) break;
-#else
-    if (is_changed(row.changed, at)) break;
-#endif
+    if (flag == 0 || flag == also) break;
     at += step;
   }
+#endif
   return at;
 }
 

@@ -9,7 +9,6 @@ typedef struct {
   ulong result_bytes; /* from one plane of results to the next */
   ulong status;       /* bytes from the first plane of results to the status bytes */
   ulong idle;         /* bytes from the first plane of results to the idle flags */
-  ulong changed;      /* to the flags of changed blocks: changed.h */
   ulong ring;         /* to the rings of neighbours.h */
   ulong wires;        /* to the vectors of find_wires.cl */
   ulong frame;        /* number of the frame, from 1 on */

@@ -13,9 +13,8 @@ typedef struct {
 #ifdef PF_RING
   global const uchar* idle_now; /* flag of the first block in the ring */
 #endif
-  global const uchar* changed; /* flag of the first block */
-  uint skew;                   /* pillars by which the first block would begin before the row */
-  uint last_col;               /* first column of the last block */
+  uint skew;     /* pillars by which the first block would begin before the row */
+  uint last_col; /* first column of the last block */
   uint blocks;
 #ifdef PF_WIRES
   Calibration calibration;
@@ -71,7 +70,7 @@ PF_INLINE bool block_is_idle(Row row, uint at, size_t sensel) {
 }
 #endif
 
-PF_INLINE Row row_of(Input input, global uchar* idle, global const uchar* changed, uint at_row) {
+PF_INLINE Row row_of(Input input, global uchar* idle, uint at_row) {
   const Calibration calibration = input.calibration;
   const uint cols = input.cols;
   Row row;
@@ -83,7 +82,6 @@ PF_INLINE Row row_of(Input input, global uchar* idle, global const uchar* change
 #ifdef PF_RING
   row.idle_now = idle_in_ring(input.ring, at_row);
 #endif
-  row.changed = changed;
   row.skew = (uint)((size_t)at_row * cols % PF_LANES);
   row.last_col = cols - PF_LANES;
   row.blocks = (row.skew + cols + PF_LANES - 1) / PF_LANES;

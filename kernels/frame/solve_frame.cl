@@ -38,7 +38,6 @@
  *   PF_BASELINE                     stage: follow_baseline.cl
  *   PF_STREAM                       results bypass the caches: load_store.h
  *   PF_SKIP_IDLE                    skips idle blocks: idle.h
- *   PF_CHANGED                      solves only what changed: changed.h
  *   PF_ACTIVATION_PLANE, or PF_ACTIVATION     activation thresholds: one per sensel, or one
  *
  * A stage without its macro is not compiled. Constants are exact (hexadecimal); with PF_WHOLE those
@@ -145,7 +144,6 @@ PF_INLINE void store_solution(Solution solution, Output output, size_t index, La
 /* True if a block is idle and its stored results are already those of an idle block; updates its
  * flag. */
 PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
-  if (!is_changed(row.changed, at)) return true;
 #ifdef PF_SKIP_IDLE
   const uchar before = row.idle[at];
   const bool idle = block_is_idle(row, at, sensel);
@@ -175,10 +173,10 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
 }
 
 /* Solves this work-item's blocks of a pillar row. */
-PF_INLINE void solve_row(Input input, Output output, uint at_row, global const uchar* changed) {
+PF_INLINE void solve_row(Input input, Output output, uint at_row) {
   const uint pillar_cols = input.cols;
   const size_t first_index = (size_t)at_row * pillar_cols;
-  const Row row = row_of(input, output.idle, changed, at_row);
+  const Row row = row_of(input, output.idle, at_row);
 #ifdef PF_RING
   const size_t row_ahead = 2 * at_row + 4; /* the next one of which the ring is filled */
 #else
@@ -191,7 +189,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, global const u
     const Place top = {2 * at_row, 2 * col};
     const Place bottom = {2 * at_row + 1, 2 * col};
     prefetch_planes(input.calibration, row_ahead * input.calibration.stride + 2 * col);
-#if defined(PF_STREAM) || defined(PF_MEMORY) || defined(PF_CHANGED)
+#if defined(PF_STREAM) || defined(PF_MEMORY)
     const Lanes lanes = own_lanes(at * PF_LANES, row.skew, col, pillar_cols);
 #else
     const Lanes lanes = {0, PF_LANES};
@@ -237,14 +235,11 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
                          results + layout.idle};
 #ifdef PF_RING
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);
-  bool first = true; /* row of several without a gap */
 #endif
   for (uint row = band.first; row < band.end; ++row) {
-    global const uchar* const changed = changed_in_row(results, layout, row);
 #ifdef PF_RING
-    if (changed) fill_ring(&input, output.idle, row, first);
-    first = !changed;
+    fill_ring(&input, output.idle, row, row == band.first);
 #endif
-    if (changed) solve_row(input, output, row, changed);
+    solve_row(input, output, row);
   }
 }

@@ -166,6 +166,37 @@ class Replay(StreamTest):
             self.assert_fails("stream", *arguments, names=names)
 
 
+class Patches(StreamTest):
+    def test_each_patch_has_a_stream(self):
+        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(sender.close)
+        patches = []
+        for number, side in enumerate((8, 12, 16), start=1):
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+                free.bind(("127.0.0.1", 0))
+                address = free.getsockname()
+            forces = self.folder / f"patch{number}.h5"
+            process = self.started(f"udp:{address[0]}:{address[1]}", "--to", forces, "--frames", 20)
+            patches.append((process, address, side, 30 * number, forces))
+        end = time.monotonic() + PATIENCE_S
+        sequence = 0
+        while any(process.poll() is None for process, *_ in patches) and time.monotonic() < end:
+            for _, address, side, reading, _ in patches:
+                readings = bytes([reading]) * side ** 2
+                sender.sendto(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, side, side, 0, sequence,
+                                          time.monotonic_ns(), 0, 1, 0, 0, 0, len(readings))
+                              + readings, address)
+            sequence += 1
+            time.sleep(0.01)
+        for process, _, side, reading, forces in patches:
+            process.communicate(timeout=PATIENCE_S)
+            self.assertEqual(process.returncode, 0)
+            with h5py.File(forces) as file:
+                normal = file["force/normal"][:]
+                self.assertEqual(normal.shape, (20, side // 2, side // 2))
+                np.testing.assert_allclose(normal, reading / file.attrs["counts_per_newton"])
+
+
 class ControlLines(StreamTest):
     def test_every_line(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")

@@ -281,7 +281,6 @@ Work parse_arguments(int argc, char** argv) {
   add_join(app, work);
   add_stream(app, work);
   add_pace(app, work);
-  add_body(app, work);
   add_compare(app, work);
   add_calibrate(app, work);
   add_testbed(app, work);

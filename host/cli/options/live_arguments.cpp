@@ -35,14 +35,6 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
              "Time between reports of health [1]", 0.05, 3600);
 }
 
-void add_body_input(CLI::App* command, BodyOptions& options) {
-  Group(command, "Input")
-      .file("BODY", options.file, "Patches, poses and scenes (TOML), see docs/whole_body.md");
-  Group(command, "Device")
-      .text("--device", options.device.name, "DEVICE",
-            "OpenCL device, by index or part of its name [the best]; see info --devices");
-}
-
 }  // namespace
 
 void add_pace(CLI::App& parent, Work& work) {
@@ -111,35 +103,6 @@ void add_stream(CLI::App& parent, Work& work) {
              "Number of frames in the solver at once [2]", 1, 64);
   add_general(command, *options, "Print reports of health and the summary as lines of JSON",
               kQuietWriter);
-}
-
-void add_body(CLI::App& parent, Work& work) {
-  CLI::App* const steps = parent.add_subcommand(
-      "body", "Plan and simulate the skin of a whole body; see docs/whole_body.md.");
-  steps->footer("  pillarfield body simulate scenes/body/hand.toml --loss 2\n");
-  steps->require_subcommand(1);
-  const auto [plan, plan_options] = add_command<BodyOptions>(
-      *steps, work, plan_body, "plan",
-      "Sizes and rates of a body, and the time a frame takes on this machine.",
-      "  pillarfield body plan scenes/body/hand.toml\n");
-  add_body_input(plan, *plan_options);
-  add_general(plan, *plan_options, "Print the plan as JSON", kQuietReport);
-  const auto [run, options] = add_command<BodyOptions>(
-      *steps, work, simulate_body, "simulate",
-      "Simulate the sensors of a body, lose some of their packets, and solve the others.",
-      "  pillarfield body simulate scenes/body/hand.toml --loss 5 --seconds 1\n");
-  add_body_input(run, *options);
-  Group group(run, "Run");
-  group.number("--loss", options->loss_percent, "PERCENT", "Packets lost at random [0]", 0, 99);
-  group.number("--rate", options->rate_hz, "HZ", "Frames per second [the body's]", 1, 1e5);
-  group.number("--refresh", options->refresh_s, "SECONDS",
-               "Time in which every block is sent at least once [the body's]", 1e-3, 3600);
-  group.number("--seconds", options->seconds, "SECONDS", "Duration [2]", 1e-3, 1e5);
-  group.whole("--scene-frames", options->scene_frames, "N",
-              "Most frames of a scene that are rendered and repeated [16]", 1, 10'000);
-  group.whole("--seed", options->seed, "N", "Seed of losses and delays [1]", 0, kLargestSeed);
-  add_general(run, *options, "Print the summary as JSON", kQuietReport);
-  add_help(steps);
 }
 
 }  // namespace pillarfield::cli

@@ -90,13 +90,10 @@ class Processor {
   struct Options {
     Memory memory = Memory::automatic;
     int frames_in_flight = 2;  ///< slots, 1 to 64
-    /// Frames come as changes of their predecessors: submit() with `changed`, at the cost of what
-    /// changed. Each slot solves a change once, so one frame in flight costs least.
-    bool changes = false;
     /// While kernels are compiled, which takes seconds where the driver's cache does not hold them,
     /// submit() solves on the host instead, in the calling thread and with the same bits, so that
     /// forces come at once; pin() finds no frame, and set_tare() waits for the kernels. Has no
-    /// effect with angles, changes, estimators other than `direct`, and plans whose frames leave
+    /// effect with angles, estimators other than `direct`, and plans whose frames leave
     /// something to the next ones (a followed baseline, a bent skin, hysteresis, creep).
     bool start_on_host = false;
     /// Called at most once, from another thread, if compiling the kernels takes longer than 0.3 s,
@@ -140,13 +137,6 @@ class Processor {
   /// the caller must not change the frame until it is received; with staged memory it may change at
   /// once. Throws Error if all slots are in flight or pinned, or the frame does not fit the plan.
   void submit(const FrameView& frame);
-
-  /// Starts to solve a frame that differs from the one submitted before, if any, only in the
-  /// sensels of `changed`; needs Options::changes. Pillars that depend on none of these keep their
-  /// forces: the same bits as submit(frame). Plans with a baseline rate, bending, memory of
-  /// sensels, crosstalk of wires or the estimator `contact` solve the whole frame. Throws Error in
-  /// the cases of submit(frame), and if a block reaches beyond the skin.
-  void submit(const FrameView& frame, std::span<const SenselBlock> changed);
 
   /// Waits for the oldest frame in flight and returns its forces. The view stays valid until
   /// submit() reuses its slot, that is for as many further frames as there are slots that are not

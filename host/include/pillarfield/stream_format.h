@@ -44,7 +44,7 @@ typedef struct PillarfieldPacket {
   uint32_t parts;    /* packets of the frame, at least 1 */
   uint32_t first;    /* ROWS: the first row */
   uint32_t count;    /* ROWS: rows; BLOCKS: blocks */
-  uint32_t patch;    /* of a body, from 0; else 0 */
+  uint32_t patch;    /* 0 */
   uint32_t bytes;    /* after this header */
 } PillarfieldPacket;
 

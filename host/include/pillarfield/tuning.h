@@ -24,7 +24,6 @@ struct SpeedPaths {
   /// Skip blocks of idle pillars that were idle too when their slot was last written.
   bool skip_idle = true;
   Stores stores = Stores::automatic;
-  bool changed_only = false;  ///< Solve only what changed: Processor::Options::changes.
 };
 
 /// How a Processor uses its device.
