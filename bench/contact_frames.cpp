@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "bench/solve_variant.h"
 #include "bench/variants.h"
 #include "pillarfield/simulator.h"
 
@@ -16,6 +15,8 @@ constexpr double kContactFraction = 0.05;  ///< of the skin
 constexpr int kIndenters = 8;
 constexpr double kLoadN = 600;
 constexpr double kTravelMm = 30;
+constexpr double kNoiseCounts = 0.5;
+constexpr double kThresholdCounts = 2.5;
 
 struct Motion {
   ContactMotion kind;
@@ -58,8 +59,8 @@ Contact ball(int number, const Motion& motion, double size_mm) {
 Scene scene_of(Indenters indenters, std::size_t frames) {
   Scene scene;
   scene.skin = bare_plan(kSquareMetre).skin;
-  scene.skin.threshold_counts = kSensorThresholdCounts;
-  scene.sensor.noise_counts = kSensorNoiseCounts;
+  scene.skin.threshold_counts = kThresholdCounts;
+  scene.sensor.noise_counts = kNoiseCounts;
   scene.sensor.adc_bits = 8;
   scene.rate_hz = static_cast<double>(frames);
   scene.frames = static_cast<std::uint32_t>(frames);

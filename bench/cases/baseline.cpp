@@ -12,7 +12,6 @@
 #include "bench/baselines/agreement.h"
 #include "bench/baselines/loop_solver.h"
 #include "bench/baselines/numpy_process.h"
-#include "bench/baselines/plain_loop.h"
 #include "bench/baselines/vectorised.h"
 #include "bench/cases/cases.h"
 #include "bench/timing/solve_timing.h"
@@ -80,15 +79,6 @@ void require_our_bits(const char* name, LoopSolver& theirs, Comparison& comparis
   }
 }
 
-Measurement time_plain_loop(const Session& session, int threads) {
-  Comparison comparison(session);
-  LoopSolver loop(comparison.plan(), solve_rows_plainly, threads);
-  require_our_bits("C++ loop", loop, comparison);
-  comparison.add(fmt::format("-O3, threads: {}", threads),
-                 [&](int count) { loop.run(comparison.frames(), count); });
-  return comparison.run();
-}
-
 Measurement time_vectorised(const Session& session) {
   const Vectorised intrinsics = vectorised().front();
   Comparison comparison(session);
@@ -131,9 +121,6 @@ Measurement time_numpy(const Session& session) {
 
 void add_baseline_cases(const Session& session) {
   add_case("baseline/paper_opencl", [&session] { return time_paper(session); });
-  add_case("baseline/cpp_one_thread", [&session] { return time_plain_loop(session, 1); });
-  add_case("baseline/cpp_all_threads",
-           [&session] { return time_plain_loop(session, all_threads()); });
   add_case("baseline/vectorised", [&session] { return time_vectorised(session); });
   add_case("baseline/numpy", [&session] { return time_numpy(session); });
 }

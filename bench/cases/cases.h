@@ -13,8 +13,6 @@ void add_plan_cases(const Session& session);        ///< type/, output/, estimat
 void add_time_cases(const Session& session);        ///< latency/, throughput/
 void add_baseline_cases(const Session& session);    ///< baseline/
 void add_intrinsics_cases(const Session& session);  ///< intrinsics/
-void add_spread_cases(const Session& session);      ///< spread/
-void add_variant_cases(const Session& session);     ///< variant/
 void add_field_cases(const Session& session);       ///< field/
 void add_choice_cases(const Session& session);      ///< choice/
 void add_render_cases(const Session& session);      ///< render/

@@ -54,17 +54,11 @@ class Cases(unittest.TestCase):
         self.assertGreater(case["of_empty_launch"], 0)
 
     def test_a_baseline_is_compared(self):
-        found, _ = cases("^baseline/cpp_one_thread$")
-        case = found["baseline/cpp_one_thread"]
+        found, _ = cases("^baseline/vectorised$")
+        case = found["baseline/vectorised"]
         self.assertNotIn("error_occurred", case)
         self.assertGreater(case["speedup"], 0)
         self.assertGreater(case["our_ns_per_pillar"], 0)
-
-    def test_a_variant_has_its_error(self):
-        case = cases("^variant/direct/float/u8/none$")[0]["variant/direct/float/u8/none"]
-        self.assertAlmostEqual(case["error_over_bound"], 1, delta=0.005)
-        self.assertGreater(case["error_pillars"], 200_000)
-        self.assertGreater(case["error_counts_all_regions"], case["error_counts"])
 
     def test_numpy_agrees(self):
         found, _ = cases("^baseline/numpy$")

@@ -62,12 +62,6 @@ class BenchTest(unittest.TestCase):
                 with self.assertRaisesRegex(page.Failure, path.name):
                     page.load(path)
 
-    def test_spread_reads_bins_in_their_order(self):
-        bench = made_up(spread__6241={"empty_from_10us": 0.25, "empty_from_12.5893us": 0.75})
-        self.assertEqual(speed.spread(bench, "empty"), {10: 0.25, 12.5893: 0.75})
-        with self.assertRaisesRegex(page.Failure, "no times of 'solve'"):
-            speed.spread(bench, "solve")
-
 
 class Goals(unittest.TestCase):
     LIVE = {"missed": 0, "dropped": 0}
@@ -113,23 +107,6 @@ class Goals(unittest.TestCase):
     def test_a_live_run_counts_missed_and_dropped(self):
         self.assertEqual(self.goal("1 kHz"), "0")
         self.assertEqual(self.goal("1 kHz", {"missed": 2, "dropped": 3}), "**5**")
-
-
-class ParetoFront(unittest.TestCase):
-    def test_has_the_points_that_no_other_dominates(self):
-        points = [(4, 1.0), (1, 3.0), (2, 2.0), (3, 2.5), (2.5, 2.0), (5, 0.5)]
-        self.assertEqual(speed.pareto_front(points, 0), [1, 2, 0, 5])
-
-    def test_takes_errors_within_the_resolution_for_equal(self):
-        points = [(1, 1.0), (2, 0.998), (3, 0.996), (4, 0.99)]
-        self.assertEqual(speed.pareto_front(points, 0.003), [0, 2, 3])
-        self.assertEqual(speed.pareto_front(points, 0.02), [0])
-
-    def test_has_the_most_exact_of_equal_costs(self):
-        self.assertEqual(speed.pareto_front([(1, 2.0), (1, 1.0), (1, 1.0)], 0), [1])
-
-    def test_of_nothing_is_nothing(self):
-        self.assertEqual(speed.pareto_front([], 0), [])
 
 
 class Processors(unittest.TestCase):

@@ -126,96 +126,6 @@ def goal_rows(kept):
         yield [what, f"{sign} {limit:g}", *(goal_cell(sign, limit, one["goals"].get(what)) for one in kept)]
 
 
-# --- Error against time ---
-
-RESOLUTION = 0.003  # of an error: smaller differences count as equal
-
-
-def pareto_front(points, resolution):
-    """Indices of the Pareto-optimal points (cost, error), by cost. Errors that differ by at most
-    `resolution` count as equal."""
-    front = []
-    least = math.inf
-    for i in sorted(range(len(points)), key=lambda i: points[i]):
-        if points[i][1] < (1 - resolution) * least:
-            front.append(i)
-            least = points[i][1]
-    return front
-
-
-def variants(bench):
-    """The solve variants, from the fastest on."""
-    keys = ("ns_per_pillar", "of_copy", "over_bare_copy", "error_counts", "error_over_bound",
-            "error_pillars", "error_counts_all_regions", "ambiguous")
-    found = []
-    for case in bench.group("variant"):
-        estimator, arithmetic, sensels, stages = case.split("/")[1:]
-        found.append({
-            "name": ", ".join((estimator, arithmetic, sensels, stages)),
-            "solve": f"{estimator}, {arithmetic}", "sensels": sensels,
-            "stages": stages, **{key: bench.value(case, key) for key in keys}})
-    return sorted(found, key=lambda way: way["over_bare_copy"])
-
-
-def front_by(ways, error):
-    return [ways[i] for i in pareto_front([(way["over_bare_copy"], way[error]) for way in ways],
-                                          RESOLUTION)]
-
-
-def front_text(front, error, unit):
-    return "; ".join(f"*{way['name']}* ({way['over_bare_copy']:.3g} times the bare copy, "
-                     f"{way[error]:.3f} {unit})" for way in front)
-
-
-def variant_rows(ways, front):
-    for way in ways:
-        cells = [way["name"], *page.cells(
-            way, "ns_per_pillar:.3g of_copy:.3f over_bare_copy:.3g error_counts:.3f "
-                 "error_over_bound:.3f error_counts_all_regions:.2f"),
-            f"{percent(way['ambiguous'])} %"]
-        if way in front:
-            for bold in (0, 3, 5):
-                cells[bold] = f"**{cells[bold]}**"
-        yield cells
-
-
-COLOURS = {"direct, float": pictures.BLUE, "direct, double": pictures.SKY_BLUE,
-           "paper, float": pictures.VERMILION, "paper, double": pictures.ORANGE}
-MARKERS = {"none": "o", "angles": "^", "uncertainty": "v", "calibration": "s", "all": "D"}
-
-
-def draw_variants(ways, front, folder):
-    """A panel for each type of sensel."""
-    figure, axes = pictures.panels(960, 600, 3, 1, sharex=True, sharey=True)
-    for axis, sensels in zip(axes, ("u8", "u16", "f32")):
-        axis.axhline(1, color=pictures.GREY, linewidth=1, zorder=1)
-        for way in ways:
-            if way["sensels"] != sensels:
-                continue
-            place = way["over_bare_copy"], way["error_over_bound"]
-            colour = COLOURS[way["solve"]]
-            axis.plot(*place, MARKERS[way["stages"]], color=colour, markersize=6)
-            if way in front:
-                axis.plot(*place, "o", color=pictures.BLACK, markersize=13, markerfacecolor="none")
-        axis.text(0.01, 0.8, sensels, transform=axis.transAxes)
-    most = max(way["error_over_bound"] for way in ways)
-    axes[0].set(xscale="log", ylim=(0.97, most + 0.03),
-                yticks=[1 + 0.05 * step for step in range(1 + int((most - 0.97) / 0.05))])
-    pictures.plain_ticks(axes[0].xaxis)
-    axes[1].set_ylabel("RMS error over the Cramér–Rao bound")
-    axes[2].set_xlabel("time over that of the bare copy")
-
-    def entry(marker, colour, label, **options):
-        return axes[0].plot([], [], marker, color=colour, label=label, linestyle="", **options)[0]
-
-    entries = [entry("o", colour, label) for label, colour in COLOURS.items()]
-    entries += [entry(marker, pictures.GREY, "bare" if stages == "none" else stages)
-                for stages, marker in MARKERS.items()]
-    entries += [entry("o", pictures.BLACK, "Pareto front", markersize=10, markerfacecolor="none")]
-    axes[0].legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=6)
-    pictures.save(figure, folder, "error_and_time")
-
-
 # --- Size and contact ---
 
 def sizes(bench):
@@ -284,46 +194,6 @@ def contact_rows(bare, every):
 
 # --- Latency ---
 
-SPREAD = "spread/6241"
-
-
-def spread(bench, who):
-    """Fractions of the times by the lower end of their bin in µs, ten bins a decade, from the
-    counters "<who>_from_<end>us"."""
-    beginning = f"{who}_from_"
-    found = {float(key.removeprefix(beginning).removesuffix("us")): share
-             for key, share in bench.case(SPREAD).items() if key.startswith(beginning)}
-    if not found:
-        raise Failure(f"{bench.name}: the case '{SPREAD}' has no times of '{who}'; "
-                      "measure again with ./dev report speed")
-    return found
-
-
-def draw_latency(bench, live, folder):
-    figure, (left, right) = pictures.panels(960, 400, 1, 2)
-    for who, label, colour in (("empty", "empty launch", pictures.GREY),
-                               ("solve", "79 × 79 pillars", pictures.BLUE)):
-        shares = spread(bench, who)
-        left.bar(list(shares), [100 * share for share in shares.values()],
-                 [(10**0.1 - 1) * begin for begin in shares], align="edge", alpha=0.6,
-                 color=colour, label=label)
-    left.set(xscale="log", xlabel="time of one frame (µs)", ylabel="share of the frames (%)")
-    left.legend(loc="upper right")
-    bins = [bin for bin in live["latency_histogram"] if bin["frames"] > 0]
-    right.bar([bin["from_ms"] for bin in bins], [bin["frames"] for bin in bins],
-              [bin["to_ms"] - bin["from_ms"] for bin in bins], align="edge", color=pictures.BLUE)
-    right.axvline(live["deadline_ms"], color=pictures.VERMILION, linestyle="--")
-    right.set(xscale="log", yscale="log", ylim=(0.7, None), xlabel="latency (ms)", ylabel="frames")
-    right.text(live["deadline_ms"], 1, "deadline", color=pictures.VERMILION, ha="center",
-               va="bottom", transform=right.get_xaxis_transform())
-    pictures.plain_ticks(left.xaxis, digits=(1, 3))
-    pictures.plain_ticks(right.xaxis)
-    pictures.plain_ticks(right.yaxis, digits=(1,))
-    for axis in (left, right):
-        axis.grid(axis="x", visible=False)
-    pictures.save(figure, folder, "latency")
-
-
 def latency_rows(bench):
     return [bench.cells(case, "pillars:.0f median_us:.1f p99_us:.1f of_empty_launch:.2f")
             for case in bench.group("latency")]
@@ -333,8 +203,6 @@ def latency_rows(bench):
 
 BASELINES = {
     "vectorised": "loop of vector intrinsics",
-    "cpp_all_threads": "C++ loop over the same mathematics, all threads",
-    "cpp_one_thread": "C++ loop, one thread",
     "numpy": "NumPy, array expressions",
     "paper_opencl": "the paper's equations in OpenCL",
 }
@@ -392,13 +260,9 @@ def latencies(live):
 def main(docs, bench_json, live_json):
     folder = Path(docs, "pictures", "performance")
     bench, live = Bench(bench_json, page.load(bench_json)), page.load(live_json)
-    ways = variants(bench)
-    front = front_by(ways, "error_over_bound")
     found = list(sizes(bench))
     bare, every = list(contact_costs(bench, "bare")), list(contact_costs(bench, "all"))
-    draw_variants(ways, front, folder)
     draw_sizes(found, bare, every, folder)
-    draw_latency(bench, live, folder)
     context = {"commit": "unknown"} | bench.context
     kept = processors.keep(docs, "goals", {"date": context["date"][:10], "commit": context["commit"],
                                            "goals": goals(bench, live)})
@@ -406,12 +270,9 @@ def main(docs, bench_json, live_json):
         docs, "performance", goal_rows=goal_rows(kept),
         goal_heads=" | ".join(one["processor"] for one in kept), goal_aligns="--:|" * len(kept),
         goal_dates="; ".join(f"{one['processor']}: {one['date']}, commit {one['commit']}" for one in kept),
-        error_pillars=ways[0]["error_pillars"], variants=len(ways),
-        front=front_text(front, "error_over_bound", "times the bound"),
-        front_by_counts=front_text(front_by(ways, "error_counts"), "error_counts", "counts"),
-        variant_rows=variant_rows(ways, front), size_rows=size_rows(found),
+        size_rows=size_rows(found),
         contact_rows=contact_rows(bare, every), latency_rows=latency_rows(bench),
-        spread_times=bench.case(SPREAD)["label"], live=live, latencies=latencies(live),
+        live=live, latencies=latencies(live),
         live_pillars=live["pillar_rows"] * live["pillar_cols"],
         contact_share=percent(live["contact_share"]), baseline_rows=baseline_rows(bench),
         stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
