@@ -25,9 +25,7 @@ enum class Stream : std::uint32_t {
   dead,
   noise,
   drift,
-  positioner,
-  probe,
-  roughness,
+  roughness = 7,  ///< 5 and 6 served a simulation that is gone; recordings keep their noise
   friction,
   bend_x,
   bend_y,

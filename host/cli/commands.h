@@ -15,7 +15,6 @@
 #include "pillarfield/read_options.h"
 #include "pillarfield/tare.h"
 #include "pillarfield/wire_calibration.h"
-#include "testbed/testbed.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
@@ -169,13 +168,6 @@ struct ApplyCommand : StepOptions {
   std::string recording;
 };
 
-struct TestbedOptions : PrintOptions {
-  testbed::Parameters parameters;
-  std::uint64_t runs = 1000;
-  std::string figures;
-  Replace replace = Replace::results;
-};
-
 /// Describes a file, the devices, the kernel of a scene, or with none of these the program.
 struct InfoOptions : PrintOptions {
   std::string file;
@@ -201,7 +193,6 @@ void calibrate(const BendingCommand& command);
 void calibrate(const WiresCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
-void run_testbed(const TestbedOptions& options);
 void info(const InfoOptions& options);
 
 /// Prints version, commit, compiler and libraries.

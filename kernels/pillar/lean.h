@@ -21,7 +21,7 @@ PF_INLINE Real size_of(Real x) { return x < PF_REAL(0.0) ? -x : x; }
 /* The lean towards `after` of a pillar with the normal force `own`, N; the pillars in its line are
  * far_before, before, own, after, far_after. The complete odd cubic in four ratios, exact to first
  * order in a pressure that varies linearly; its other coefficients are least squares over bodies on
- * an elastic half-space (tools/lean), and the deviation is what they leave. */
+ * an elastic half-space (lab/lean), and the deviation is what they leave. */
 PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);

@@ -1,6 +1,5 @@
-"""The commands simulate, solve, compare, info and testbed."""
+"""The commands simulate, solve, compare and info."""
 
-import shutil
 import unittest
 
 import h5py
@@ -331,76 +330,6 @@ class RealFrames(CommandTest):
         self.assert_fails("solve", changed, "-o", self.folder / "forces.h5",
                           names=["changed.csv", "310", "311"])
         self.assert_folder_holds("changed.csv")
-
-
-class Testbed(CommandTest):
-    FIGURES = ["figure_3_regions", "figure_4_contours", "figure_5_uncertainty",
-               "figure_8_magnitude"]
-
-    def test_json(self):
-        result = run_json("testbed", "--runs", 50)
-        self.assertEqual(list(result), ["sensor", "positioner_rad", "play_rad",
-                                        "probe_resolution_n", "seed", "runs", "table_2", "forces",
-                                        "wrong_regions", "unflagged", "figure_8"])
-        self.assertEqual([(row["site"], row["angle"]) for row in result["table_2"]],
-                         [(f"Region {n}", angle) for n in (1, 2, 3) for angle in ("phi", "theta")])
-        theta = result["table_2"][1]
-        self.assertEqual(theta["published"], {"mean": 0.551, "deviation": 0.24,
-                                              "mean_error": 0.177})
-        self.assertLess(theta["direct"]["run"]["deviation"], 0.24 / 5)
-        self.assertGreater(theta["paper"]["expected"]["deviation"], 0.2)
-        self.assertEqual(result["forces"], 50 * 30)
-        self.assertGreater(result["wrong_regions"], 0)
-        self.assertEqual(result["unflagged"], 0)
-        self.assertEqual(len(result["figure_8"]), 30)
-        for point in result["figure_8"]:
-            self.assertLess(point["uncertain_low_n"], point["applied_n"])
-            self.assertGreater(point["uncertain_high_n"], point["applied_n"])
-
-    def test_text_has_the_table_and_the_figure(self):
-        text = run("testbed", "--runs", 10).stdout
-        for words in ("Table II", "Region 1", "theta", "0.0735", "Figure 8", "our choice"):
-            self.assertIn(words, text)
-
-    def test_options_are_the_sensor(self):
-        result = run_json("testbed", "--runs", 2, "--seed", 7, "--counts-per-newton", 10,
-                          "--dead-zone", 0, "--threshold", 0, "--noise", 0, "--full-scale", 2000,
-                          "--positioner", 0, "--play", 0, "--probe-resolution", 0)
-        self.assertEqual(result["sensor"], {"counts_per_newton": 10, "threshold_counts": 0,
-                                            "dead_zone_counts": 0, "full_scale_counts": 2000,
-                                            "noise_counts": 0})
-        self.assertEqual(result["seed"], 7)
-        for row in result["table_2"][:4]:  # rounding dominates at the third site
-            self.assertLess(row["direct"]["run"]["mean_error"], 0.005)
-            self.assertLess(row["paper"]["run"]["mean_error"], 0.005)
-
-    def test_statistics_without_readings_are_null(self):
-        rows = run_json("testbed", "--runs", 2, "--dead-zone", 100000)["table_2"]
-        self.assertIsNone(rows[0]["direct"]["run"]["mean"])
-
-    def test_parameters_out_of_range(self):
-        for option, value, name in (("--dead-zone", -1, "dead zone"), ("--play", 7, "play"),
-                                    ("--counts-per-newton", 0, "sensitivity")):
-            self.assert_fails("testbed", option, value, names=[name, "out of range"])
-
-    def test_figures(self):
-        if not shutil.which("gnuplot"):
-            self.skipTest("gnuplot is not installed")
-        folder = self.folder / "figures"
-        text = run("testbed", "--runs", 2, "--figures", folder).stdout
-        self.assertIn(str(folder), text)
-        self.assertEqual(sorted(path.name for path in folder.iterdir()),
-                         sorted(name + ending for name in self.FIGURES
-                                for ending in (".png", ".svg")))
-        self.assertGreater(min(path.stat().st_size for path in folder.iterdir()), 10_000)
-        self.assert_fails("testbed", "--runs", 2, "--figures", __file__, names=["command_test.py"])
-
-    def test_figures_without_gnuplot(self):
-        result = run("testbed", "--runs", 2, "--figures", self.folder, expect=1, env={"PATH": ""})
-        self.assertEqual(result.stdout, "")
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertIn("gnuplot-nox", result.stderr)
-        self.assert_folder_holds()
 
 
 class Scenes(CommandTest):

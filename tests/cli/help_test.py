@@ -13,7 +13,7 @@ from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
 
 STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["stream"], ["pace"], ["compare"], ["calibrate"],
-            *(["calibrate", step] for step in STEPS), ["testbed"], ["info"], ["completion"]]
+            *(["calibrate", step] for step in STEPS), ["info"], ["completion"]]
 
 
 def examples_of(command):
@@ -115,7 +115,6 @@ class WrongCommandLines(CommandTest):
                 ("--minimum-pillars requires --contacts", *solve, "--minimum-pillars", 4),
                 ("--friction", *solve, "--friction", 0.05), ("20", *solve, "--friction", 20),
                 ("--frames", "simulate", "a", "-o", "b", "--frames", 0),
-                ("--runs", "testbed", "--runs", 1), ("wide", "testbed", "--dead-zone", "wide"),
                 ("--devices", "info", "file", "--devices"), ("tcsh", "completion", "tcsh"),
                 ("UNLOADED", "calibrate", "tare"), ("--output", "calibrate", "tare", "a"),
                 ("--pressure-kpa", *press), ("'0'", *press, "--pressure-kpa", 0),
@@ -157,7 +156,7 @@ class Numbers(CommandTest):
         scene = SOURCE / "scenes/spin.toml"
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
-        needed = {"simulate": [scene, "-o", output], "pace": [recording], "testbed": [],
+        needed = {"simulate": [scene, "-o", output], "pace": [recording],
                   "stream": [recording], "info": [recording],
                   "apply": [recording, recording, "-o", output],
                   "compare": [recording, recording],
@@ -184,15 +183,13 @@ class Numbers(CommandTest):
 
     def test_whole_numbers(self):
         simulate = ["simulate", "scene.toml", "-o", "a.h5"]
-        for command in (simulate, ["testbed", "--runs", "2"]):
-            for seed in ("-1", "1.5", "0x10", "010", "9223372036854775808",
-                         "99999999999999999999", "18446744073709551617", " 1"):
-                self.assert_fails(*command, f"--seed={seed}", status=2,
-                                  names=["whole number from 0 to 9223372036854775807"])
+        for seed in ("-1", "1.5", "0x10", "010", "9223372036854775808",
+                     "99999999999999999999", "18446744073709551617", " 1"):
+            self.assert_fails(*simulate, f"--seed={seed}", status=2,
+                              names=["whole number from 0 to 9223372036854775807"])
         for frames in ("-1", "0", "1.5", "4294967297", "18446744073709551617"):
             self.assert_fails(*simulate, f"--frames={frames}", status=2,
                               names=["whole number from 1 to 100000000"])
-        run("testbed", "--runs", 2, "--seed", "9223372036854775807")
 
 
 # What zsh's completion system defines, with what it would offer printed.

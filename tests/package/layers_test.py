@@ -6,7 +6,7 @@ import re
 import sys
 
 LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simulation", "evaluation",
-          "device", "io", "streams", "pipeline", "testbed", "cli"]
+          "device", "io", "streams", "pipeline", "cli"]
 # Public headers without a source file of their name.
 HEADER_MODULES = {"version": "base", "body": "simulation", "contact": "simulation",
                   "scene": "simulation", "friction": "solve", "host_solve": "solve",

@@ -1,10 +1,10 @@
-"""tools/report/field.py on synthetic scores."""
+"""lab/report/field.py on synthetic scores."""
 
 import os
 import sys
 import unittest
 
-sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/tools/report")
+sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/lab/report")
 
 import field  # noqa: E402
 

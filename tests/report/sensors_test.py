@@ -1,4 +1,4 @@
-"""tools/report/measure_sensors.py and sensors.py on synthetic forces."""
+"""lab/report/measure_sensors.py and sensors.py on synthetic forces."""
 
 import os
 import sys
@@ -6,7 +6,7 @@ import unittest
 
 import numpy
 
-sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/tools/report")
+sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/lab/report")
 
 import measure_sensors  # noqa: E402
 import sensor_scenes  # noqa: E402

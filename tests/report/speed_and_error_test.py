@@ -1,4 +1,4 @@
-"""tools/report/speed_and_error.py on synthetic scores and times."""
+"""lab/report/speed_and_error.py on synthetic scores and times."""
 
 import json
 import os
@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/tools/report")
+sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/lab/report")
 
 import speed  # noqa: E402
 import speed_and_error as choices  # noqa: E402

@@ -1,4 +1,4 @@
-"""tools/report/speed.py on synthetic runs of pillarfield-bench."""
+"""lab/report/speed.py on synthetic runs of pillarfield-bench."""
 
 import os
 import sys
@@ -6,7 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/tools/report")
+sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/lab/report")
 
 import page  # noqa: E402
 import processors  # noqa: E402

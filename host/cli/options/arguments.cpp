@@ -153,40 +153,6 @@ void add_compare(CLI::App& parent, Work& work) {
   add_general(command, *options, "Print the table as JSON", kQuietReport);
 }
 
-void add_testbed(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<TestbedOptions>(
-      parent, work, run_testbed, "testbed",
-      "Repeat the paper's experiment on one pillar: Table II and figures.",
-      "  pillarfield testbed --runs 100\n"
-      "  pillarfield testbed --runs 100 --dead-zone 0 --json\n");
-  testbed::Parameters& parameters = options->parameters;
-  PillarSensor& sensor = parameters.sensor;
-  Group setup(command, "Sensor");
-  setup.number("--counts-per-newton", sensor.counts_per_newton, "COUNTS",
-               "Counts per newton and pillar [20]");
-  setup.number("--dead-zone", sensor.dead_zone_counts, "COUNTS",
-               "Counts that a sensel loses before it responds [144]");
-  setup.number("--threshold", sensor.threshold_counts, "COUNTS",
-               "Readings above this are usable [3]");
-  setup.number("--noise", sensor.noise_counts, "COUNTS", "Standard deviation of a reading [0.5]");
-  setup.number("--full-scale", sensor.full_scale_counts, "COUNTS",
-               "Largest reading of the converter [4095]");
-  Group probe(command, "Probe");
-  probe.number("--positioner", parameters.positioner_rad, "RAD",
-               "Largest error of an angle [0.04]");
-  probe.number("--play", parameters.play_rad, "RAD",
-               "Largest rotation of the direction as the force rises [0.01]");
-  probe.number("--probe-resolution", parameters.probe_resolution_n, "NEWTONS",
-               "Resolution of the applied force [0.1]");
-  probe.whole("--runs", options->runs, "N", "Repetitions of the experiment [1000]", 2, 1'000'000);
-  probe.whole("--seed", parameters.seed, "N", "Seed of all randomness [1]", 0, kLargestSeed);
-  Group(command, "Output")
-      .text("--figures", options->figures, "FOLDER",
-            "Folder for Figures 3, 4, 5 and 8 as SVG and PNG (gnuplot)");
-  add_overwrite(command, options->replace);
-  add_general(command, *options, "Print the results as JSON", kQuietReport);
-}
-
 void add_info(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<InfoOptions>(
       parent, work, info, "info", "Describe a file, the OpenCL devices, or the kernel of a scene.",
@@ -283,7 +249,6 @@ Work parse_arguments(int argc, char** argv) {
   add_pace(app, work);
   add_compare(app, work);
   add_calibrate(app, work);
-  add_testbed(app, work);
   add_info(app, work);
   add_completion(app, work);
   bool version = false;

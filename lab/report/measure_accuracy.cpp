@@ -14,9 +14,8 @@
 #include "evaluation/case_accuracy.h"
 #include "evaluation/coverage_study.h"
 #include "evaluation/errata.h"
+#include "evaluation/small_forces.h"
 #include "solve/one_pillar.h"
-#include "testbed/small_forces.h"
-#include "testbed/table_two.h"
 
 namespace pillarfield::report {
 namespace {
@@ -182,9 +181,9 @@ Json region_three_json() {
           {"phi", phi.json()}};
 }
 
-// --- Small forces, and the dead zone of the testbed ---
+// --- Small forces ---
 
-Json json_of(const testbed::SmallForceErrors& errors) {
+Json json_of(const small_forces_study::SmallForceErrors& errors) {
   return {{"undetected", errors.undetected}, {"wrong_region", errors.wrong_region},
           {"unflagged", errors.unflagged},   {"held", errors.held},
           {"determined", errors.determined}, {"force", errors.force},
@@ -193,30 +192,17 @@ Json json_of(const testbed::SmallForceErrors& errors) {
 
 Json small_forces_json() {
   Json points = Json::array();
-  for (const testbed::SmallForcePoint& point : testbed::small_forces()) {
+  for (const small_forces_study::SmallForcePoint& point : small_forces_study::small_forces()) {
     points.push_back({{"load", point.load},
                       {"paper", json_of(point.paper)},
                       {"before", json_of(point.naive)},
                       {"after", json_of(point.direct)}});
   }
-  return {{"directions", testbed::kStudyDirections},
-          {"dead_zone_counts", testbed::kStudyDeadZoneCounts},
-          {"noise_counts", testbed::kStudyNoiseCounts},
-          {"threshold_counts", testbed::kStudyThresholdCounts},
+  return {{"directions", small_forces_study::kStudyDirections},
+          {"dead_zone_counts", small_forces_study::kStudyDeadZoneCounts},
+          {"noise_counts", small_forces_study::kStudyNoiseCounts},
+          {"threshold_counts", small_forces_study::kStudyThresholdCounts},
           {"points", std::move(points)}};
-}
-
-Json dead_zone_scan_json() {
-  constexpr std::uint64_t kRuns = 1000;
-  Json points = Json::array();
-  for (const testbed::ScanPoint& point : testbed::scan_dead_zones({}, kRuns)) {
-    points.push_back({{"dead_zone_n", point.dead_zone_n},
-                      {"mean", point.expected.mean},
-                      {"deviation", point.expected.deviation},
-                      {"mean_error", point.expected.mean_error},
-                      {"distance_rad", point.distance_rad}});
-  }
-  return points;
 }
 
 // --- Errata, and hard cases ---
@@ -292,7 +278,6 @@ Json all() {
           {"coverage", coverage_json()},
           {"region_three", region_three_json()},
           {"small_forces", small_forces_json()},
-          {"dead_zone_scan", dead_zone_scan_json()},
           {"errata", errata_json()},
           {"hard_cases", hard_cases_json()}};
 }

@@ -1,11 +1,11 @@
-#include "testbed/small_forces.h"
+#include "evaluation/small_forces.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace pillarfield::testbed {
+namespace pillarfield::small_forces_study {
 namespace {
 
 using std::numbers::pi;
@@ -85,4 +85,4 @@ TEST(SmallForces, CalibrationLeavesOnlyNoiseInDeterminedForces) {
 }
 
 }  // namespace
-}  // namespace pillarfield::testbed
+}  // namespace pillarfield::small_forces_study

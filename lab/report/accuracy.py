@@ -1,17 +1,19 @@
-"""accuracy.py DOCS MEASURED PILLARFIELD: writes DOCS/accuracy.md with its pictures.
+"""accuracy.py DOCS MEASURED: writes DOCS/accuracy.md with its pictures.
 
-MEASURED is the output of measure_accuracy; PILLARFIELD is the program, whose `testbed` command
-computes the paper's figures."""
+MEASURED is the output of measure_accuracy. lab/testbed computes the paper's figures with the Python package."""
 
-import json
+import dataclasses
 import math
-import subprocess
+import sys
 from pathlib import Path
 
 import page
 import pictures
-from page import percent, root_mean_square, text
+from page import percent, text
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "testbed"))
+import figures  # noqa: E402
+import testbed  # noqa: E402
 
 
 # --- Error against the Cramér–Rao bound ---
@@ -151,18 +153,6 @@ def small_forces_values(points):
 
 # --- The testbed ---
 
-STATISTICS = ("mean", "deviation", "mean_error")
-
-
-def testbed(program, *options):
-    """Output of `pillarfield testbed`."""
-    command = [program, "testbed", "--json", *options]
-    try:
-        return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
-    except (OSError, subprocess.CalledProcessError, ValueError) as error:
-        raise page.Failure(f"{' '.join(command)}: {error}") from error
-
-
 def name_of(row):
     return f"{row['site']}, {'φ' if row['angle'] == 'phi' else 'θ'}"
 
@@ -175,16 +165,16 @@ def as_printed(figure):
 def run_rows(table):
     for row in table:
         yield [name_of(row), f"{row['truth']:.3f}",
-               *(as_printed(row["published"][key]) for key in STATISTICS),
+               *(as_printed(row["published"][key]) for key in testbed.STATISTICS),
                *(f"{row[solve]['run'][key]:.3f}" for solve in ("paper", "direct")
-                 for key in STATISTICS)]
+                 for key in testbed.STATISTICS)]
 
 
 def expected_rows(table):
     for row in table:
         cells = []
         for solve in ("paper", "direct"):
-            for key in STATISTICS:
+            for key in testbed.STATISTICS:
                 bold = "**" if solve == "paper" and row["reproduced"][key] else ""
                 answer = row[solve]
                 cells.append(f"{bold}{answer['expected'][key]:.3f} ± "
@@ -199,20 +189,14 @@ def scan_rows(scan):
         if i % 10 == 0 or abs(i - nearest) <= 3:
             bold = "**" if i == nearest else ""
             yield [f"{bold}{point['dead_zone_n']:.1f}{bold}",
-                   *(f"{point[key]:.3f}" for key in (*STATISTICS, "distance_rad"))]
+                   *(f"{point[key]:.3f}" for key in (*testbed.STATISTICS, "distance_rad"))]
 
 
-def difference(table):
-    """RMS difference of the printed and the expected values of the paper's 18 figures, rad."""
-    return root_mean_square(row["paper"]["expected"][key] - row["published"][key]
-                            for row in table for key in STATISTICS)
-
-
-def nearest_threshold(program):
+def nearest_threshold():
     """The sensor without a dead zone whose threshold comes nearest to the paper's figures."""
-    runs = [testbed(program, "--dead-zone", "0", "--threshold", str(counts))
+    runs = [testbed.run(testbed.Parameters(dead_zone_counts=0, threshold_counts=counts))
             for counts in range(10, 201, 10)]
-    return min(runs, key=lambda run: difference(run["table_2"]))
+    return min(runs, key=lambda run: testbed.difference(run["table_2"]))
 
 
 def band(figure, site):
@@ -221,23 +205,25 @@ def band(figure, site):
     return percent((point["uncertain_high_n"] - point["uncertain_low_n"]) / point["applied_n"] / 2)
 
 
-def testbed_values(program, scan, folder):
-    ours, other = testbed(program, "--figures", str(folder)), nearest_threshold(program)
-    table, sensor = ours["table_2"], ours["sensor"]
+def testbed_values(folder):
+    parameters = testbed.Parameters()
+    ours, other = testbed.run(parameters), nearest_threshold()
+    figures.draw(ours, folder)
+    table = ours["table_2"]
     phi, theta = (row["paper"]["expected"] for row in other["table_2"][:2])
-    threshold = other["sensor"]["threshold_counts"]
+    threshold = other["threshold_counts"]
     return {
         "testbed": ours,
-        "sensor": sensor,
-        "dead_zone_n": sensor["dead_zone_counts"] / sensor["counts_per_newton"],
+        "sensor": dataclasses.asdict(parameters),
+        "dead_zone_n": parameters.dead_zone_counts / parameters.counts_per_newton,
         "run_rows": run_rows(table),
         "expected_rows": expected_rows(table),
-        "scan_rows": scan_rows(scan),
+        "scan_rows": scan_rows(testbed.scan_dead_zones(parameters)),
         "theta": table[1],
-        "dead_zone_difference": difference(table),
-        "threshold_difference": difference(other["table_2"]),
+        "dead_zone_difference": testbed.difference(table),
+        "threshold_difference": testbed.difference(other["table_2"]),
         "threshold_counts": threshold,
-        "threshold_n": threshold / other["sensor"]["counts_per_newton"],
+        "threshold_n": threshold / other["counts_per_newton"],
         "threshold_phi": phi,
         "threshold_theta": theta,
         "bands": [band(ours["figure_8"], f"Region {number}") for number in (1, 2, 3)],
@@ -273,7 +259,7 @@ def hard_case_rows(cases):
                *(f"{error:.2f}" for error in case["direct"] + case["paper"])]
 
 
-def main(docs, measured, program):
+def main(docs, measured):
     folder = Path(docs, "pictures", "accuracy")
     found = page.load(measured)
     small, errata, cases = found["small_forces"]["points"], found["errata"], found["hard_cases"]
@@ -281,7 +267,7 @@ def main(docs, measured, program):
     draw_small_forces(small, folder)
     page.write(
         docs, "accuracy", **found, **bound_values(found["bound"]), **small_forces_values(small),
-        **testbed_values(program, found["dead_zone_scan"], folder),
+        **testbed_values(folder),
         coverage_rows=coverage_rows(found["coverage"]), luck_rows=luck_rows(found["coverage"]),
         erratum_rows=erratum_rows(errata["equations"]),
         right_as_printed=[worst_text(right) for right in errata["right_as_printed"]],

@@ -3,7 +3,7 @@ to back and by the index, @foxglove/ws-protocol by both subprotocols, @foxglove/
 Every value must equal the force file and the recording of the same frames.
 
     cmake --build build/release --target streams_sink_driver
-    cd tools/interop && npm install && python3 interop.py ../../build/release/bin/streams_sink_driver
+    cd lab/interop && npm install && python3 interop.py ../../build/release/bin/streams_sink_driver
 """
 
 import base64

@@ -1,4 +1,4 @@
-#include "testbed/small_forces.h"
+#include "evaluation/small_forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,15 +6,15 @@
 #include <cstdint>
 #include <numbers>
 
+#include "evaluation/bound.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
 #include "simulation/ideal_readings.h"
 #include "simulation/sensor.h"
-#include "testbed/testbed.h"
 
-namespace pillarfield::testbed {
+namespace pillarfield::small_forces_study {
 namespace {
 
 constexpr std::uint32_t kSide = 64;  // pillars, rows and columns of a frame
@@ -38,8 +38,8 @@ ForceField forces_over_hemisphere(double magnitude_n) {
   ForceField truth(kSide, kSide);
   for (std::size_t i = 0; i < truth.pillars(); ++i) {
     const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(truth.pillars());
-    const Force force =
-        force_from(magnitude_n, std::acos(1 - fraction), golden_angle * static_cast<double>(i));
+    const bound::Force force =
+        bound::force_from(magnitude_n, std::acos(1 - fraction), golden_angle * static_cast<double>(i));
     truth.shear_x[i] = static_cast<float>(force.shear_x);
     truth.shear_y[i] = static_cast<float>(force.shear_y);
     truth.normal[i] = static_cast<float>(force.normal);
@@ -162,4 +162,4 @@ std::vector<SmallForcePoint> small_forces() {
   return points;
 }
 
-}  // namespace pillarfield::testbed
+}  // namespace pillarfield::small_forces_study

@@ -3,7 +3,7 @@
 #include <vector>
 
 /// Study of the errors that a dead zone causes in small forces, with and without its calibration.
-namespace pillarfield::testbed {
+namespace pillarfield::small_forces_study {
 
 /// Fractions of forces and errors over all directions of the hemisphere.
 struct SmallForceErrors {
@@ -36,4 +36,4 @@ inline constexpr double kStudyThresholdCounts = 3;
 /// Solves loads from 0.3 to 100 in directions spread evenly over the hemisphere, in about 0.1 s.
 [[nodiscard]] std::vector<SmallForcePoint> small_forces();
 
-}  // namespace pillarfield::testbed
+}  // namespace pillarfield::small_forces_study
