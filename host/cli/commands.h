@@ -44,7 +44,7 @@ struct SimulateOptions : WriteOptions {
 /// Ranges of frames that are solved apart.
 struct PartOptions {
   std::string part;   ///< "7/64"; empty: none
-  std::string parts;  ///< "64" or "auto"; empty: none
+  std::optional<std::uint64_t> parts;
   std::optional<std::uint64_t> checkpoint_every;
   std::optional<std::uint64_t> warm_up;
 };

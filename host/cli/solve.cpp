@@ -274,7 +274,7 @@ void solve_parts(const Job& job, SolveSummary& summary) {
 }
 
 void check_part_options(const SolveOptions& options) {
-  if (options.parts.part.empty() && options.parts.parts.empty()) return;
+  if (options.parts.part.empty() && !options.parts.parts) return;
   if (!is_hdf5_name(options.output)) {
     throw Error(options.output, "parts are HDF5 files", "end its name in .h5");
   }
@@ -319,7 +319,7 @@ void solve(const SolveOptions& given) {
     if (!std::exchange(started, true)) summary.startup_seconds = watch.seconds();
     return is_interrupted();
   };
-  summary.parts = share_of(options.parts, most_parts(source->frames(), range.checkpoints));
+  summary.parts = share_of(options.parts);
   {
     Counter counter(source->frames(), options.quiet);
     const Job job = {options, *source, device, plan, range, counter};

@@ -1,4 +1,4 @@
-"""Parts under mpirun, and processes killed at any time: a restart ends with the serial bits."""
+"""Processes killed at any time: a restart ends with the serial bits."""
 
 import os
 import random
@@ -30,16 +30,6 @@ class Killed(PartsFolder):
     def assert_joined(self):
         run("join", self.output)
         self.assert_same(self.serial, self.output)
-
-    @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
-    def test_mpirun(self):
-        root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-        for ranks in (1, 2, 4):
-            shutil.rmtree(self.parts, ignore_errors=True)
-            subprocess.run(["mpirun", *root, "--oversubscribe", "-n", str(ranks), *self.command,
-                            "--parts", "auto"], check=True, timeout=300)
-            self.assertEqual(len(list(self.parts.iterdir())), ranks)
-            self.assert_joined()
 
     def test_ten_kills(self):
         rng = random.Random(21)

@@ -1,4 +1,4 @@
-"""Parts of a solve: their bits, joining, restarts, lost parts, claims, launchers, hostile files."""
+"""Parts of a solve: their bits, joining, restarts, lost parts, claims, hostile files."""
 
 import fcntl
 import json
@@ -248,35 +248,6 @@ class PartsTest(PartsFolder):
         run("join", self.output)
         self.solve(output=self.folder / "serial.h5")
         self.assert_same(self.output, self.folder / "serial.h5")
-
-    def test_ranks_of_launchers(self):
-        clean = {name: value for name, value in os.environ.items()
-                 if not name.startswith(("OMPI_", "PMI", "SLURM_", "SGE_"))}
-        def own(environment, parts="auto"):
-            shutil.rmtree(self.parts, ignore_errors=True)
-            result = run("solve", self.recording, "-o", self.output, "--parts", parts, "--json",
-                         env={**clean, **environment}).stdout
-            return [int(word) for word in
-                    result.partition('"own":')[2].partition("]")[0].strip(" [\n").split(",") if word]
-        open_mpi = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "4"}
-        array = {"SLURM_ARRAY_TASK_ID": "14", "SLURM_ARRAY_TASK_MIN": "10",
-                 "SLURM_ARRAY_TASK_MAX": "18", "SLURM_ARRAY_TASK_STEP": "2"}
-        self.assertEqual(own(open_mpi), [2])
-        self.assertEqual(own(open_mpi, 10), [2, 6, 10])
-        self.assertEqual(own({"PMI_RANK": "0", "PMI_SIZE": "2"}), [1])
-        self.assertEqual(own({"SLURM_PROCID": "2", "SLURM_NTASKS": "3", **open_mpi}), [2])
-        self.assertEqual(own({"SLURM_PROCID": "2", "SLURM_STEP_NUM_TASKS": "3"}), [3])
-        self.assertEqual(own({**array, "SLURM_PROCID": "0", "SLURM_NTASKS": "1"}), [3])
-        self.assertEqual(own({**array, **open_mpi}), [10])
-        self.assertEqual(own({"SGE_TASK_ID": "1", "SGE_TASK_FIRST": "1", "SGE_TASK_LAST": "3"}), [1])
-        self.assertEqual(own({"SGE_TASK_ID": "undefined", **open_mpi}), [2])
-        self.assertEqual(own({}, 2), [1, 2])
-        # More processes than frames: the others have nothing to do.
-        self.assertEqual(own({"PMI_RANK": "30", "PMI_SIZE": "40"}), [])
-        for wrong in ({}, {"PMI_RANK": "2", "PMI_SIZE": "2"}, {**array, "SLURM_ARRAY_TASK_ID": "11"}):
-            result = run("solve", self.recording, "-o", self.output, "--parts", "auto", expect=1,
-                         env={**clean, **wrong})
-            self.assertIn("--part", result.stderr)
 
     def test_a_joined_file_leads_to_its_own_folder_only(self):
         self.solve("--parts", 2)

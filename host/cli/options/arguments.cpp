@@ -39,15 +39,12 @@ void add_simulate(CLI::App& parent, Work& work) {
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
 
-/// Accepts K/N, or with `all` N and auto.
-CLI::Validator parts(bool all) {
-  const auto error_of = [=](const std::string& text) -> std::string {
-    if (!all) {
-      return is_part(text) ? ""
-                           : fmt::format("'{}' is not a part K/N, such as 7/64; N is at most {}",
-                                         text, kMostParts);
-    }
-    return text == "auto" ? "" : whole_number_in(1, kMostParts)(text);
+/// Accepts K/N.
+CLI::Validator part_of_all() {
+  const auto error_of = [](const std::string& text) -> std::string {
+    return is_part(text) ? ""
+                         : fmt::format("'{}' is not a part K/N, such as 7/64; N is at most {}",
+                                       text, kMostParts);
   };
   return {error_of, ""};
 }
@@ -59,12 +56,11 @@ void add_parts(CLI::App* command, PartOptions& options) {
           .text("--part", options.part, "K/N",
                 "Solve only the K-th of N ranges of frames, into the folder OUTPUT.parts; join "
                 "puts the parts together")
-          ->check(parts(false));
+          ->check(part_of_all());
   group
-      .text("--parts", options.parts, "N|auto",
-            "Solve this process's share of N parts, by its rank under mpirun, srun or in an array "
-            "job; all of them without; auto: one part per process")
-      ->check(parts(true))
+      .whole("--parts", options.parts, "N",
+             "Solve all of N parts, one after another; those that are whole are left as they are", 1,
+             kMostParts)
       ->excludes(part);
   CLI::Option* const every = group.whole(
       "--checkpoint-every", options.checkpoint_every, "FRAMES",

@@ -1,13 +1,8 @@
 #include "cli/parts/share.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <charconv>
+#include <numeric>
 #include <utility>
-
-#include "cli/parts/launcher.h"
-#include "pillarfield/error.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -25,13 +20,6 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> part_of(const std::string
   return fits ? std::optional(std::pair(index, count)) : std::nullopt;
 }
 
-Rank rank_of(bool is_needed) {
-  if (const auto rank = launcher_rank()) return *rank;
-  if (!is_needed) return {};
-  throw Error("--parts auto", "no launcher gives this process a rank",
-              "start it with mpirun, srun or as an array job, or give --parts N");
-}
-
 }  // namespace
 
 bool is_part(const std::string& text) { return part_of(text).has_value(); }
@@ -41,20 +29,14 @@ Checkpoints checkpoints_of(const PartOptions& options) {
   return {every, options.warm_up.value_or(every / 10)};
 }
 
-std::optional<PartShare> share_of(const PartOptions& options, std::uint64_t most) {
+std::optional<PartShare> share_of(const PartOptions& options) {
   if (!options.part.empty()) {
     const auto [index, count] = *part_of(options.part);
     return PartShare{count, {index}};
   }
-  if (options.parts.empty()) return std::nullopt;
-  const bool is_auto = options.parts == "auto";
-  const Rank rank = rank_of(is_auto);
-  PartShare share;
-  // With more processes than frames, some have nothing to do.
-  share.count = is_auto ? std::min(rank.size, most) : std::stoull(options.parts);
-  for (std::uint64_t index = rank.rank; index < share.count; index += rank.size) {
-    share.indices.push_back(index + 1);
-  }
+  if (!options.parts) return std::nullopt;
+  PartShare share{*options.parts, std::vector<std::uint64_t>(*options.parts)};
+  std::iota(share.indices.begin(), share.indices.end(), std::uint64_t{1});
   return share;
 }
 

@@ -13,13 +13,11 @@ namespace pillarfield::cli {
 /// The parts that this process solves.
 struct PartShare {
   std::uint64_t count = 0;             ///< of all processes
-  std::vector<std::uint64_t> indices;  ///< from 1; may be empty
+  std::vector<std::uint64_t> indices;  ///< from 1
 };
 
-/// The share that the options and the launcher give; nothing without --part and --parts. `most` is
-/// the largest number of parts. Throws Error for --parts auto without a launcher, or if there are
-/// more parts than frames or checkpoints.
-[[nodiscard]] std::optional<PartShare> share_of(const PartOptions& options, std::uint64_t most);
+/// The share that the options name: one part, or all of them; nothing without --part and --parts.
+[[nodiscard]] std::optional<PartShare> share_of(const PartOptions& options);
 
 /// The checkpoints of the options: by default a tenth of the distance is warm-up.
 [[nodiscard]] Checkpoints checkpoints_of(const PartOptions& options);
