@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "evaluation/bound.h"
-#include "evaluation/case_accuracy.h"
-#include "evaluation/coverage_study.h"
-#include "evaluation/errata.h"
-#include "evaluation/small_forces.h"
+#include "lab/studies/bound.h"
+#include "lab/studies/case_accuracy.h"
+#include "lab/studies/coverage_study.h"
+#include "lab/studies/errata.h"
+#include "lab/studies/small_forces.h"
 #include "solve/one_pillar.h"
 
 namespace pillarfield::report {

@@ -19,10 +19,10 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/contact_study.h"
-#include "evaluation/contact_study_histories.h"
-#include "evaluation/contact_study_scenes.h"
-#include "evaluation/contact_study_twins.h"
+#include "lab/studies/contact_study.h"
+#include "lab/studies/contact_study_histories.h"
+#include "lab/studies/contact_study_scenes.h"
+#include "lab/studies/contact_study_twins.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"

@@ -1,7 +1,7 @@
 // The paper's printed equations have the errors that docs/derivations/pillar_model.md lists, and
 // its corrections are right.
 
-#include "evaluation/errata.h"
+#include "lab/studies/errata.h"
 
 #include <gtest/gtest.h>
 

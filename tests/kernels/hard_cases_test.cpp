@@ -1,6 +1,6 @@
 // The hard cases, each by its name, for both estimators in float and in double.
 
-#include "evaluation/hard_cases.h"
+#include "lab/studies/hard_cases.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include <string>
 #include <tuple>
 
-#include "evaluation/case_accuracy.h"
+#include "lab/studies/case_accuracy.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield::hard_cases {

@@ -1,13 +1,13 @@
 // The oracle against closed forms.
 
-#include "evaluation/oracle.h"
+#include "lab/studies/oracle.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/paper_oracle.h"
+#include "lab/studies/paper_oracle.h"
 
 namespace pillarfield::oracle {
 namespace {

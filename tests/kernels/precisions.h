@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "evaluation/oracle.h"
+#include "lab/studies/oracle.h"
 #include "solve/pillar_maths.h"
 
 /// One test body for the C++ forms of kernels/pillar: its types by precision. The functions that

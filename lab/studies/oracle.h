@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "lab/studies/exact.h"
+
+/// Independent solution of a pillar, without code of kernels/pillar: equation (2) of the paper with
+/// its sines and cosines, Gaussian elimination, and bisection, in 113 bits.
+namespace pillarfield::oracle {
+
+using exact::Exact;
+
+/// As in kernels/pillar: newtons, shear on the skin, + right and + up, pressing positive.
+struct Force {
+  Exact shear_x;
+  Exact shear_y;
+  Exact normal;
+};
+
+using Readings = std::array<Exact, 4>;                     ///< of sensels 1 to 4, counts
+using SomeReadings = std::array<std::optional<Exact>, 4>;  ///< absent where not usable
+
+[[nodiscard]] Exact magnitude(const Force& force);
+
+/// Where sensel 0..3 sits, radians.
+[[nodiscard]] Exact sensel_angle(std::size_t sensel);
+
+/// The force that comes from (theta, phi), radians.
+[[nodiscard]] Force force_from(Exact magnitude, Exact theta, Exact phi);
+
+/// Equation (2), negative for inactive sensels. `k` in counts per newton.
+[[nodiscard]] Readings readings_from(Exact magnitude, Exact theta, Exact phi, Exact k);
+
+/// The same for a force by its components.
+[[nodiscard]] Readings readings_of(const Force& force, Exact k);
+
+/// The force whose readings fit three or four usable ones best: the normal equations, eliminated.
+[[nodiscard]] Force least_squares(const SomeReadings& usable, Exact k);
+
+/// The forces with normal >= 0 that give one usable reading, or two adjacent ones, exactly, and
+/// none of the inactive sensels more than `hidden` counts: a segment from normal = 0 to the end
+/// that bisection finds. Two opposite inactive sensels read equal values.
+struct Segment {
+  Force low;
+  Force high;
+};
+[[nodiscard]] Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden = 0);
+
+/// The solution of docs/derivations/direct_solve.md for pillars whose other sensels are inactive:
+/// least squares if the force is determined; else the segment point (two usable readings) or the
+/// segment's midpoint (one); zero without usable readings. Two opposite usable readings are
+/// completed by two equal ones.
+[[nodiscard]] Force direct_force(const SomeReadings& usable, Exact k, Exact hidden = 0,
+                                 Exact segment_point = Exact{7} / 8);
+
+/// By how much the largest component of `estimate(usable)` changes, relative to the force's
+/// magnitude, when every reading changes by the same small share of itself at the worst signs:
+/// the sum of the one-sided derivatives' magnitudes, by differences
+/// (docs/derivations/conditioning.md, C1). Not a number where the estimate is none.
+using Estimate = std::function<Force(const SomeReadings&)>;
+[[nodiscard]] double condition_number(const SomeReadings& usable, const Estimate& estimate);
+
+}  // namespace pillarfield::oracle
