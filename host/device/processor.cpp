@@ -323,7 +323,6 @@ void Processor::set_tare(std::span<const float> tare) {
     state_->calibration.set_tare(*state_->retared);
   });
   state_->order.frame = 0;  // as states that begin anew have it
-  state_->mark_all();
   if (state_->curvature) state_->curvature->set_tare(tare);
 }
 

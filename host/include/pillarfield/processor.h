@@ -154,7 +154,7 @@ class Processor {
 
   /// The contacts of the frame received last, with their friction as the estimator `contact` found
   /// it; pass them to ContactTracker::update(), which then need not find them again. They stay
-  /// valid until the next receive(). Empty (`map` is null) with other estimators and before the
+  /// valid until the next receive(). Empty (`labels` is null) with other estimators and before the
   /// first receive().
   [[nodiscard]] FoundContacts contacts() const;
 
