@@ -89,6 +89,29 @@ function(pillarfield_test name)
   endif()
 endfunction()
 
+# pillarfield_thread_test(<module>_<subject> SOURCES <files...>): a test with ThreadSanitizer, where the
+# tool chain has it. It is compiled from these files alone: all that threads share must be instrumented.
+include(CheckCXXSourceRuns)
+set(CMAKE_REQUIRED_FLAGS "-fsanitize=thread")
+check_cxx_source_runs("int main() {}" PILLARFIELD_HAS_THREAD_SANITIZER)
+unset(CMAKE_REQUIRED_FLAGS)
+function(pillarfield_thread_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES")
+  if(PILLARFIELD_SANITIZE OR NOT PILLARFIELD_HAS_THREAD_SANITIZER)
+    return()
+  endif()
+  pillarfield_test_program(${name} LINK kernels SOURCES ${arg_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/host/include)
+  target_compile_options(${name} PRIVATE -fsanitize=thread
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  target_link_options(${name} PRIVATE -fsanitize=thread)
+  target_link_libraries(${name} PRIVATE fmt::fmt Threads::Threads)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+  add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
+  pillarfield_test_entry(${name} TARGETS ${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()
+
 # pillarfield_oclgrind_test(<name> <program> <filter> [LONG]): runs the tests of a program that match the
 # GoogleTest filter on Oclgrind's simulated device. It fails when they fail, when a kernel accesses
 # memory out of bounds, or when two work-items race; it is skipped where Oclgrind is not installed.

@@ -34,7 +34,6 @@ constexpr double kOutlier = 3;
 constexpr int kFitSteps = 12;
 /// Factor on the standard error within which a leak counts as absent.
 constexpr double kLeakInsignificant = 3;
-constexpr double kMostLeak = 0.2;
 /// Least reading by which a leak shows above a dead zone, in multiples of the noise.
 constexpr double kLeastShown = 2;
 
@@ -123,7 +122,8 @@ class LeakFinder::Fit {
       const auto change = equations.solve(active_);
       if (!change) return;
       for (std::size_t i = 0; i < leaks_.size(); ++i) {
-        leaks_.at(i) = std::clamp(leaks_.at(i) + (*change)[i], -2 * kMostLeak, 2 * kMostLeak);
+        leaks_.at(i) =
+            std::clamp(leaks_.at(i) + (*change)[i], -2 * kMostSenselLeak, 2 * kMostSenselLeak);
       }
     }
   }
@@ -281,8 +281,8 @@ LeakResult LeakFinder::result() const {
   const Leaks errors = fit.standard_errors();
   const Leaks leaks = fit.leaks();
   for (const double leak : leaks) {
-    if (std::abs(leak) <= kMostLeak) continue;
-    throw Error("leak", fmt::format("a leak of {:.2g} is more than {}", leak, kMostLeak),
+    if (std::abs(leak) <= kMostSenselLeak) continue;
+    throw Error("leak", fmt::format("a leak of {:.2g} is more than {}", leak, kMostSenselLeak),
                 "check that the tip is finer than a pillar and presses one at a time");
   }
   result.presses = fit.presses();
@@ -303,6 +303,7 @@ LeakResult LeakFinder::result() const {
   }
   result.calibration = calibration_;
   rescale_for_leaks(result.calibration, skin_, sensel, pillar);
+  check(result.calibration.planes.effects, "leak");
   return result;
 }
 

@@ -171,7 +171,7 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
   const bool estimates = friction.empty() && labels.contacts() > 0;
   if (estimates) {
-    friction_estimator.begin(labels);
+    friction_estimator.begin(forces, labels);
     friction = friction_estimator.friction();
   }
   const auto friction_of = [&](std::uint32_t contact, std::size_t member) {

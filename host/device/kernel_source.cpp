@@ -10,6 +10,7 @@
 #include "device/calibration_memory.h"
 #include "device/kernel_program.h"
 #include "device/sensel_macro.h"
+#include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/activation_thresholds.h"
@@ -23,7 +24,12 @@ namespace {
 using Definitions = std::map<std::string, std::string, std::less<>>;
 
 /// A constant rounded to single precision, as exact text.
-std::string hex_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
+std::string hex_float(double value) {
+  const auto rounded = static_cast<float>(value);
+  if (std::isfinite(rounded)) return fmt::format("{:a}f", rounded);
+  throw Error("solver plan", fmt::format("a constant of the kernel is {}", value),
+              "check the skin and the calibration for values that are far too large or small");
+}
 
 /// The unit of whole numbers, 1/16 count: readings are whole counts, thresholds multiples of 1/2,
 /// and the segment point divides their sums by at most 8.

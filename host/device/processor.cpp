@@ -19,6 +19,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "solve/curvature_follower.h"
+#include "solve/drift_follower.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
@@ -115,6 +116,7 @@ struct Processor::State {
       slots.push_back(std::make_shared<Slot>(device.state(), wanted, settings, calibration, order));
     }
     if (!wanted.calibration.bend_x.empty()) curvature.emplace(wanted);
+    if (wanted.baseline_rate) drift.emplace(wanted);
     if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
     warm_up();
     order.rate = static_cast<float>(baseline_turn_rate(wanted));
@@ -145,6 +147,7 @@ struct Processor::State {
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
+  std::optional<DriftFollower> drift;          ///< of a followed baseline
   std::optional<ContactStage> contacts;        ///< of the estimator `contact`
   std::optional<SolverPlan> retared;         ///< of a plan with a tare: what set_tare() needs of it
   std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
@@ -264,7 +267,8 @@ void Processor::State::submit(const FrameView& frame) {
   try {
     std::optional<Curvature> bent;
     if (curvature) bent = curvature->follow(frame);
-    with_opencl_errors(device.info().name, [&] { slots[*slot]->submit(frame, bent); });
+    const auto drifted = drift ? drift->follow(frame, bent) : single_precision::Drift{};
+    with_opencl_errors(device.info().name, [&] { slots[*slot]->submit(frame, bent, drifted); });
   } catch (...) {
     scheduler.returned()->give_back(*slot);
     throw;
@@ -324,6 +328,7 @@ void Processor::set_tare(std::span<const float> tare) {
   });
   state_->order.frame = 0;  // as states that begin anew have it
   if (state_->curvature) state_->curvature->set_tare(tare);
+  if (state_->drift) state_->drift->set_tare(tare);
 }
 
 Processor::PinnedResult Processor::pin() {

@@ -29,7 +29,16 @@ struct Launch {
 
 /// Arguments of kernels/frame/*.cl; those from kRate on are of follow_baseline alone.
 /// From kBendX on: the change of curvature of bend_tare.
-enum Argument : cl_uint { kRaw, kCalibration, kResults, kLayout, kRate, kFirstRow, kInterval };
+enum Argument : cl_uint {
+  kRaw,
+  kCalibration,
+  kResults,
+  kLayout,
+  kRate,
+  kDrift,
+  kFirstRow,
+  kInterval
+};
 constexpr cl_uint kBendX = kRate;
 
 /// Tiles of a skin, across and down.
@@ -130,13 +139,14 @@ Slot::~Slot() {
   }
 }
 
-void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) {
+void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent,
+                  const single_precision::Drift& drift) {
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   done_ = {};
   layout_.row_stride = on_device.row_stride;
   layout_.frame = ++order_->frame;
-  solve(bent);
+  solve(bent, drift);
   if (unleak_() != nullptr) launch(unleak_, global_, local_);
   if (ratios_() != nullptr) launch(ratios_, global_, local_);
   if (correct_() != nullptr) launch(correct_, global_, local_);
@@ -151,7 +161,7 @@ void Slot::launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRan
   queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, after, done);
 }
 
-void Slot::solve(const std::optional<Curvature>& bent) {
+void Slot::solve(const std::optional<Curvature>& bent, const single_precision::Drift& drift) {
   std::vector<cl::Event> before;
   if (order_->is_needed && order_->left() != nullptr) before.push_back(order_->left);
   if (bent) {
@@ -175,6 +185,7 @@ void Slot::solve(const std::optional<Curvature>& bent) {
   launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
   if (order_->follows_baseline) {
     follow_.setArg(kRate, order_->rate);
+    follow_.setArg(kDrift, drift);
     follow_.setArg(kFirstRow, static_cast<cl_uint>((order_->frame - 1) % order_->interval));
     launch(follow_, global_, local_, nullptr, left);
   }

@@ -47,9 +47,10 @@ class Slot {
   Slot(const Slot&) = delete;
   Slot& operator=(const Slot&) = delete;
 
-  /// Starts solving the frame, after a change of the skin's curvature if given; the slot must not
-  /// be in flight.
-  void submit(const FrameView& frame, const std::optional<Curvature>& bent = {});
+  /// Starts solving the frame, after a change of the skin's curvature if given; `drift` is that of
+  /// touched tares after it. The slot must not be in flight.
+  void submit(const FrameView& frame, const std::optional<Curvature>& bent = {},
+              const single_precision::Drift& drift = {});
 
   void wait();
 
@@ -69,7 +70,7 @@ class Slot {
   void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
               const std::vector<cl::Event>* after = nullptr, cl::Event* done = nullptr);
   /// Solves the frame; after the frame before, where there is an order.
-  void solve(const std::optional<Curvature>& bent);
+  void solve(const std::optional<Curvature>& bent, const single_precision::Drift& drift);
 
   std::uint32_t rows_;  ///< pillars
   std::uint32_t cols_;

@@ -13,12 +13,11 @@ namespace {
 constexpr std::size_t kLeastKnots = 2;
 constexpr std::size_t kMostKnots = 64;
 constexpr double kMaxKnotCounts = 1e9;
-constexpr double kMaxLeak = 0.2;
 constexpr double kMaxPerCount = 0.1;
 
 void require(std::string_view where, std::string_view name, double value, double low, double high) {
   if (value >= low && value <= high) return;
-  throw Error(where, fmt::format("{} is {}", name, value),
+  throw Error(where, fmt::format("{} is {:.6g}", name, value),
               fmt::format("it must lie in [{}, {}]", low, high));
 }
 
@@ -156,14 +155,16 @@ void check(const SensorEffects& effects, std::string_view where) {
     require(where, "the shear coefficient y", effects.shear_coefficient->y, 0.1, 10);
   }
   if (effects.sensel_leak) {
-    require(where, "the leak inside a pillar", effects.sensel_leak->inside, -kMaxLeak, kMaxLeak);
-    require(where, "the leak across pillars", effects.sensel_leak->across, -kMaxLeak, kMaxLeak);
+    require(where, "the leak inside a pillar", effects.sensel_leak->inside, -kMostSenselLeak,
+            kMostSenselLeak);
+    require(where, "the leak across pillars", effects.sensel_leak->across, -kMostSenselLeak,
+            kMostSenselLeak);
   }
   if (effects.pillar_leak) {
-    require(where, "the leak between pillars, edge", effects.pillar_leak->edge, -kMaxLeak,
-            kMaxLeak);
-    require(where, "the leak between pillars, corner", effects.pillar_leak->corner, -kMaxLeak,
-            kMaxLeak);
+    const auto& [edge, corner] = *effects.pillar_leak;
+    require(where,
+            fmt::format("the leak between pillars, 4 (|edge {}| + |corner {}|),", edge, corner),
+            4 * (std::abs(edge) + std::abs(corner)), 0, kMostPillarLeak);
   }
   if (const auto& wires = effects.wires) {
     require(where, "tile_rows", wires->tile_rows, 2, 1024);

@@ -19,48 +19,7 @@ constexpr int kRoughPasses = 15;
 constexpr int kRefiningPasses = 4;
 constexpr double kAppliedPart = 0.1;  // of the noise
 
-using CurvatureTriple = std::array<double, 3>;
-using NormalMatrix = std::array<CurvatureTriple, 3>;
-
-double determinant(const NormalMatrix& m) {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
-
-/// By Cramer's rule; a small ridge leaves out what the patterns do not determine.
-CurvatureTriple solved(NormalMatrix normal, const CurvatureTriple& right) {
-  const double trace = normal[0][0] + normal[1][1] + normal[2][2];
-  if (!(trace > 0)) return {};
-  for (std::size_t i = 0; i < 3; ++i) normal[i][i] += 1e-9 * trace;
-  const double all = determinant(normal);
-  CurvatureTriple solution{};
-  for (std::size_t column = 0; column < 3; ++column) {
-    NormalMatrix replaced = normal;
-    for (std::size_t row = 0; row < 3; ++row) replaced[row][column] = right[row];
-    solution[column] = determinant(replaced) / all;
-  }
-  return solution;
-}
-
-/// Normal equations of least squares.
-class CurvatureEquations {
- public:
-  void add(const CurvatureTriple& pattern, double difference, double weight) {
-    for (std::size_t row = 0; row < 3; ++row) {
-      const double weighted = weight * pattern[row];
-      right_[row] += weighted * difference;
-      for (std::size_t col = 0; col < 3; ++col) normal_[row][col] += weighted * pattern[col];
-    }
-  }
-  [[nodiscard]] CurvatureTriple solution() const { return solved(normal_, right_); }
-
- private:
-  NormalMatrix normal_{};
-  CurvatureTriple right_{};
-};
-
-CurvatureTriple triple_of_curvature(const Curvature& curvature) {
+PatternTriple triple_of_curvature(const Curvature& curvature) {
   return {curvature.x, curvature.y, curvature.xy};
 }
 
@@ -74,7 +33,8 @@ CurvatureFollower::CurvatureFollower(const SolverPlan& plan) : cols_(plan.skin.c
   const std::size_t step = std::max<std::size_t>(1, sensels / wanted);
   for (std::size_t i = step / 2; i < sensels; i += step) {
     if (!calibration.mask.empty() && calibration.mask[i] != 1) continue;
-    const Triple pattern = {calibration.bend_x[i], calibration.bend_y[i], calibration.bend_xy[i]};
+    const PatternTriple pattern = {calibration.bend_x[i], calibration.bend_y[i],
+                                   calibration.bend_xy[i]};
     for (std::size_t k = 0; k < 3; ++k) spread_[k] += pattern[k] * pattern[k];
     const double tare = calibration.tare.empty() ? 0 : calibration.tare[i];
     samples_.push_back({i / plan.skin.cols, i % plan.skin.cols, pattern, tare});
@@ -88,22 +48,22 @@ CurvatureFollower::CurvatureFollower(const SolverPlan& plan) : cols_(plan.skin.c
 
 void CurvatureFollower::set_tare(std::span<const float> tare) {
   for (Sample& sample : samples_) {
-    const Triple& pattern = sample.pattern;
+    const PatternTriple& pattern = sample.pattern;
     sample.tare = tare[sample.row * cols_ + sample.col] -
                   (applied_.x * pattern[0] + applied_.y * pattern[1] + applied_.xy * pattern[2]);
   }
 }
 
 double CurvatureFollower::left(const std::vector<double>& differences, std::size_t sample,
-                               const Triple& curvature) const {
-  const Triple& pattern = samples_[sample].pattern;
+                               const PatternTriple& curvature) const {
+  const PatternTriple& pattern = samples_[sample].pattern;
   return differences[sample] -
          (curvature[0] * pattern[0] + curvature[1] * pattern[1] + curvature[2] * pattern[2]);
 }
 
-CurvatureFollower::Triple CurvatureFollower::fit(const std::vector<double>& differences,
-                                                 const std::vector<double>& weights) const {
-  CurvatureEquations equations;
+PatternTriple CurvatureFollower::fit(const std::vector<double>& differences,
+                                     const std::vector<double>& weights) const {
+  PatternEquations equations;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     equations.add(samples_[i].pattern, differences[i], weights[i]);
   }
@@ -111,21 +71,20 @@ CurvatureFollower::Triple CurvatureFollower::fit(const std::vector<double>& diff
 }
 
 CurvatureFollower::NearFit CurvatureFollower::fit_near(const std::vector<double>& differences,
-                                                       const Triple& curvature) const {
-  CurvatureEquations equations;
+                                                       const PatternTriple& curvature) const {
+  PatternEquations equations;
   std::size_t near = 0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (!(std::abs(left(differences, i, curvature)) <= limit_)) continue;
-    equations.add(samples_[i].pattern, differences[i], 1);
+    equations.add(samples_[i].pattern, differences[i]);
     ++near;
   }
   return {equations.solution(), static_cast<double>(near) / static_cast<double>(samples_.size())};
 }
 
-CurvatureFollower::Triple CurvatureFollower::rough_fit(
-    const std::vector<double>& differences) const {
+PatternTriple CurvatureFollower::rough_fit(const std::vector<double>& differences) const {
   std::vector<double> weights(samples_.size(), 1);
-  Triple curvature{};
+  PatternTriple curvature{};
   for (int pass = 0; pass < kRoughPasses; ++pass) {
     curvature = fit(differences, weights);
     for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -142,7 +101,7 @@ std::optional<Curvature> CurvatureFollower::follow(const FrameView& frame) {
     // A reading that is no number is far off every curvature.
     differences[i] = std::isfinite(reading) ? reading - samples_[i].tare : kMaxPlaneCounts;
   }
-  const Triple before = triple_of_curvature(applied_);
+  const PatternTriple before = triple_of_curvature(applied_);
   NearFit now = fit_near(differences, before);
   if (!started_ || now.part < kTrustedUntouched) {
     const NearFit rough = fit_near(differences, rough_fit(differences));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -8,6 +7,7 @@
 
 #include "pillarfield/frame.h"
 #include "pillarfield/solver_plan.h"
+#include "solve/pattern_equations.h"
 
 namespace pillarfield {
 
@@ -34,32 +34,31 @@ class CurvatureFollower {
   struct Sample {
     std::size_t row;
     std::size_t col;
-    std::array<double, 3> pattern;  ///< counts·mm
-    double tare;                    ///< of the plane skin
+    PatternTriple pattern;  ///< counts·mm
+    double tare;            ///< of the plane skin
   };
-  using Triple = std::array<double, 3>;
 
   /// Least squares of `differences` from the tare, with the weights.
-  [[nodiscard]] Triple fit(const std::vector<double>& differences,
-                           const std::vector<double>& weights) const;
+  [[nodiscard]] PatternTriple fit(const std::vector<double>& differences,
+                                  const std::vector<double>& weights) const;
   /// Residuals at a curvature.
   [[nodiscard]] double left(const std::vector<double>& differences, std::size_t sample,
-                            const Triple& curvature) const;
+                            const PatternTriple& curvature) const;
   /// Curvature of least absolute differences, approximately: where to begin.
-  [[nodiscard]] Triple rough_fit(const std::vector<double>& differences) const;
+  [[nodiscard]] PatternTriple rough_fit(const std::vector<double>& differences) const;
   /// A curvature, and the part of the sensels from which it was found.
   struct NearFit {
-    Triple curvature;
+    PatternTriple curvature;
     double part;
   };
   /// Least squares over the sensels near a curvature.
   [[nodiscard]] NearFit fit_near(const std::vector<double>& differences,
-                                 const Triple& curvature) const;
+                                 const PatternTriple& curvature) const;
 
   std::size_t cols_;
   std::vector<Sample> samples_;
-  double limit_;                    ///< largest difference of an untouched sensel, counts
-  std::array<double, 3> spread_{};  ///< RMS of the patterns
+  double limit_;            ///< largest difference of an untouched sensel, counts
+  PatternTriple spread_{};  ///< RMS of the patterns
   double noise_;
   bool started_ = false;
   Curvature applied_;

@@ -9,6 +9,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/tuning.h"
+#include "solve/drift_follower.h"
 #include "solve/pillar_lean.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
@@ -179,7 +180,7 @@ bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
 }  // namespace
 
 void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces,
-                             std::uint64_t index) {
+                             SensorState& state) {
   check(frame, plan.skin, plan.sensel_type, "follow_baseline_on_host");
   if (forces.rows != plan.skin.pillar_rows() || forces.cols != plan.skin.pillar_cols()) {
     throw Error("follow_baseline_on_host",
@@ -187,6 +188,9 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
                 "give the forces of this frame");
   }
   if (plan.calibration.tare.empty()) plan.calibration.tare.resize(plan.skin.sensels());
+  if (!state.drift) state.drift = std::make_shared<DriftFollower>(plan);
+  const std::uint64_t index = state.drift->frames();
+  const maths::Drift drift = state.drift->follow(frame);
   SenselReader sensel(plan, frame);
   const auto rate = static_cast<float>(baseline_turn_rate(plan));
   const auto interval = static_cast<std::uint64_t>(plan.baseline_interval);
@@ -195,7 +199,9 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
     for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
       const bool untouched = !is_touched(forces, row / 2, col / 2);
       float& tare = plan.calibration.tare[row * frame.cols + col];
-      tare = maths::follow_tare(tare, sensel.untared(row, col), untouched, rate);
+      const float shift =
+          maths::drift_at(drift, static_cast<float>(col / 2), static_cast<float>(row / 2));
+      tare = maths::follow_tare(tare, sensel.untared(row, col), untouched, rate, shift);
     }
   }
 }

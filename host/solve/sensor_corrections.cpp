@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace pillarfield {
 namespace {
@@ -40,18 +41,9 @@ double sensel_receives(const Patch& from, int row, int col, const SenselLeak& le
   return sum;
 }
 
-double pillar_receives(const Patch& from, int row, int col, const PillarLeak& leak) {
-  const double edges = at(from, row - 1, col) + at(from, row + 1, col) + at(from, row, col - 1) +
-                       at(from, row, col + 1);
-  const double corners = at(from, row - 1, col - 1) + at(from, row - 1, col + 1) +
-                         at(from, row + 1, col - 1) + at(from, row + 1, col + 1);
-  return leak.edge * edges + leak.corner * corners;
-}
-
-/// The response of the inverse of a leak to its middle, (I + K)^-1 as a series; `receives` is K. By
-/// symmetry it holds the weights with which the middle is corrected.
-template <class Receives>
-Patch inverse_of(Receives receives) {
+/// The response of the inverse of a leak to its middle, (I + K)^-1 as a series, which converges up
+/// to kMostSenselLeak. By symmetry it holds the weights with which the middle is corrected.
+Patch inverse_of(const SenselLeak& leak) {
   Patch term(static_cast<std::size_t>(kPatch) * kPatch);
   term[place_of(kMiddle, kMiddle)] = 1;
   Patch inverse = term;
@@ -59,7 +51,7 @@ Patch inverse_of(Receives receives) {
   for (int i = 0; i < kTerms; ++i) {
     for (int row = 0; row < kPatch; ++row) {
       for (int col = 0; col < kPatch; ++col) {
-        next[place_of(row, col)] = -receives(term, row, col);
+        next[place_of(row, col)] = -sensel_receives(term, row, col, leak);
       }
     }
     term.swap(next);
@@ -76,8 +68,7 @@ Patch inverse_of(Receives receives) {
 }  // namespace
 
 double_precision::LeakTaps leak_taps(const SenselLeak& leak) {
-  const Patch inverse = inverse_of(
-      [&](const Patch& from, int row, int col) { return sensel_receives(from, row, col, leak); });
+  const Patch inverse = inverse_of(leak);
   const auto tap = [&](int down, int right) {
     return at(inverse, kMiddle + down, kMiddle + right);
   };
@@ -92,13 +83,28 @@ double_precision::LeakTaps leak_taps(const SenselLeak& leak) {
 }
 
 PillarTaps pillar_leak_taps(const PillarLeak& leak) {
-  const Patch inverse = inverse_of(
-      [&](const Patch& from, int row, int col) { return pillar_receives(from, row, col, leak); });
-  PillarTaps taps = {at(inverse, kMiddle, kMiddle), at(inverse, kMiddle, kMiddle + 1),
-                     at(inverse, kMiddle + 1, kMiddle + 1)};
+  // A wave with the cosines x and y from pillar to pillar is multiplied by `response`, and by the
+  // weights whole + edge * by_edge + corner * by_corner.
+  constexpr int kWaves = 8;  // along each axis: sums of these polynomials are exact
   const double whole = 1 / (1 + 4 * (leak.edge + leak.corner));
-  taps.self += whole - (taps.self + 4 * (taps.edge + taps.corner));
-  return taps;
+  double ee = 0, ec = 0, cc = 0, er = 0, cr = 0;  // normal equations
+  for (int i = 0; i < kWaves * kWaves; ++i) {
+    const double x = std::cos(2 * std::numbers::pi * (i / kWaves) / kWaves);
+    const double y = std::cos(2 * std::numbers::pi * (i % kWaves) / kWaves);
+    const double response = 1 + 2 * leak.edge * (x + y) + 4 * leak.corner * x * y;
+    const double by_edge = response * (2 * (x + y) - 4);
+    const double by_corner = response * (4 * x * y - 4);
+    const double rest = 1 - whole * response;
+    ee += by_edge * by_edge;
+    ec += by_edge * by_corner;
+    cc += by_corner * by_corner;
+    er += by_edge * rest;
+    cr += by_corner * rest;
+  }
+  const double determinant = ee * cc - ec * ec;
+  const double edge = (er * cc - cr * ec) / determinant;
+  const double corner = (cr * ee - er * ec) / determinant;
+  return {whole - 4 * (edge + corner), edge, corner};
 }
 
 single_precision::MemoryModel memory_model(const SenselMemory& memory, double frame_interval_s) {

@@ -24,7 +24,8 @@ inline constexpr double kCurveReach = 1.25;
 /// (docs/derivations/sensor_effects.md, E3).
 [[nodiscard]] double_precision::LeakTaps leak_taps(const SenselLeak& leak);
 
-/// Weights of the inverse of a leak between pillars, cut to 3 x 3 pillars likewise (E4).
+/// The 3 x 3 weights nearest to the inverse of a leak between pillars; a uniform field keeps its
+/// exact inverse (E4).
 struct PillarTaps {
   double self = 1;
   double edge = 0;

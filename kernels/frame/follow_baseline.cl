@@ -15,17 +15,28 @@ PF_INLINE Bits status_around(global const uchar* status, uint row, uint col, uin
   return bits;
 }
 
+/* The columns of PF_LANES pillars from `col` on. */
+PF_INLINE Real columns_from(uint col) {
+#if PF_LANES == 1
+  return (Real)col;
+#else
+  const float lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return (Real)col + PF_VLOAD(0, lanes);
+#endif
+}
+
 /* Updates the tares and activation thresholds of one row of sensels under PF_LANES pillars; writes
  * those of `lanes`. */
 PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, Place place,
-                          Mask untouched, Real rate, Lanes lanes) {
+                          Mask untouched, Real rate, Real drift, Lanes lanes) {
   const RealPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, place);
   RealPair tares;
   tares.left = follow_tare(at.left.tare, untared_sensel(readings.left, at.left, calibration.stages),
-                           untouched, rate);
-  tares.right = follow_tare(
-      at.right.tare, untared_sensel(readings.right, at.right, calibration.stages), untouched, rate);
+                           untouched, rate, drift);
+  tares.right =
+      follow_tare(at.right.tare, untared_sensel(readings.right, at.right, calibration.stages),
+                  untouched, rate, drift);
   store_tares(tares, calibration, place, at, lanes);
 }
 
@@ -33,10 +44,12 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
  * every get_global_size(0)-th block of PF_LANES pillars in its band of rows.
  *
  * raw, calibration, results   those of solve_frame; tares and activation thresholds are written
- * rate                        fraction of reading - tare that is added to the tare, 0..1 */
+ * rate                        fraction of reading - tare that is added to the tare, 0..1
+ * drift                       added to the tares of sensels that are not untouched */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration, global uchar* restrict results,
-                            Layout layout, float rate, uint first_row, uint interval) {
+                            Layout layout, float rate, Drift drift, uint first_row,
+                            uint interval) {
   const Calibration planes = calibration_of(calibration, results, layout);
   global const uchar* const status = results + layout.status;
   const uint rows = (uint)layout.rows;
@@ -51,10 +64,11 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw,
       const Lanes lanes = {place - col, PF_LANES};
       const Bits around = status_around(status, row, col, rows, cols);
       const Mask untouched = !mask_of(around & PF_BITS(PF_STATUS_PRESSED));
+      const Real shift = drift_at(drift, columns_from(col), (Real)row);
       for (uint side = 0; side < 2; ++side) {
         const Place place = {2 * row + side, 2 * col};
         follow_row(raw + (2 * row + side) * layout.row_stride + 2 * col, planes, place, untouched,
-                   (Real)(rate), lanes);
+                   (Real)(rate), shift, lanes);
       }
     }
   }

@@ -71,11 +71,23 @@ PF_INLINE Real power_law_slope(Real reading, Real exponent, Real reference) {
   return slope < most ? slope : most;
 }
 
-/* Updates the tare of an untouched sensel with a valid reading: adds `rate` times the difference
- * between the raw reading and the tare. */
-static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate) {
-  const Real followed = tare + rate * (raw.reading - tare);
-  return (untouched && !(raw.missing || raw.saturated)) ? followed : tare;
+/* A drift of tares, counts: a plane over the columns and rows of pillars. */
+typedef struct {
+  float first; /* of the pillar (0, 0) */
+  float per_col;
+  float per_row;
+} Drift;
+
+static inline Real drift_at(Drift drift, Real col, Real row) {
+  return PF_CONSTANT(Real, drift.first) +
+         (col * PF_CONSTANT(Real, drift.per_col) + row * PF_CONSTANT(Real, drift.per_row));
+}
+
+/* Updates a tare: that of an untouched sensel with a valid reading by `rate` times the difference
+ * between the raw reading and the tare, another one by the drift that untouched sensels share. */
+static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate, Real drift) {
+  const Mask follows = untouched && !(raw.missing || raw.saturated);
+  return tare + (follows ? rate * (raw.reading - tare) : drift);
 }
 #endif
 

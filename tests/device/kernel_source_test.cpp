@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "device/kernel_program.h"
+#include "pillarfield/error.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"
@@ -39,6 +40,12 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
         "PF_POWER_EXPONENT", "PF_BASELINE"}) {
     EXPECT_EQ(macro(source, stage), "(none)") << stage;
   }
+}
+
+TEST(KernelSource, HasNoConstantThatIsNotFinite) {
+  SolverPlan plan = bare_plan(8, 32, SenselType::u8);
+  plan.skin.counts_per_newton = 0;
+  EXPECT_THROW(kernel_source(plan, 16), Error);
 }
 
 TEST(KernelSource, EveryOptionOfAPlanIsAStage) {

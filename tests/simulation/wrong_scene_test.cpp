@@ -84,7 +84,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[sensor]\nwires = { sensel_ohm = 1, tile = [8.5, 8] }",
        "s.toml:3: key 'tile' in [wires] has a fraction; allowed: whole numbers, [rows, columns]"},
       {"[sensor]\nwires = { sensel_ohm = 1, row_ohm = 30 }",
-       "s.toml: row_per_count is 0.11764705882352941; it must lie in [0, 0.1]"},
+       "s.toml: row_per_count is 0.117647; it must lie in [0, 0.1]"},
       {"[surface]\nbend_spread_counts_mm = 3",
        "s.toml:2: key 'curvature_per_mm' in [surface] is missing; allowed: a list of 3, [x, y, "
        "xy], "

@@ -62,9 +62,10 @@ TEST_F(HostSolve, RefusesFramesAndPlansThatDoNotFit) {
 TEST_F(HostSolve, ABaselineStartsFromZeroWithoutATare) {
   plan_.baseline_rate = 0.25;
   plan_.skin.threshold_counts = 60;  // nothing is usable, so every sensel is untouched
-  follow_baseline_on_host(plan_, frame_, solve_on_host(plan_, frame_));
+  SensorState state;
+  follow_baseline_on_host(plan_, frame_, solve_on_host(plan_, frame_), state);
   EXPECT_EQ(plan_.calibration.tare, std::vector<float>(24, 12.5F));
-  EXPECT_THROW(follow_baseline_on_host(plan_, frame_, ForceField(3, 3)), Error);
+  EXPECT_THROW(follow_baseline_on_host(plan_, frame_, ForceField(3, 3), state), Error);
 }
 
 }  // namespace

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include "base/wide.h"
 #include "pillarfield/status.h"
-#include "skin/status_word.h"
 
 namespace pillarfield {
 namespace {
@@ -89,10 +87,12 @@ void ContactEstimator::resolve(ForceField& field) { resolve(planes_of(field)); }
 void ContactEstimator::resolve(const FieldPlanes& field, const IdleBlocks& idle) {
   const ForceFieldView forces = field.forces();
   labels_.find(forces.status, rows_, cols_, idle);
-  friction_.begin(labels_);
+  friction_.begin(forces, labels_);
   pool_->run(labels_.contacts(), [&](std::size_t contact, std::size_t member) {
+    friction_.update(forces, labels_, static_cast<std::uint32_t>(contact), member);
+  });
+  pool_->run(labels_.contacts(), [&](std::size_t contact, std::size_t) {
     const auto label = static_cast<std::uint32_t>(contact);
-    friction_.update(forces, labels_, label, member);
     if (friction_.model(label).any_ambiguous) estimate(field, label);
   });
 }
@@ -161,7 +161,7 @@ struct ContactEstimator::Batch {
 /// Estimates the ambiguous pillars of a contact in batches.
 void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact) const {
   const ContactModel& model = friction_.model(contact);
-  const bool leans = model_.pitch_over_arm > 0;
+  const std::span<const LeanShear> leans = friction_.leans();
   Batch batch;
   const auto finish = [&] {
     for (std::size_t i = batch.pillars; i < kBatchPillars; ++i) {
@@ -173,8 +173,7 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     for (std::size_t i = 0; i < batch.pillars; ++i) write(field, model, batch, i);
     batch.pillars = 0;
   };
-  const auto add = [&](std::uint32_t index) {
-    if (!has_feasible_segment(field.status[index])) return;
+  for_each_ambiguous(field.forces(), labels_.runs(contact), [&](std::uint32_t index) {
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormalN)) return;
     const FeasibleSegment segment =
         segment_of(force_of(field, index), field.status[index], model_, {});
@@ -184,23 +183,9 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     batch.high[batch.pillars] = segment.high;
     batch.slope[batch.pillars] = static_cast<float>(segment.slope);
     batch.slope_square[batch.pillars] = model_.slope_square(shear_y_is_free(field.status[index]));
-    // The normal forces of neighbours may be estimates already: the deviation hardly changes.
-    batch.lean[batch.pillars] =
-        leans ? lean_at(field.forces(), index, model_.pitch_over_arm).deviation : 0;
+    batch.lean[batch.pillars] = leans.empty() ? 0 : leans[index].deviation;
     if (++batch.pillars == kBatchPillars) finish();
-  };
-  for (const ContactRun& run : labels_.runs(contact)) {
-    std::uint32_t index = run.row * cols_ + run.first;
-    const std::uint32_t end = run.row * cols_ + run.end;
-    // Skips eight pillars at a time: most are not ambiguous.
-    for (; index + kWordBytes <= end; index += kWordBytes) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, field.status + index, kWordBytes);
-      if ((word & (status::kAmbiguous * kEachByte)) == 0) continue;
-      for (std::uint32_t i = 0; i < kWordBytes; ++i) add(index + i);
-    }
-    for (; index < end; ++index) add(index);
-  }
+  });
   if (batch.pillars > 0) finish();
 }
 

@@ -64,10 +64,11 @@ ContactBox ContactBox::about(std::span<const ContactRun> runs) {
   return box;
 }
 
-void ContactSamples::sample(const ForceFieldView& forces, std::span<const ContactRun> runs,
-                            double noise_n, const SegmentModel& model,
-                            const ContactParameters& parameters) {
+void ContactSamples::sample(const ForceFieldView& forces, std::span<const LeanShear> leans,
+                            std::span<const ContactRun> runs, double noise_n,
+                            const SegmentModel& model, const ContactParameters& parameters) {
   forces_ = forces;
+  leans_ = leans;
   model_ = model;
   runs_ = runs;
   box_ = ContactBox::about(runs);
@@ -110,7 +111,7 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
   const double least = parameters.least_normal * noise_n;
   if (!(normal > 0 && normal < kMostNormalN)) return;
   if (has_feasible_segment(status)) {
-    const LeanShear lean = lean_at(forces_, index, model_.pitch_over_arm);
+    const LeanShear lean = lean_of(index);
     const FeasibleSegment segment = segment_at(forces_, index, model_, lean);
     const double high = segment.high;
     ambiguous_.push_back(index);
@@ -142,7 +143,7 @@ double ContactSamples::most_normal(std::uint32_t index) const {
   const std::uint8_t status = forces_.status[index];
   if (is_determined(status)) return std::max(double{forces_.normal[index]}, 0.0);
   if (!has_feasible_segment(status)) return 0;
-  return segment_at(forces_, index, model_, lean_at(forces_, index, model_.pitch_over_arm)).high;
+  return segment_at(forces_, index, model_, lean_of(index)).high;
 }
 
 /// Adds a sample of zero normal force at an edge, weighted by how little the outermost pillars bear

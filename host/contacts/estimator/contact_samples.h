@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -9,9 +10,32 @@
 #include "contacts/estimator/pressure_regression.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/status.h"
+#include "skin/status_word.h"
 #include "solve/segment.h"
 
 namespace pillarfield {
+
+/// Calls `use` with the index of each pillar of a contact that has a feasible segment.
+template <class Use>
+void for_each_ambiguous(const ForceFieldView& forces, std::span<const ContactRun> runs, Use use) {
+  for (const ContactRun& run : runs) {
+    std::uint32_t index = run.row * forces.cols + run.first;
+    const std::uint32_t end = run.row * forces.cols + run.end;
+    while (index < end) {
+      // Skips eight pillars at a time: most are not ambiguous.
+      const bool whole = index + kWordBytes <= end;
+      std::uint64_t word = status::kAmbiguous;
+      if (whole) std::memcpy(&word, &forces.status[index], kWordBytes);
+      const std::uint32_t pillars = whole ? kWordBytes : end - index;
+      for (std::uint32_t i = 0; i < pillars && (word & (status::kAmbiguous * kEachByte)) != 0;
+           ++i) {
+        if (has_feasible_segment(forces.status[index + i])) use(index + i);
+      }
+      index += pillars;
+    }
+  }
+}
 
 /// Bounding box of a contact, in pillars.
 struct ContactBox {
@@ -42,9 +66,11 @@ class ContactSamples {
   static constexpr std::uint32_t kMostPillars = 96;
   static constexpr std::uint32_t kMostEdges = 16;
 
-  /// Samples the pillars of a contact. `noise_n` is the noise of a reading as a force, N.
-  void sample(const ForceFieldView& forces, std::span<const ContactRun> runs, double noise_n,
-              const SegmentModel& model, const ContactParameters& parameters);
+  /// Samples the pillars of a contact. `leans` are those of its ambiguous pillars, or empty without
+  /// an arm; `noise_n` is the noise of a reading as a force, N.
+  void sample(const ForceFieldView& forces, std::span<const LeanShear> leans,
+              std::span<const ContactRun> runs, double noise_n, const SegmentModel& model,
+              const ContactParameters& parameters);
   /// Adds samples of zero normal force at the contact's edge to the regression's samples.
   void add_edges();
 
@@ -80,7 +106,12 @@ class ContactSamples {
   void add_ends_of_columns();
   [[nodiscard]] double most_normal(std::uint32_t index) const;
 
+  [[nodiscard]] LeanShear lean_of(std::uint32_t index) const {
+    return leans_.empty() ? LeanShear{} : leans_[index];
+  }
+
   ForceFieldView forces_;
+  std::span<const LeanShear> leans_;
   std::span<const ContactRun> runs_;
   SegmentModel model_;
   ContactBox box_;

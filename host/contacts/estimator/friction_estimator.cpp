@@ -46,7 +46,8 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
       carries_over_(knowledge.memory),
       workspaces_(members) {}
 
-void FrictionEstimator::begin(const ContactLabels& labels) {
+void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels& labels) {
+  if (sensor_.segment.pitch_over_arm > 0) leans_.resize(forces.status.size());
   std::swap(posteriors_, earlier_posteriors_);
   std::swap(histories_, earlier_histories_);
   posteriors_.assign(labels.contacts(), prior_);
@@ -90,7 +91,12 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   const auto runs = labels.runs(contact);
   model.noise_n =
       sensor_.noise_n ? *sensor_.noise_n : largest_normal(forces, runs) / kPeakOverNoise;
-  samples.sample(forces, runs, model.noise_n, sensor_.segment, parameters_);
+  if (!leans_.empty()) {
+    for_each_ambiguous(forces, runs, [&](std::uint32_t index) {
+      leans_[index] = lean_at(forces, index, sensor_.segment.pitch_over_arm);
+    });
+  }
+  samples.sample(forces, leans_, runs, model.noise_n, sensor_.segment, parameters_);
   model.box = samples.box();
   // Pillars that were not sampled may be ambiguous.
   model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
@@ -123,7 +129,7 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   const std::size_t step = (ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
   for (std::size_t i = 0; i < ambiguous.size(); i += step) {
     const std::uint32_t index = ambiguous[i];
-    const LeanShear lean = lean_at(forces, index, sensor_.segment.pitch_over_arm);
+    const LeanShear lean = leans_.empty() ? LeanShear{} : leans_[index];
     const FeasibleSegment segment = segment_at(forces, index, sensor_.segment, lean);
     const std::uint32_t row = index / forces.cols;
     const auto found = model.predicted(row, index - row * forces.cols, segment.high, parameters_);

@@ -57,16 +57,18 @@ class FrictionEstimator {
                     const ContactParameters& parameters = {});
 
   /// Begins a frame: each contact takes over the posterior of the earlier contact it continues.
-  void begin(const ContactLabels& labels);
+  void begin(const ForceFieldView& forces, const ContactLabels& labels);
 
   /// Updates the posterior of one contact with the frame begun. The result does not depend on where
   /// the force of an ambiguous pillar lies on its segment. Thread-safe for different contacts with
-  /// different `member`.
+  /// different `member`, while no force is written: leans depend on pillars of other contacts.
   void update(const ForceFieldView& forces, const ContactLabels& labels, std::uint32_t contact,
               std::size_t member);
 
   [[nodiscard]] std::span<const ContactFriction> friction() const { return friction_; }
   [[nodiscard]] const ContactModel& model(std::uint32_t contact) const { return models_[contact]; }
+  /// The leans of the ambiguous pillars of updated contacts, [rows, cols]; empty without an arm.
+  [[nodiscard]] std::span<const LeanShear> leans() const { return leans_; }
 
  private:
   /// Memory of one thread.
@@ -103,6 +105,7 @@ class FrictionEstimator {
   std::vector<ContactModel> models_;
   std::vector<ContactFriction> friction_;
   std::vector<Workspace> workspaces_;
+  std::vector<LeanShear> leans_;
 };
 
 }  // namespace pillarfield

@@ -11,6 +11,7 @@
 namespace pillarfield {
 
 class CurvatureFollower;
+class DriftFollower;
 
 /// Solves one frame in the calling thread, without OpenCL; link `pillarfield::core`.
 ///
@@ -31,25 +32,26 @@ class CurvatureFollower;
 /// once.
 [[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
 
-/// What a frame leaves to the next one: hysteresis and creep of the sensels (SenselMemory), and the
-/// curvature of the skin. Empty: at rest, and flat.
+/// What a frame leaves to the next one: hysteresis and creep of the sensels (SenselMemory), the
+/// curvature of the skin, and the drift of its tares. Empty: at rest, and flat.
 struct SensorState {
   std::vector<std::uint32_t> states;  ///< as Memory of the kernels, [pillar rows, cols, words]
   std::uint32_t frame = 0;            ///< number of frames so far
   std::vector<float> tare;            ///< of the bent skin, counts, [sensel rows, cols]
   std::shared_ptr<CurvatureFollower> curvature;  ///< made with the first frame of a bent skin
+  std::shared_ptr<DriftFollower> drift;          ///< made with the first frame that is followed
 };
 
 /// Solves one frame of a sequence: sensels are in `state` before it, which is updated.
 [[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame,
                                        SensorState& state);
 
-/// Moves `plan.calibration.tare` towards the readings of untouched sensels, as Processor does after
-/// each frame if `plan.baseline_rate` is set. `forces` is the result of `frame`, and `index` is the
-/// number of the frame, from 0; it selects the pillar rows whose turn it is
-/// (SolverPlan::baseline_interval). An empty tare counts as zero.
-/// Throws Error if the frame or the forces do not fit the plan.
+/// Moves `plan.calibration.tare` towards the readings of untouched sensels, and that of touched
+/// ones by the drift that these share, as Processor does after each frame if `plan.baseline_rate`
+/// is set. `forces` is the result of `frame`. `state` holds the drift, and the number of frames
+/// followed so far, which selects the pillar rows whose turn it is (SolverPlan::baseline_interval).
+/// An empty tare counts as zero. Throws Error if the frame or the forces do not fit the plan.
 void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces,
-                             std::uint64_t index = 0);
+                             SensorState& state);
 
 }  // namespace pillarfield

@@ -29,15 +29,18 @@ struct ShearCoefficient {
 /// Fraction of its neighbours' V that a sensel reads too, through the silicone or the wiring (E3):
 /// reading = V + inside · (both edge neighbours under its pillar) + across · (both beyond it).
 struct SenselLeak {
-  double inside = 0;  ///< −0.2..0.2
+  double inside = 0;  ///< ±kMostSenselLeak
   double across = 0;
 };
+inline constexpr double kMostSenselLeak = 0.2;
 
-/// Fraction of its neighbours' force that a pillar carries too, through the silicone (E4).
+/// Fraction of its neighbours' force that a pillar carries too, through the silicone (E4). Of all
+/// eight, 4 (|edge| + |corner|), at most kMostPillarLeak: larger leaks are not corrected well.
 struct PillarLeak {
-  double edge = 0;    ///< of each of the four nearest pillars, −0.2..0.2
+  double edge = 0;    ///< of each of the four nearest pillars
   double corner = 0;  ///< of each of the four diagonal pillars
 };
+inline constexpr double kMostPillarLeak = 0.5;
 
 /// Crosstalk of a scanned array whose rows and columns have series resistance (E5). The array is
 /// wired in tiles, from the upper left sensel on, each with rows and columns of its own.

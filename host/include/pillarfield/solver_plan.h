@@ -47,7 +47,8 @@ struct SolverPlan {
   FrictionKnowledge friction;  ///< prior for Estimator::contact
   /// Fraction of its distance from the reading by which the tare of an untouched sensel moves after
   /// each frame, (0, 1]; see baseline_rate(). Unset: the tare is fixed. A sensel is untouched if
-  /// neither its pillar nor the eight around it have a usable or saturated sensel.
+  /// neither its pillar nor the eight around it have a usable or saturated sensel. Other tares move
+  /// by what the untouched ones have in common (docs/derivations/sensor_effects.md, E11).
   std::optional<double> baseline_rate;
   /// Number of frames over which the update of the tare is spread, 1 to 1024: each frame updates
   /// every baseline_interval-th pillar row. The tare follows as fast as with 1 at a fraction of the

@@ -27,11 +27,13 @@ inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
 }};
 inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
 
+inline constexpr Range kSenselLeaks = {-kMostSenselLeak, kMostSenselLeak};
+inline constexpr Range kPillarLeaks = {-kMostPillarLeak / 4, kMostPillarLeak / 4};
 inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{
-    {"pillar_leak_edge", &SensorModel::pillar_leak_edge, {-0.2, 0.2}},
-    {"pillar_leak_corner", &SensorModel::pillar_leak_corner, {-0.2, 0.2}},
-    {"leak_inside", &SensorModel::leak_inside, {-0.2, 0.2}},
-    {"leak_across", &SensorModel::leak_across, {-0.2, 0.2}},
+    {"pillar_leak_edge", &SensorModel::pillar_leak_edge, kPillarLeaks},
+    {"pillar_leak_corner", &SensorModel::pillar_leak_corner, kPillarLeaks},
+    {"leak_inside", &SensorModel::leak_inside, kSenselLeaks},
+    {"leak_across", &SensorModel::leak_across, kSenselLeaks},
     {"hysteresis", &SensorModel::hysteresis, {0, 0.3}},
     {"creep_per_decade", &SensorModel::creep_per_decade, {0, 0.3}},
     {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},

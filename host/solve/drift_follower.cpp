@@ -1,0 +1,124 @@
+#include "solve/drift_follower.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pillarfield/tuning.h"
+#include "skin/raw_reading.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kMostTiles = 64;
+constexpr double kDriftDeviations = 6;
+constexpr double kDriftPart = 0.25;            // of the threshold
+constexpr double kLeastUntouchedTiles = 0.15;  // fraction of the tiles
+constexpr double kSlopeRidge = 1e-3;
+constexpr double kSettlingTimes = 3;  // time constants in which a tare takes in what it was off by
+
+double value_at(const PatternTriple& factors, const PatternTriple& pattern) {
+  return factors[0] * pattern[0] + factors[1] * pattern[1] + factors[2] * pattern[2];
+}
+
+}  // namespace
+
+DriftFollower::DriftFollower(const SolverPlan& plan)
+    : cols_(plan.skin.cols),
+      middle_{1, 0.5 * plan.skin.pillar_cols(), 0.5 * plan.skin.pillar_rows()},
+      rate_(plan.baseline_rate.value_or(0)),
+      noise_(reading_noise_n(plan) * plan.skin.counts_per_newton),
+      limit_(plan.skin.threshold_counts),
+      settling_(kSettlingTimes / rate_),
+      turns_(static_cast<std::size_t>(plan.baseline_interval)) {
+  if (plan.calibration.effects.wires) return;
+  const std::size_t pillars = plan.skin.pillars();
+  const std::size_t step = pillars / kMostTiles | 1U;  // odd: reaches all columns
+  for (std::size_t i = step / 2; i < pillars; i += step) add_tile(plan, i);
+}
+
+void DriftFollower::add_tile(const SolverPlan& plan, std::size_t pillar) {
+  const Calibration& planes = plan.calibration;
+  const std::uint32_t rows = plan.skin.pillar_rows();
+  const std::uint32_t cols = plan.skin.pillar_cols();
+  const auto row = static_cast<std::uint32_t>(pillar / cols);
+  const auto col = static_cast<std::uint32_t>(pillar % cols);
+  Tile tile{};
+  tile.first = sensels_.size();
+  tile.place = {1, (col + 0.5) / middle_[1] - 1, (row + 0.5) / middle_[2] - 1};
+  for (std::uint32_t r = 2 * std::max(row, 1U) - 2; r < 2 * std::min(row + 2, rows); ++r) {
+    for (std::uint32_t c = 2 * std::max(col, 1U) - 2; c < 2 * std::min(col + 2, cols); ++c) {
+      if (planes.mask.empty() || planes.mask[r * cols_ + c] == 1) sensels_.push_back({r, c});
+    }
+  }
+  tile.end = sensels_.size();
+  if (tile.first == tile.end) return;
+  const auto mean_of = [&](const std::vector<float>& plane) {
+    return plane.empty() ? 0 : mean(tile, [&](auto at) { return plane[at.row * cols_ + at.col]; });
+  };
+  tile.tare = mean_of(planes.tare);
+  tile.bend = {mean_of(planes.bend_x), mean_of(planes.bend_y), mean_of(planes.bend_xy)};
+  tiles_.push_back(tile);
+}
+
+template <class Value>
+double DriftFollower::mean(const Tile& tile, Value value) const {
+  double sum = 0;
+  for (std::size_t i = tile.first; i < tile.end; ++i) sum += value(sensels_[i]);
+  return sum / static_cast<double>(tile.end - tile.first);
+}
+
+void DriftFollower::set_tare(std::span<const float> tare) {
+  for (Tile& tile : tiles_) {
+    tile.tare = mean(tile, [&](Sensel at) { return tare[at.row * cols_ + at.col]; });
+    tile.trusted_from = 0;
+  }
+  drift_ = sum_ = {};
+  std::ranges::fill(turns_, PatternTriple{});
+  frames_ = 0;
+}
+
+/// Whether a tile is as far off its tare as untouched ones were in the last frame.
+bool DriftFollower::is_near(const Tile& tile) const {
+  const auto sensels = static_cast<double>(tile.end - tile.first);
+  const double most = std::max(kDriftDeviations * noise_ / std::sqrt(sensels), kDriftPart * limit_);
+  return std::abs(tile.difference) <= limit_ &&
+         std::abs(tile.difference - value_at(drift_, tile.place)) <= most;
+}
+
+single_precision::Drift DriftFollower::follow(const FrameView& frame,
+                                              const std::optional<Curvature>& bent) {
+  const PatternTriple change = bent ? PatternTriple{bent->x, bent->y, bent->xy} : PatternTriple{};
+  PatternEquations equations;
+  double untouched = 0;
+  for (Tile& tile : tiles_) {
+    tile.tare += value_at(change, tile.bend);
+    tile.difference =
+        mean(tile, [&](Sensel at) { return raw_reading(frame, at.row, at.col); }) - tile.tare;
+    if (!is_near(tile)) tile.trusted_from = static_cast<double>(frames_) + settling_;
+    if (static_cast<double>(frames_) < tile.trusted_from) continue;
+    equations.add(tile.place, tile.difference);
+    ++untouched;
+  }
+  const bool enough = untouched >= kLeastUntouchedTiles * static_cast<double>(tiles_.size());
+  const PatternTriple found = enough ? equations.solution(kSlopeRidge) : PatternTriple{};
+  for (Tile& tile : tiles_) {
+    const bool follows = std::abs(tile.difference) <= limit_;
+    tile.tare += rate_ * (follows ? tile.difference : value_at(found, tile.place));
+  }
+  for (std::size_t k = 0; k < 3; ++k) sum_[k] += rate_ * found[k];
+  if (enough) drift_ = found;
+  const single_precision::Drift drift = since_last_turn();
+  turns_[frames_++ % turns_.size()] = sum_;
+  return drift;
+}
+
+/// The change of `sum_` since the frame that last updated the same rows.
+single_precision::Drift DriftFollower::since_last_turn() const {
+  const PatternTriple& last = turns_[frames_ % turns_.size()];
+  PatternTriple change{};
+  for (std::size_t k = 0; k < 3; ++k) change[k] = (sum_[k] - last[k]) / middle_[k];
+  const double first = change[0] + change[1] * (0.5 - middle_[1]) + change[2] * (0.5 - middle_[2]);
+  return {static_cast<float>(first), static_cast<float>(change[1]), static_cast<float>(change[2])};
+}
+
+}  // namespace pillarfield
