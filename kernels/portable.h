@@ -11,6 +11,7 @@
  *   Word     uint, or uintN             uintN          std::uint32_t          none
  *
  *   PF_REAL(x)    the constant x in every lane, of Real's own precision
+ *   PF_INFINITY   infinity in every lane, of Real
  *   PF_COUNTS(x)  the whole constant x in every lane
  *   PF_BITS(x)    the integer x in every lane
  *   PF_WORD(x)    the unsigned constant x in every lane
@@ -123,6 +124,7 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 #define PF_CONSTANT(type, x) ((type)(x))
 #define PF_REAL(x) ((Real)(x##f))
+#define PF_INFINITY ((Real)(INFINITY))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
 #define PF_WORD(x) ((Word)(x##u))
@@ -133,9 +135,11 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 #define PF_UNROLL
 #define PF_CONSTANT(type, x) static_cast<type>(x)
 #undef PF_REAL
+#undef PF_INFINITY
 #undef PF_COUNTS
 #undef PF_BITS
 #undef PF_WORD
+#define PF_INFINITY (std::numeric_limits<Real>::infinity())
 #if PF_PRECISION == 64
 using Real = double;
 #define PF_REAL(x) (x)

@@ -73,6 +73,8 @@ static inline DirectionInterval corrected_interval(DirectionInterval before, For
   any.phi_high = pi;
   any.magnitude_low = shorter > zero ? shorter : zero;
   any.magnitude_high = before.magnitude_high + moved;
-  const DirectionInterval open = either_interval(along_y || left || right, segment, any);
+  const Mask on_segment =
+      (along_y || left || right) && !mask_of(status & PF_BITS(PF_STATUS_SATURATED));
+  const DirectionInterval open = either_interval(on_segment, segment, any);
   return either_interval(at_least_three(status), point_interval(direction), open);
 }

@@ -13,10 +13,12 @@ typedef struct {
   ShearRatio y;
 } ShearRatios;
 
-/* A sum over the pillars around of their weights, and of these times their difference in ratio. */
+/* A sum over the pillars around of their weights, and of these times their difference in ratio and
+ * its square. */
 typedef struct {
   Real weight;
   Real difference;
+  Real square;
 } RatioSum;
 
 /* The ratio of a pillar that leans by `lean` times `pitch_over_arm`; `noise` is the deviation of
@@ -45,22 +47,33 @@ PF_INLINE RatioSum ratio_part(ShearRatio own, ShearRatio other, Real normal, Rea
   const Mask informs = normal > zero && other.variance >= zero;
   RatioSum part;
   part.weight = informs ? PF_REAL(1.0) / (other.variance + spread) : zero;
-  part.difference = part.weight * (informs ? other.value - own.value : zero);
+  const Real difference = informs ? other.value - own.value : zero;
+  part.difference = part.weight * difference;
+  part.square = part.difference * difference;
   return part;
 }
 
 PF_INLINE RatioSum add_ratios(RatioSum a, RatioSum b) {
   a.weight = a.weight + b.weight;
   a.difference = a.difference + b.difference;
+  a.square = a.square + b.square;
   return a;
 }
 
-/* The precision-weighted mean of a pillar's own ratio and of those around it. */
+/* The precision-weighted mean of a pillar's own ratio and of those around it. Its variance grows
+ * with what they disagree by: chi squared about the mean (E7b). */
 PF_INLINE ShearRatio mean_ratio(ShearRatio own, RatioSum around) {
+  const Real zero = PF_REAL(0.0);
+  const Real one = PF_REAL(1.0);
+  const Real most = PF_REAL(1e12); /* as in shear_ratio */
   const Real variance = size_of(own.variance);
-  const Real whole = PF_REAL(1.0) + variance * around.weight;
+  const Real whole = one + variance * around.weight;
+  const Real shift = variance * around.difference / whole;
+  const Real square = around.square - shift * around.difference;
+  const Real disagreement = PF_REAL(2.0) * (square < zero ? zero : square);
+  const Real wider = (variance / whole) * (one + disagreement);
   ShearRatio mean;
-  mean.value = own.value + variance * around.difference / whole;
-  mean.variance = variance / whole;
+  mean.value = own.value + shift;
+  mean.variance = wider < most ? wider : most;
   return mean;
 }

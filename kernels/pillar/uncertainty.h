@@ -56,9 +56,11 @@ static inline Real variance_of(Sensel sensel, Real noise) {
 /* Root mean square distance of the true parity sum from the reported one, counts (U9): on a segment
  * by the distribution under friction, elsewhere by a uniform one over the interval. Zero where the
  * force is determined. */
-static inline Real ambiguity_of(Diagonals diagonals, ParitySum sum, Real segment_point) {
+static inline Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                Real segment_point) {
   const Real away = segment_point - PF_REAL(0.875);
-  const Real on_segment = plain_length_2(PF_REAL(0.12), away);
+  const Real on_segment =
+      any_saturated(pillar) ? PF_REAL(0.5) : plain_length_2(PF_REAL(0.12), away);
   const Mask segment = has_segment(diagonals.rising, diagonals.falling);
   const Real part = segment ? on_segment : PF_REAL(0.28867513459481288225);
   return sum.ambiguous ? part * sum.high : PF_REAL(0.0);
@@ -75,9 +77,10 @@ static inline Force roots_of(Force variances, Real to_x, Real to_y, Real ambigui
   return deviations;
 }
 
-/* Standard deviations of the components of `direct_force`, N (U3, U9); exact in regions 1 and 2. */
-static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
-                                     Real segment_point, ForceScale scale) {
+/* Standard deviations of the components of the force of readings, N (U3, U9); exact in regions 1
+ * and 2. */
+static inline Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                       Noise noise, Real segment_point, ForceScale scale) {
   const ParityWeights weights = parity_weights(diagonals, segment_point);
   const DifferenceWeights rising = difference_weights(diagonals.rising);
   const DifferenceWeights falling = difference_weights(diagonals.falling);
@@ -99,7 +102,7 @@ static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParityS
                            y1 * y1 * var1 + y2 * y2 * var2 + y3 * y3 * var3 + y4 * y4 * var4,
                            weights.rising * weights.rising * (var1 + var3) +
                                weights.falling * weights.falling * (var2 + var4)};
-  const Real ambiguity = ambiguity_of(diagonals, sum, segment_point);
+  const Real ambiguity = ambiguity_of(pillar, diagonals, sum, segment_point);
   if (!any_lane(ambiguity > PF_REAL(0x1p60))) {
     return roots_of(variances, to_x, to_y, ambiguity, scale);
   }
@@ -112,6 +115,15 @@ static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParityS
   deviations.shear_y = deviations.shear_y * scaling.up;
   deviations.normal = deviations.normal * scaling.up;
   return deviations;
+}
+
+/* Standard deviations of the components of `direct_force`, N: those of its readings, infinite where
+ * a saturated sensel leaves a component open. */
+static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
+                                     Real segment_point, ForceScale scale) {
+  const Force deviations = reading_deviations(pillar, diagonals, sum, noise, segment_point, scale);
+  if (!any_lane(any_saturated(pillar))) return deviations;
+  return open_deviations(deviations, open_components(pillar, diagonals, sum), scale);
 }
 
 /* Intervals of magnitude and direction without noise. phi runs counter-clockwise from phi_low to
@@ -368,16 +380,13 @@ static inline DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive
   return interval;
 }
 
-/* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
- * pillar without missing and saturated sensels (U4 to U8). Both ends are the estimate where the
- * force is determined. `sum` comes from `parity_sum`, `estimate` is the direction of
- * `direct_force`.
+/* The interval of a pillar without missing and saturated sensels (U4 to U8).
  *
  * The general interval costs more than the rest of the solve; cheaper formulas give the same bits
  * where no lane needs it. */
-static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
-                                                   ParitySum sum, Direction estimate,
-                                                   ForceScale scale, ShearWeights weights) {
+static inline DirectionInterval interval_of_readings(Pillar pillar, Diagonals diagonals,
+                                                     ParitySum sum, Direction estimate,
+                                                     ForceScale scale, ShearWeights weights) {
   const Mask determined = is_determined(pillar, sum);
   const DirectionInterval point = point_interval(estimate);
   if (!any_lane(!determined)) return point;
@@ -388,4 +397,32 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
     return either_interval(determined, point, inactive_interval(e, weights));
   }
   return either_interval(determined, point, ambiguous_interval(e, inactive, estimate, weights));
+}
+
+/* The interval of a pillar with saturated sensels whose force is open: any direction, and a
+ * magnitude of at least that of `interval` (U12). */
+static inline DirectionInterval open_interval(DirectionInterval interval, Open open) {
+  const Real pi = PF_REAL(3.14159265358979323846);
+  DirectionInterval any;
+  any.theta_low = PF_REAL(0.0);
+  any.theta_high = PF_REAL(1.57079632679489661923);
+  any.phi_low = -pi;
+  any.phi_high = pi;
+  any.magnitude_low = interval.magnitude_low;
+  any.magnitude_high = PF_INFINITY;
+  const Mask is_open =
+      open.shear_x || open.shear_y || open.normal || open.difference > PF_REAL(0.0);
+  return either_interval(is_open, any, interval);
+}
+
+/* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
+ * pillar without missing sensels (U4 to U8, U12). Both ends are the estimate where the force is
+ * determined. `sum` comes from `parity_sum`, `estimate` is the direction of `direct_force`. */
+static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
+                                                   ParitySum sum, Direction estimate,
+                                                   ForceScale scale, ShearWeights weights) {
+  const DirectionInterval interval =
+      interval_of_readings(pillar, diagonals, sum, estimate, scale, weights);
+  if (!any_lane(any_saturated(pillar))) return interval;
+  return open_interval(interval, open_components(pillar, diagonals, sum));
 }

@@ -32,7 +32,8 @@ class Uncertainty:
 
     shear_x, shear_y and normal are standard deviations, N. The others bound direction (rad) and
     magnitude (N) over the segment of an ambiguous pillar, without noise; phi runs counter-clockwise
-    from low to high. Valid for pillars without missing and saturated sensels.
+    from low to high. What saturated sensels leave open is infinite. Valid for pillars without
+    missing sensels.
     """
 
     shear_x: Floats

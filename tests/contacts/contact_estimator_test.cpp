@@ -47,6 +47,17 @@ TEST(ContactEstimator, BeatsThePapersMidpointAndHoldsTheTruth) {
   EXPECT_LT(all.rms(), 2);
 }
 
+/// Frictions that the prior does not expect, and that few pillars show.
+TEST(ContactEstimator, HoldsTheTruthAtHighFrictions) {
+  for (const double friction : {4.5, 6.0}) {
+    Errors all;
+    for (const auto body : {fingertip, ball, punch}) {
+      all += contact_errors(Simulator(dragged(body(), friction)));
+    }
+    for (const double held : all.between) EXPECT_GT(held, 0.9 * all.pillars) << friction;
+  }
+}
+
 TEST(ContactEstimator, AGivenFrictionHelpsAndALooseBoundDoesNotHarm) {
   const Simulator scene(dragged(ball(), 1.8));
   const double alone = contact_errors(scene).rms();

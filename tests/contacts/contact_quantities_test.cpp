@@ -260,13 +260,13 @@ ForceField moved(const ForceField& field) {
 TEST(Friction, IsCarriedOverAsFarAsAContactMayJump) {
   for (const double reach_mm : {5.0, 50.0}) {
     ContactTracker tracker(kPitchMm, {.reach_mm = reach_mm});
-    ForceField first = moved(mostly_sliding(8, 8, 0.7));
+    ForceField first = moved(mostly_sliding(12, 12, 0.7));
     for (auto* plane : {&first.shear_x, &first.shear_y, &first.normal}) {
       std::rotate(plane->begin(), plane->begin() + 15, plane->end());
     }
     std::rotate(first.status.begin(), first.status.begin() + 15, first.status.end());
     tracker.update(first.view(), 0);
-    const ForceField second = moved(mostly_sliding(8, 8, 0.1));
+    const ForceField second = moved(mostly_sliding(12, 12, 0.1));
     const FrameContacts& frame = tracker.update(second.view(), 1);
     EXPECT_EQ(frame.contacts.at(0).quantities.friction_source,
               reach_mm < 19 ? FrictionSource::prior : FrictionSource::carried_over);
@@ -282,6 +282,17 @@ TEST(Friction, OfAFaceThatMayStickIsNotReported) {
     EXPECT_EQ(contact.slip, SlipState::unknown) << ratio;
     EXPECT_EQ(contact.friction_source, FrictionSource::prior) << ratio;
   }
+}
+
+/// A sticking stamp, whose edge bears little and slips at larger ratios.
+TEST(Friction, OfAStampWhoseEdgeAloneSlipsIsNotReported) {
+  ForceField field = mostly_sliding(12, 12, 0.5);
+  for (std::uint32_t i = 0; i < field.pillars(); ++i) {
+    if (!(field.normal[i] > 0)) continue;
+    field.shear_x[i] = field.normal[i] * (i % 19 == 0 ? 0.8F : 0.5F);
+    field.shear_y[i] = 0;
+  }
+  EXPECT_EQ(only_contact(field).friction_source, FrictionSource::prior);
 }
 
 /// The posterior is carried over, but losing the shear again proves nothing.

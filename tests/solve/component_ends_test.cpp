@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
@@ -23,7 +24,6 @@ constexpr auto kEnds = [](std::size_t component) {
 
 /// Solves a pillar from the readings of its sensels 1 to 4.
 ForceField solved(const std::array<float, 4>& readings, SolverPlan& plan) {
-  plan.skin = {};
   plan.skin.rows = 2;
   plan.skin.cols = 2;
   plan.skin.counts_per_newton = 100;
@@ -128,6 +128,23 @@ TEST(ComponentEnds, OfADirectForceDoNotDependOnItsPoint) {
     for (std::size_t i = 0; i < kComponentEnds; ++i) {
       EXPECT_NEAR(ends[i], first[i], 0.02) << i << " at " << point;
     }
+  }
+}
+
+/// Two adjacent sensels at full scale: what the other two determine is finite, the rest is open.
+TEST(ComponentEnds, OfASaturatedPillarAreOpen) {
+  SolverPlan plan;
+  plan.skin.full_scale_counts = 255;
+  const ForceField field = solved({255, 255, 90, 80}, plan);
+  ASSERT_NE(field.status[0] & status::kSaturated, 0);
+  for (const auto& point : {std::optional<double>(), std::optional(plan.segment_point)}) {
+    const auto ends = component_ends(field.view(), 0, point);
+    expect_about(ends, 0, field.shear_x[0], field.uncertainty[Uncertainty::shear_x][0]);
+    EXPECT_LT(ends[1] - ends[0], 0.1);
+    EXPECT_EQ(ends[2], -std::numeric_limits<float>::infinity());
+    EXPECT_EQ(ends[3], std::numeric_limits<float>::infinity());
+    EXPECT_EQ(ends[4], 0);
+    EXPECT_EQ(ends[5], std::numeric_limits<float>::infinity());
   }
 }
 

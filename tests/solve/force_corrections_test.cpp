@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "pillarfield/component_ends.h"
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
 #include "pressed_skin.h"
@@ -301,15 +302,19 @@ TEST(ShearRatio, IsTheMeanOfLeastVariance) {
     const maths::ShearRatio own = {value(random), variance(random)};
     double weights = 1 / own.variance;
     double sum = weights * own.value;
+    double squares = sum * own.value;
     std::vector<maths::ShearRatio> around;
     while (around.size() < 8) {
       around.push_back({value(random), variance(random)});
       weights += 1 / (around.back().variance + 0.09);
       sum += around.back().value / (around.back().variance + 0.09);
+      squares += around.back().value * around.back().value / (around.back().variance + 0.09);
     }
     const maths::ShearRatio mean = mean_of(own, around);
     EXPECT_NEAR(mean.value, sum / weights, 1e-12);
-    EXPECT_NEAR(mean.variance, 1 / weights, 1e-12);
+    // It grows with what the pillars disagree by.
+    const double disagreement = squares - sum * sum / weights;
+    EXPECT_NEAR(mean.variance, (1 + 2 * disagreement) / weights, 1e-9);
   }
 }
 
@@ -333,12 +338,12 @@ TEST(ShearRatio, OfNextToNoForceTellsNothing) {
   }
 }
 
-/// A constant pressure with an edge at an angle, and a shear of 0.3 of it.
+/// A constant pressure with an edge at an angle, or a stripe of it, and a shear of 0.3 of it.
 struct EdgedPressure {
   ForceField force{14, 14};
   std::array<std::vector<double>, 2> moments;  ///< along x and y, over the pitch, N
 
-  explicit EdgedPressure(double angle) {
+  explicit EdgedPressure(double angle, double width = 100) {
     constexpr int kParts = 32;
     for (auto& moment : moments) moment.resize(force.normal.size());
     for (std::size_t i = 0; i < force.normal.size(); ++i) {
@@ -349,7 +354,7 @@ struct EdgedPressure {
         const double y = 0.5 - (part_row + 0.5) / kParts;
         const double beyond = std::cos(angle) * (x + static_cast<double>(i % 14) - 6.6) +
                               std::sin(angle) * (y + 6.7 - static_cast<double>(row));
-        if (beyond > 0) continue;
+        if (beyond > 0 || beyond < -width) continue;
         force.normal[i] += 1.0F / (kParts * kParts);
         moments[0][i] += x / (kParts * kParts);
         moments[1][i] += y / (kParts * kParts);
@@ -389,6 +394,35 @@ TEST(ShearRatio, OfThePillarsAroundBringsTheShearBack) {
   }
   EXPECT_GT(alone, 0.05);
   EXPECT_LT(left, 0.5 * alone);
+}
+
+/// A stripe of two pillars, of which E7 sees too little: the pillars around disagree.
+TEST(ShearRatio, StatesWhatIsLeftUnderANarrowBody) {
+  SensorEffects effects;
+  effects.arm_mm = 0.5;
+  SolverPlan plan = pressed_plan(14, 14, effects);
+  plan.noise_counts = 0.5;
+  plan.uncertainty = true;
+  const double per_arm = plan.skin.pillar_pitch_mm() / *effects.arm_mm;
+  int held = 0;
+  int all = 0;
+  for (const double angle : {0.1, 0.3, 0.5, 0.7, 1.0, 1.3, 2.0}) {
+    const EdgedPressure pressed(angle, 1.8);
+    ForceField read = pressed.force;
+    for (std::size_t i = 0; i < read.normal.size(); ++i) {
+      read.shear_x[i] += static_cast<float>(per_arm * pressed.moments[0][i]);
+      read.shear_y[i] += static_cast<float>(per_arm * pressed.moments[1][i]);
+    }
+    const ForceField solved = solve_readings(plan, loads_of(read));
+    for (std::size_t i = 0; i < read.normal.size(); ++i) {
+      if (!is_determined(solved.status[i])) continue;
+      const auto ends = component_ends(solved.view(), i, plan.segment_point);
+      held += ends[0] <= pressed.force.shear_x[i] && pressed.force.shear_x[i] <= ends[1] ? 1 : 0;
+      ++all;
+    }
+  }
+  EXPECT_GT(all, 200);
+  EXPECT_GT(held, 0.93 * all);
 }
 
 TEST(ShearRatio, IsMirroredWithTheForces) {

@@ -148,9 +148,11 @@ struct ContactEstimator::Batch {
   Values high{};
   Values slope{};
   Values slope_square{};
-  Values lean{};    ///< LeanShear::deviation
-  Values mean{};    ///< of the normal force, N
-  Values square{};  ///< mean square of the normal force, N²
+  Values lean{};           ///< LeanShear::deviation
+  Values mean{};           ///< of the normal force, N
+  Values square{};         ///< mean square of the normal force, N²
+  Values cautious_mean{};  ///< likewise, by FrictionBelief::cautious
+  Values cautious_square{};
   std::size_t pillars = 0;
 
   [[nodiscard]] FeasibleSegment segment(std::size_t i) const {
@@ -170,6 +172,9 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     }
     average(batch.fixed, batch.moving, batch.high, batch.slope, batch.slope_square, model.frictions,
             static_cast<float>(parameters_.ambiguous_sticks), batch.mean, batch.square);
+    average(batch.fixed, batch.moving, batch.high, batch.slope, batch.slope_square, model.cautious,
+            static_cast<float>(parameters_.ambiguous_sticks), batch.cautious_mean,
+            batch.cautious_square);
     for (std::size_t i = 0; i < batch.pillars; ++i) write(field, model, batch, i);
     batch.pillars = 0;
   };
@@ -205,11 +210,15 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
   const double residual = model_.residual * mean_reading_n(batch.segment(i));
   double variance = std::max(batch.square[i] - mean * mean, 0.0) +
                     0.5 * (noise_n * noise_n + residual * residual) + own * own + lean * lean;
+  // What the cautious posterior adds (C8a): its mean square distance from the mean.
+  const double apart_square = batch.cautious_square[i] + mean * (mean - 2 * batch.cautious_mean[i]);
+  double added = std::max(apart_square - std::max(batch.square[i] - mean * mean, 0.0), 0.0);
   const std::uint32_t row = index / cols_;
   if (const auto found = model.predicted(row, index - row * cols_, high, parameters_)) {
     const double weight = variance / (variance + found->variance);
     mean += weight * (found->normal - mean);
     variance *= 1 - weight;
+    added *= (1 - weight) * (1 - weight);
   }
   if (lean > 0) {
     // The lean moves the segment, and both forces with it: the variance stays (C9a).
@@ -217,7 +226,7 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
     mean += variance / (variance + apart * apart) * (model_.point * high - mean);
   }
   mean = std::min(mean, high);
-  const double deviation = std::sqrt(variance);
+  const double deviation = std::sqrt(variance + added);
   write_force(field, index, force_on_segment(point, status, model_, static_cast<float>(mean)));
   if (deviation < parameters_.resolved_deviation * high) {
     field.status[index] |= status::kFromNeighbours;

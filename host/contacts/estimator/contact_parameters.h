@@ -32,6 +32,8 @@ struct ContactParameters {
   /// Probability that an ambiguous pillar sticks, its normal force uniform between the force at
   /// slip and the segment's end; [0.1, 0.3].
   double ambiguous_sticks = 0.2;
+  /// Factor on the spread of the prior for the intervals of ambiguous pillars.
+  double cautious_spread = 2;
   /// Fraction of the posterior that the prior replaces from frame to frame; [0.02, 0.1].
   double forgetting = 0.05;
   /// Factor on the regression's standard deviation, since it extrapolates; [2, 3].
@@ -52,7 +54,11 @@ struct ContactParameters {
   double other_load = 0.1;
   /// Edge load above which a contact may be a flat face: mean normal force of the outermost pillars
   /// over the largest.
-  double face_load = 0.73;
+  double face_load = 0.6;
+  /// Largest fraction of determined pillars whose ratio exceeds a friction by `other_load`.
+  double most_above = 0.02;
+  /// Relative standard deviation of a reported friction beyond that of its posterior.
+  double friction_deviation = 0.02;
 };
 
 }  // namespace pillarfield

@@ -12,6 +12,18 @@ constexpr std::size_t kMostPredicted = 16;
 /// Assumed ratio of a contact's largest normal force to the noise, if the noise is unknown.
 constexpr double kPeakOverNoise = 64;
 
+/// Parameters under which a sticking pillar's ratio is a lower bound of the friction, no more.
+ContactParameters cautious(ContactParameters parameters) {
+  parameters.stick_exponent = 0;
+  return parameters;
+}
+
+/// A wider prior, unless the friction is given.
+FrictionKnowledge cautious(FrictionKnowledge knowledge, const ContactParameters& parameters) {
+  knowledge.spread *= parameters.cautious_spread;
+  return knowledge;
+}
+
 double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> runs) {
   float largest = 0;
   for (const ContactRun& run : runs) {
@@ -41,16 +53,17 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
     : sensor_(sensor),
       parameters_(parameters),
       likelihood_(parameters),
-      prior_(knowledge),
+      cautious_likelihood_(cautious(parameters)),
+      prior_{FrictionPosterior(knowledge), FrictionPosterior(cautious(knowledge, parameters))},
       given_(knowledge.given),
       carries_over_(knowledge.memory),
       workspaces_(members) {}
 
 void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels& labels) {
   if (sensor_.segment.pitch_over_arm > 0) leans_.resize(forces.status.size());
-  std::swap(posteriors_, earlier_posteriors_);
+  std::swap(beliefs_, earlier_beliefs_);
   std::swap(histories_, earlier_histories_);
-  posteriors_.assign(labels.contacts(), prior_);
+  beliefs_.assign(labels.contacts(), prior_);
   histories_.assign(labels.contacts(), {});
   models_.assign(labels.contacts(), {});
   friction_.assign(labels.contacts(), {});
@@ -77,7 +90,9 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
     const std::uint32_t before = matches.earlier[contact] != kNoContact ? matches.earlier[contact]
                                                                         : matches.parents[contact];
     if (before == kNoContact) continue;
-    posteriors_[contact] = earlier_posteriors_[before].carried(prior_, parameters_.forgetting);
+    const FrictionBelief& earlier = earlier_beliefs_[before];
+    beliefs_[contact] = {earlier.estimate.carried(prior_.estimate, parameters_.forgetting),
+                         earlier.cautious.carried(prior_.cautious, parameters_.forgetting)};
     histories_[contact] = earlier_histories_[before];
   }
 }
@@ -85,7 +100,7 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
 void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels& labels,
                                std::uint32_t contact, std::size_t member) {
   ContactModel& model = models_[contact];
-  FrictionPosterior& posterior = posteriors_[contact];
+  FrictionBelief& belief = beliefs_[contact];
   Workspace& work = workspaces_[member];
   ContactSamples& samples = work.samples;
   const auto runs = labels.runs(contact);
@@ -102,8 +117,11 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
 
   FrictionCurve log_likelihood{};
+  FrictionCurve cautious{};
   likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, log_likelihood);
+  cautious_likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, cautious);
   likelihood_.add_lower_bounds(samples.bounds(), parameters_.effective_pillars, log_likelihood);
+  likelihood_.add_lower_bounds(samples.bounds(), parameters_.effective_pillars, cautious);
   if (!samples.ambiguous().empty()) {
     if (!samples.pressure().empty()) samples.add_edges();
     model.pressure = PressureRegression::fit(samples.pressure());
@@ -112,10 +130,14 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
     likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
                                   log_likelihood);
   }
-  if (!samples.ratios().empty() || !samples.bounds().empty()) posterior.update(log_likelihood);
+  if (!samples.ratios().empty() || !samples.bounds().empty()) {
+    belief.estimate.update(log_likelihood);
+    belief.cautious.update(cautious);
+  }
   for (std::size_t i = 0; model.any_ambiguous && i < ContactModel::kNodes; ++i) {
-    model.frictions[i] = static_cast<float>(
-        posterior.quantile((static_cast<double>(i) + 0.5) / ContactModel::kNodes));
+    const double part = (static_cast<double>(i) + 0.5) / ContactModel::kNodes;
+    model.frictions[i] = static_cast<float>(belief.estimate.quantile(part));
+    model.cautious[i] = static_cast<float>(belief.cautious.quantile(part));
   }
   friction_[contact] = reported(contact, log_likelihood, work);
 }
@@ -149,11 +171,16 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   }
 }
 
-/// Whether a contact may be a flat face: its edge bears nearly as much as its middle, so all
-/// pillars may stick and still share one ratio (section 5).
-bool FrictionEstimator::is_face(Workspace& work) const {
+/// Whether all pillars of a contact may stick and still share one ratio (section 5): its edge bears
+/// nearly as much as its middle, as under a flat face, or ratios exceed the friction.
+bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
   if (!work.samples.has_edges()) work.samples.add_edges();
-  return work.samples.edge_load() > parameters_.face_load;
+  const std::vector<ObservedRatio>& ratios = work.samples.ratios();
+  const auto above = std::ranges::count_if(ratios, [&](const ObservedRatio& pillar) {
+    return pillar.ratio > (1 + parameters_.other_load + 2 * pillar.deviation) * friction;
+  });
+  return work.samples.edge_load() > parameters_.face_load ||
+         static_cast<double>(above) > parameters_.most_above * static_cast<double>(ratios.size());
 }
 
 /// Whether the friction stayed while the mean ratio of the pillars changed; under sticking both
@@ -177,17 +204,23 @@ bool FrictionEstimator::stays(double friction, bool observed, const Workspace& w
 /// The friction to report, and its source.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
                                             const FrictionCurve& log_likelihood, Workspace& work) {
-  const FrictionPosterior& posterior = posteriors_[contact];
+  const FrictionPosterior& posterior = beliefs_[contact].estimate;
   ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior};
   if (given_) return {*given_, friction.spread, FrictionSource::given};
   if (friction.spread > parameters_.reported_spread) return friction;
-  FrictionPosterior alone = prior_;
+  const FrictionPosterior& cautious = beliefs_[contact].cautious;
+  if (cautious.spread() > 2 * parameters_.reported_spread) return friction;
+  if (std::abs(cautious.quantile(0.5) / friction.median - 1) > parameters_.same_friction) {
+    return friction;
+  }
+  FrictionPosterior alone = prior_.estimate;
   alone.update(log_likelihood);
   const bool observed =
       alone.spread() <= parameters_.reported_spread &&
       std::abs(alone.quantile(0.5) / friction.median - 1) <= parameters_.same_friction;
   const bool certain = stays(friction.median, observed, work, histories_[contact]);
-  if (!certain && is_face(work)) return friction;
+  if (!certain && may_stick(friction.median, work)) return friction;
+  friction.spread = std::hypot(friction.spread, parameters_.friction_deviation);
   friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
 }

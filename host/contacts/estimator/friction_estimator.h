@@ -30,6 +30,7 @@ struct ContactModel {
 
   ContactBox box;
   std::array<float, kNodes> frictions{};  ///< of equal probability
+  std::array<float, kNodes> cautious{};   ///< likewise, by FrictionBelief::cautious
   std::optional<PressureRegression> pressure;
   double noise_n = 0;
   bool any_ambiguous = false;  ///< false only if no pillar is ambiguous
@@ -38,6 +39,13 @@ struct ContactModel {
   /// segment, N, plus noise.
   [[nodiscard]] std::optional<Estimate> predicted(std::uint32_t row, std::uint32_t col, double high,
                                                   const ContactParameters& parameters) const;
+};
+
+/// What is known of the friction of a contact.
+struct FrictionBelief {
+  FrictionPosterior estimate;  ///< for the forces
+  /// For their intervals, with a wider prior and sticking pillars as lower bounds only (C8a).
+  FrictionPosterior cautious;
 };
 
 /// Estimates the friction of each contact from frame to frame: a posterior over the coefficient,
@@ -85,7 +93,7 @@ class FrictionEstimator {
   };
 
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
-  [[nodiscard]] bool is_face(Workspace& work) const;
+  [[nodiscard]] bool may_stick(double friction, Workspace& work) const;
   bool stays(double friction, bool observed, const Workspace& work, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
                                          Workspace& work);
@@ -93,13 +101,14 @@ class FrictionEstimator {
   Sensor sensor_;
   ContactParameters parameters_;
   FrictionLikelihood likelihood_;
-  FrictionPosterior prior_;
+  FrictionLikelihood cautious_likelihood_;
+  FrictionBelief prior_;
   std::optional<double> given_;
   bool carries_over_;
   ContactSnapshot snapshot_;
   ContactSnapshot earlier_snapshot_;
-  std::vector<FrictionPosterior> posteriors_;
-  std::vector<FrictionPosterior> earlier_posteriors_;
+  std::vector<FrictionBelief> beliefs_;
+  std::vector<FrictionBelief> earlier_beliefs_;
   std::vector<History> histories_;
   std::vector<History> earlier_histories_;
   std::vector<ContactModel> models_;

@@ -25,7 +25,8 @@ inline constexpr std::size_t kComponentEnds = 6;
 [[nodiscard]] const char* name_of(ComponentEnd end);
 
 /// The 95 % intervals of one pillar, in the order of ComponentEnd: the estimate ± 1.96 standard
-/// deviations, a normal force clamped at zero (docs/derivations/uncertainty.md, section 3).
+/// deviations, a normal force clamped at zero (docs/derivations/uncertainty.md, section 3). A
+/// component that saturated sensels leave open ends at infinity.
 ///
 /// For ambiguous pillars of Estimator::direct pass its SolverPlan::segment_point as `direct_point`:
 /// their intervals then span the segment, widened by 1.96 standard deviations of the noise. Leave
