@@ -11,6 +11,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
+#include "pillarfield/untouched_skin.h"
 #include "solve/pillar_lean.h"
 
 namespace pillarfield {
@@ -184,6 +185,7 @@ ArmResult calibrate_arm(const SkinCalibration& before, std::span<const FrameStat
   auto& arm = result.calibration.planes.effects.arm_mm;
   arm.reset();
   if (result.found) arm = result.arm_mm;
+  require_untouched_idle(before, result.calibration, "arm");
   return result;
 }
 

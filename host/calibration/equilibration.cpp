@@ -12,6 +12,7 @@
 #include "calibration/leak_sum.h"
 #include "calibration/response_fit.h"
 #include "pillarfield/error.h"
+#include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"
 
 namespace pillarfield {
@@ -294,6 +295,7 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   after.planes.effects.residual =
       residual_error(hold_out(result.model, fit, found.mask_plane()), k);
   if (before.threshold_factor) set_threshold(after, *before.threshold_factor);
+  require_untouched_idle(before, after, "equilibrate");
   result.findings = found.findings();
   return result;
 }

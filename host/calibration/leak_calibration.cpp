@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "base/quantile.h"
@@ -13,6 +14,7 @@
 #include "calibration/linear_readings.h"
 #include "calibration/normal_equations.h"
 #include "pillarfield/error.h"
+#include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"
 
 namespace pillarfield {
@@ -39,6 +41,30 @@ constexpr double kLeastShown = 2;
 
 bool is_significant(double leak, double error) {
   return std::abs(leak) > kLeakInsignificant * error && error > 0;
+}
+
+/// The part of a load, from rest on, that the plays add to its reading.
+double part_of_plays(const SensorEffects& effects, double load_counts) {
+  double sum = 0;
+  for (const Play& play : effects.memory.value_or(SenselMemory{}).plays) {
+    sum += play.weight * std::max(0.0, load_counts - play.width_counts);
+  }
+  return sum / load_counts;
+}
+
+/// Standard errors with those that all presses share: the residual error of what leaks from a press
+/// of this mean reading, the relative one of the press, and half of what the plays have of it,
+/// since a leak may come before or after the memory.
+Leaks with_shared_errors(Leaks errors, const Leaks& leaks, const SensorEffects& effects,
+                         double press) {
+  const ResidualError residual = effects.residual.value_or(ResidualError{});
+  const double relative =
+      std::hypot(std::numbers::sqrt2 * residual.relative, part_of_plays(effects, press) / 2);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!(errors.at(i) > 0)) continue;  // It is not known.
+    errors.at(i) = std::hypot(errors.at(i), residual.offset_counts / press, relative * leaks.at(i));
+  }
+  return errors;
 }
 
 double mean_dead_zone(const SkinCalibration& calibration) {
@@ -200,6 +226,15 @@ class LeakFinder::Fit {
     return std::sqrt(squares / static_cast<double>(presses_.size()));
   }
 
+  /// Mean reading of the pressed sensels, counts.
+  [[nodiscard]] double mean_press() const {
+    double sum = 0;
+    for (const Press* press : presses_) {
+      for (const std::size_t i : kPressedSensels) sum += press->readings.at(i) / 4;
+    }
+    return sum / static_cast<double>(presses_.size());
+  }
+
   [[nodiscard]] const Leaks& leaks() const { return leaks_; }
   void set_leaks(const Leaks& leaks) { leaks_ = leaks; }
   [[nodiscard]] bool inside_known() const { return active_[0]; }
@@ -278,8 +313,9 @@ LeakResult LeakFinder::result() const {
   result.left_out = fit.leave_out();
   fit.estimate();
   if (const double zone = mean_dead_zone(calibration_); zone > 0) fit.estimate_below(zone);
-  const Leaks errors = fit.standard_errors();
   const Leaks leaks = fit.leaks();
+  const Leaks errors = with_shared_errors(fit.standard_errors(), leaks, calibration_.planes.effects,
+                                          fit.mean_press());
   for (const double leak : leaks) {
     if (std::abs(leak) <= kMostSenselLeak) continue;
     throw Error("leak", fmt::format("a leak of {:.2g} is more than {}", leak, kMostSenselLeak),
@@ -304,6 +340,7 @@ LeakResult LeakFinder::result() const {
   result.calibration = calibration_;
   rescale_for_leaks(result.calibration, skin_, sensel, pillar);
   check(result.calibration.planes.effects, "leak");
+  require_untouched_idle(calibration_, result.calibration, "leak");
   return result;
 }
 
@@ -318,6 +355,9 @@ void rescale_for_leaks(SkinCalibration& calibration, const Skin& skin,
   if (calibration.counts_per_newton) *calibration.counts_per_newton /= inner;
   const double inner_zone = sensel_leak_sum(effects) / sensel_leak_sum(before);
   for (float& zone : calibration.planes.dead_zone) zone /= static_cast<float>(inner_zone);
+  if (effects.memory) {
+    for (Play& play : effects.memory->plays) play.width_counts /= inner_zone;
+  }
   for (std::size_t i = 0; i < calibration.planes.gain.size(); ++i) {
     const double own = leak_sum(effects, skin, i) / leak_sum(before, skin, i);
     calibration.planes.gain[i] *= static_cast<float>(own / inner);

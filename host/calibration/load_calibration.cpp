@@ -12,6 +12,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
+#include "pillarfield/untouched_skin.h"
 
 namespace pillarfield {
 namespace {
@@ -231,6 +232,7 @@ LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLo
   }
   LoadResult result = result_of(presses, std::move(calibration));
   require_fit(presses, result);
+  require_untouched_idle(before, result.calibration, "load");
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "calibration/linear_readings.h"
 #include "calibration/memory_fit.h"
 #include "pillarfield/error.h"
+#include "pillarfield/untouched_skin.h"
 
 namespace pillarfield {
 namespace {
@@ -27,6 +28,8 @@ constexpr double kNewCurveWins = 0.5;
 /// of the range.
 constexpr double kMemoryWins = 0.9;
 constexpr double kLeastMemory = 0.002;
+/// Largest reading kept at zero load, as a fraction of the threshold.
+constexpr double kMostRemainder = 0.5;
 
 using Sample = MemoryFinder::Sample;
 
@@ -44,6 +47,28 @@ void require_experiment(const std::vector<Sample>& samples) {
   if (most > kLeastChange * sum / static_cast<double>(samples.size())) return;
   throw Error("memory", "the pressure does not change",
               "give frames in which it rises from zero, rests and falls");
+}
+
+bool rests_after_load(const std::vector<Sample>& samples, double zone) {
+  const auto loaded =
+      std::ranges::find_if(samples, [&](const Sample& s) { return s.load_counts > zone; });
+  return std::any_of(loaded, samples.end(), [&](const Sample& s) { return s.load_counts <= zone; });
+}
+
+/// Throws if the skin keeps a reading at zero load, which the plays do not have. The curve would
+/// take it for the reading of no load, and with it small loads.
+void require_closed_loops(const std::vector<Sample>& samples, const MemoryModelling& model,
+                          double most_counts) {
+  const MemoryFit fit = fit_memory(samples, model);
+  if (fit.remainder <= most_counts || !rests_after_load(samples, fit.dead_zone + most_counts))
+    return;
+  throw Error(
+      "memory",
+      fmt::format("after its first load the skin keeps a reading of {:.1f} counts, of which "
+                  "the tare knows nothing",
+                  fit.remainder),
+      "press the whole skin as hard as in use, release it, and only then record the tare "
+      "and all that follows");
 }
 
 /// Width of the loop at X/2 in a cycle from 0 to X, over the reading at X.
@@ -78,27 +103,48 @@ double longest_recording(const std::vector<Sample>& samples) {
   return longest;
 }
 
-/// The curve of the calibration followed by c, whose pieces end at `ends`; `leaks` is the sum of
-/// leaks that readings and loads of the curve have and those of c lack.
+/// The reading after gain of a load that the calibration finds without its memory.
+double reading_before(const SkinCalibration& calibration, double load) {
+  const SensorEffects& effects = calibration.planes.effects;
+  const double leaking = sensel_leak_sum(effects) * load;
+  const auto& law = calibration.power_law;
+  return law ? straightened({1 / law->exponent, law->reference_counts}, leaking)
+             : reading_at(effects.curve, leaking);
+}
+
+/// The pieces of c up to a load, with the slopes that the calibration has there.
+std::vector<CurveStretch> pieces_up_to(const SkinCalibration& calibration, double most) {
+  std::vector<CurveStretch> pieces;
+  double begin = 0;
+  for (const double fraction : kPieceEnds) {
+    const double end = fraction * most;
+    const double width = reading_before(calibration, end) - reading_before(calibration, begin);
+    pieces.push_back({end, (end - begin) / width});
+    begin = end;
+  }
+  return pieces;
+}
+
+/// The curve of the calibration followed by c, straight on the first of its pieces.
 ResponseCurve followed_by(const SkinCalibration& calibration, const MemoryFit& fit,
-                          const std::vector<double>& ends, double leaks) {
-  const ResponseCurve& before = calibration.planes.effects.curve;
-  std::vector<double> knots = ends;
-  for (const double load : before.loads) knots.push_back(load / leaks);
+                          const std::vector<CurveStretch>& pieces) {
+  const double leaks = sensel_leak_sum(calibration.planes.effects);
+  std::vector<double> knots;
+  for (const CurveStretch& piece : pieces) knots.push_back(piece.end);
+  for (const double load : calibration.planes.effects.curve.loads) {
+    if (load / leaks > pieces.front().end) knots.push_back(load / leaks);
+  }
   std::ranges::sort(knots);
   ResponseCurve curve;
   constexpr double kLeastGap = 1.02;  // Close knots would repeat the steps of a fit.
   double last = 0;
   for (const double knot : knots) {
-    const double load = leaks * value_at(fit, ends, knot);
+    const double load = leaks * value_at(fit, pieces, knot);
     if (!(knot > kLeastGap * last && load > (curve.loads.empty() ? 0 : curve.loads.back()))) {
       continue;
     }
     last = knot;
-    const auto& law = calibration.power_law;
-    curve.readings.push_back(
-        law ? straightened({1 / law->exponent, law->reference_counts}, leaks * knot)
-            : reading_at(before, leaks * knot));
+    curve.readings.push_back(reading_before(calibration, knot));
     curve.loads.push_back(load);
   }
   return curve;
@@ -112,15 +158,14 @@ std::optional<double> known_dead_zone(const Calibration& planes) {
 }
 
 /// `residual`: RMS over the largest load, `range`, counts.
-void store(const MemoryFit& fit, const std::vector<double>& ends, double residual, double range,
-           SkinCalibration& calibration) {
+void store(const MemoryFit& fit, const std::vector<CurveStretch>& pieces, double residual,
+           double range, SkinCalibration& calibration) {
   Calibration& planes = calibration.planes;
-  const bool curved = ends.size() > 1;
+  const bool curved = pieces.size() > 1;
   // A factor on the readings goes into k, and so into all loads.
   const double scale = curved ? 1 : fit.slopes[0];
   if (curved) {
-    const ResponseCurve curve =
-        followed_by(calibration, fit, ends, sensel_leak_sum(planes.effects));
+    const ResponseCurve curve = followed_by(calibration, fit, pieces);
     set_power_law(calibration, std::nullopt);
     planes.effects.curve = curve;
   }
@@ -186,19 +231,20 @@ MemoryResult MemoryFinder::result() const {
   require_experiment(samples_);
   const double most = std::ranges::max(samples_, {}, &Sample::reading).reading;
   const double range = std::ranges::max(samples_, {}, &Sample::load_counts).load_counts;
-  std::vector<double> ends = {most};
+  std::vector<CurveStretch> pieces = {{most}};
   const std::optional<double> zone = known_dead_zone(calibration_.planes);
-  MemoryFit fit = fit_memory(samples_, {ends, zone});
-  std::vector<double> pieces;
-  for (const double fraction : kPieceEnds) pieces.push_back(fraction * most);
-  const MemoryFit curved = fit_memory(samples_, {pieces, zone});
+  MemoryFit fit = fit_memory(samples_, {pieces, zone});
+  const std::vector<CurveStretch> many = pieces_up_to(calibration_, most);
+  require_closed_loops(samples_, {many, zone.value_or(fit.dead_zone), true, true},
+                       kMostRemainder * calibration_.threshold_counts.value_or(0.02 * range));
+  const MemoryFit curved = fit_memory(samples_, {many, zone});
   MemoryResult result;
   result.curved = std::sqrt(curved.squares) < kNewCurveWins * std::sqrt(fit.squares);
   if (result.curved) {
-    ends = pieces;
+    pieces = many;
     fit = curved;
   }
-  const MemoryFit none = fit_memory(samples_, {ends, zone, false});
+  const MemoryFit none = fit_memory(samples_, {pieces, zone, false});
   const auto relative = [&](double squares) {
     return std::sqrt(squares / static_cast<double>(samples_.size())) / range;
   };
@@ -213,7 +259,14 @@ MemoryResult MemoryFinder::result() const {
                  result.hysteresis + result.creep_per_decade > kLeastMemory;
   result.calibration = calibration_;
   result.calibration.planes.effects.memory.reset();
-  if (result.found) store(fit, ends, result.residual_after, range, result.calibration);
+  const SensorEffects& leaks = calibration_.planes.effects;
+  if (!result.found) return result;
+  if (result.curved && (leaks.sensel_leak || leaks.pillar_leak)) {
+    throw Error("memory", "it changes the response curve with which the leaks were found",
+                "calibrate the memory before the leak, and what follows it, anew");
+  }
+  store(fit, pieces, result.residual_after, range, result.calibration);
+  require_untouched_idle(calibration_, result.calibration, "memory");
   return result;
 }
 

@@ -16,6 +16,8 @@ constexpr std::array<double, kMaxPlays> kWidths = {1.0 / 8, 3.0 / 8, 5.0 / 8, 7.
 constexpr std::size_t kCreepTimes = 12;
 /// Largest dead zone as a fraction of the range.
 constexpr double kMostZone = 0.2;
+/// Weight, as a fraction of the range, of equal slopes of neighbouring pieces.
+constexpr double kSmoothness = 0.05;
 /// A dead zone is kept if it lowers the squares below this fraction.
 constexpr double kZoneWins = 0.98;
 
@@ -43,20 +45,21 @@ std::array<double, kCreepTimes> creep_times(const Samples& samples) {
   return times;
 }
 
-/// Columns: the pieces of c, the plays, all creep times.
-NormalEquations equations_of(const Samples& samples, const std::vector<double>& ends, double zone,
-                             double range) {
-  const std::size_t pieces = ends.size();
+/// Columns: the pieces of c, the plays, all creep times, the remainder.
+NormalEquations equations_of(const Samples& samples, const std::vector<CurveStretch>& stretches,
+                             double zone, double range) {
+  const std::size_t pieces = stretches.size();
   const std::array<double, kCreepTimes> times = creep_times(samples);
-  NormalEquations equations(pieces + kMaxPlays + kCreepTimes);
+  NormalEquations equations(pieces + kMaxPlays + kCreepTimes + 1);
   std::vector<double> row(equations.unknowns());
   double before = 0;
   for (const auto& sample : samples) {
     const double load = std::max(0.0, sample.load_counts - zone);
     const bool first = sample.interval_s <= 0;
     for (std::size_t i = 0; i < pieces; ++i) {
-      const double begin = i == 0 ? -std::numeric_limits<double>::infinity() : ends[i - 1];
-      const double end = i + 1 == pieces ? std::numeric_limits<double>::infinity() : ends[i];
+      const double begin = i == 0 ? -std::numeric_limits<double>::infinity() : stretches[i - 1].end;
+      const double end =
+          i + 1 == pieces ? std::numeric_limits<double>::infinity() : stretches[i].end;
       row[i] = std::clamp(sample.reading, begin, end) - (i == 0 ? 0 : begin);
     }
     for (std::size_t i = 0; i < kMaxPlays; ++i) {
@@ -70,8 +73,16 @@ NormalEquations equations_of(const Samples& samples, const std::vector<double>& 
       const double rate = -std::expm1(-sample.interval_s / times.at(i));
       state = -(crept + (first ? 0 : rate * (before - crept)));
     }
+    // It grows with the first load to the full.
+    row.back() = std::min(first ? 0 : row.back(), -std::min(1.0, load / (kWidths[0] * range)));
     before = load;
     equations.add(row, load);
+  }
+  for (std::size_t i = 0; i + 1 < pieces; ++i) {
+    std::ranges::fill(row, 0);
+    row[i] = kSmoothness * range * stretches[i].slope;
+    row[i + 1] = -kSmoothness * range * stretches[i + 1].slope;
+    equations.add(row, 0);
   }
   return equations;
 }
@@ -88,14 +99,15 @@ MemoryFit fit_of(const std::vector<double>& x, std::size_t pieces, double range,
     const double weight = x[pieces + kMaxPlays + i];
     if (weight > 0) fit.memory.creep.push_back({times.at(i), weight});
   }
+  fit.remainder = x.back();
   return fit;
 }
 
 /// The best two creep times, or none, for a dead zone.
-MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool with_memory,
-                 double zone, double range) {
-  const std::size_t pieces = ends.size();
-  const NormalEquations equations = equations_of(samples, ends, zone, range);
+MemoryFit fit_at(const Samples& samples, const MemoryModelling& model, double zone, double range) {
+  const std::size_t pieces = model.pieces.size();
+  const bool with_memory = model.with_memory;
+  const NormalEquations equations = equations_of(samples, model.pieces, zone, range);
   const std::array<double, kCreepTimes> times = creep_times(samples);
   MemoryFit best;
   best.squares = std::numeric_limits<double>::infinity();
@@ -104,6 +116,7 @@ MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool w
       std::vector<bool> allowed(equations.unknowns());
       for (std::size_t i = 0; i < pieces + kMaxPlays; ++i) allowed[i] = with_memory || i < pieces;
       allowed[pieces + kMaxPlays + fast] = allowed[pieces + kMaxPlays + slow] = with_memory;
+      allowed.back() = model.with_remainder;
       const std::vector<double> x = equations.solve_non_negative(allowed);
       const double squares = equations.squares_at(x);
       if (squares < best.squares) {
@@ -122,9 +135,7 @@ MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool w
 MemoryFit fit_memory(const std::vector<MemoryFinder::Sample>& samples,
                      const MemoryModelling& model) {
   const double range = range_of(samples);
-  const auto at = [&](double zone) {
-    return fit_at(samples, model.ends, model.with_memory, zone, range);
-  };
+  const auto at = [&](double zone) { return fit_at(samples, model, zone, range); };
   if (model.dead_zone) return at(*model.dead_zone);
   // A coarse search first: the squares may have several minima.
   constexpr int kCoarse = 20;
@@ -144,11 +155,11 @@ MemoryFit fit_memory(const std::vector<MemoryFinder::Sample>& samples,
   return fit.squares < kZoneWins * none.squares ? fit : none;
 }
 
-double value_at(const MemoryFit& fit, const std::vector<double>& ends, double reading) {
+double value_at(const MemoryFit& fit, const std::vector<CurveStretch>& pieces, double reading) {
   double value = 0;
   double begin = 0;
-  for (std::size_t i = 0; i < ends.size() && reading > begin; ++i) {
-    const double end = i + 1 == ends.size() ? reading : std::min(reading, ends[i]);
+  for (std::size_t i = 0; i < pieces.size() && reading > begin; ++i) {
+    const double end = i + 1 == pieces.size() ? reading : std::min(reading, pieces[i].end);
     value += fit.slopes[i] * (end - begin);
     begin = end;
   }

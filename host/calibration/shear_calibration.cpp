@@ -10,6 +10,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
+#include "pillarfield/untouched_skin.h"
 
 namespace pillarfield {
 namespace {
@@ -164,6 +165,7 @@ ShearResult calibrate_shear(const SkinCalibration& before, std::span<const Known
   auto& stored = result.calibration.planes.effects.shear_coefficient;
   stored = result.coefficient;
   if (is_one(for_x) && is_one(for_y)) stored.reset();
+  require_untouched_idle(before, result.calibration, "shear");
   return result;
 }
 

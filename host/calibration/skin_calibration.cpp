@@ -3,12 +3,14 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 #include <utility>
 
 #include "base/quantile.h"
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
+#include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 namespace {
@@ -46,6 +48,16 @@ std::vector<double> corrected_noise(const Calibration& planes) {
     noise.push_back(gain * planes.noise[i]);
   }
   return noise;
+}
+
+/// The load of a reading that is a multiple of its noise, by the polynomial that the solver
+/// evaluates, and at least the noise of the load there times that multiple.
+double load_of_noise(const ResponseCurve& curve, double reading) {
+  if (curve.empty()) return reading;
+  const auto polynomial = curve_polynomial(curve).polynomial;
+  const auto at = static_cast<float>(reading);
+  const float slope = single_precision::curve_slope(at, polynomial);
+  return std::max(single_precision::curve_load(at, polynomial), at * slope);
 }
 
 }  // namespace
@@ -116,9 +128,9 @@ void set_threshold(SkinCalibration& calibration, double factor) {
   }
   const double threshold = factor * quantile(noise, kQuietShare);
   const auto& law = calibration.power_law;
-  const double load = load_at(calibration.planes.effects.curve, threshold);
   calibration.threshold_factor = factor;
-  calibration.threshold_counts = law ? straightened(*law, threshold) : load;
+  calibration.threshold_counts = law ? straightened(*law, threshold)
+                                     : load_of_noise(calibration.planes.effects.curve, threshold);
 }
 
 void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law) {

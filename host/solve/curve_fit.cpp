@@ -13,9 +13,11 @@ constexpr std::size_t kCurveSamples = 400;
 
 using CurveColumn = std::vector<double>;  // one value a sample
 
-/// x of a sample, in (0, 1].
+/// x of a sample, in (0, 1]: even in its cube root, so that small readings, whose loads decide
+/// about a touch, have weight.
 double sample_at(std::size_t i) {
-  return static_cast<double>(i + 1) / static_cast<double>(kCurveSamples);
+  const double root = static_cast<double>(i + 1) / static_cast<double>(kCurveSamples);
+  return root * root * root;
 }
 
 double dot(const CurveColumn& a, const CurveColumn& b) {

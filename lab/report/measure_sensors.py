@@ -21,7 +21,7 @@ LEAST_COUNTS = 8  # of the largest load of a pillar that counts
 LIMIT_95 = 1.959964
 AMBIGUOUS = 16
 COMPONENTS = ("shear_x", "shear_y", "normal")
-ORDER = ("wires", "tare", "bending", "one pressure", "pressures", "leak", "shear", "arm", "memory")
+ORDER = ("wires", "tare", "bending", "one pressure", "pressures", "memory", "leak", "shear", "arm")
 IDEAL = scenes.Effect("ideal sensor", "", ())
 
 

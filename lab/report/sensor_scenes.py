@@ -255,7 +255,7 @@ CALIBRATIONS = {
     "leak": ("leak", ("tips",), ()),
     "arm": ("arm", ("balls",), ()),
     "memory": ("memory", ("cycles",), ("--pressure", "cycles.csv")),
-    "shear": ("shear", tuple(PULLS_DEG), ("--shear-n", shears_n())),
+    "shear": ("shear", tuple(PULLS_DEG), ("--shear-n", shears_n(), "--load-n", ",".join([f"{4 * PULL_N}"] * len(PULLS_DEG)))),
     "bending": ("bending", tuple(CYLINDERS),
                 ("--radius-mm", ",".join(f"{CYLINDER_MM}" for _ in CYLINDERS), "--axis-deg",
                  ",".join(f"{values[0]}" for values in CYLINDERS.values()))),

@@ -9,6 +9,7 @@
 
 #include "pillarfield/equilibration.h"
 #include "pillarfield/tare.h"
+#include "pillarfield/untouched_skin.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"
 
@@ -180,6 +181,51 @@ TEST(MemoryCalibration, FindsHysteresis) {
   EXPECT_GT(result.residual_before, 3 * result.residual_after);
   EXPECT_LT(course_error(skin, result.calibration), 0.5);
   EXPECT_GT(course_error(skin, before), 2);
+}
+
+/// Ramps of 16 frames have few frames at small readings, which must not bend the curve there.
+TEST(MemoryCalibration, KeepsTheThresholdAboveTheNoise) {
+  PressedSkin skin = remembering_skin(0.05, 0);
+  const SkinCalibration before = pressed_at_once(skin, ResponseModel::curve);
+  MemoryFinder finder(skin.skin(), before);
+  const Path ramps = {{0, 0},   {0.8, 1}, {1.6, 0},    {2.1, 0.5}, {2.5, 0.1}, {3.1, 0.75},
+                      {3.8, 0}, {4.1, 0}, {4.15, 0.6}, {5.6, 0.6}, {5.65, 0},  {6.7, 0}};
+  play(skin, ramps, [&](const FrameView& frame, double time_s, double factor) {
+    finder.add(frame, time_s, skin.pressure_kpa(kTopN * factor));
+  });
+  const MemoryResult result = finder.result();
+  EXPECT_TRUE(result.curved);
+  EXPECT_LE(untouched_share(result.calibration), kMostUntouched);
+  EXPECT_GT(*result.calibration.threshold_counts, 2);
+  EXPECT_LT(course_error(skin, result.calibration), 0.8);
+}
+
+/// A skin whose readings follow a play that closes at zero, or keeps half of its width there.
+MemoryResult remembered_loop(bool closed) {
+  Skin skin;
+  skin.rows = skin.cols = 4;
+  SkinCalibration calibration = blank_calibration(skin);
+  calibration.planes.tare.assign(16, 0);
+  calibration.threshold_counts = 2;
+  calibration.counts_per_newton = 320;
+  MemoryFinder finder(skin, calibration);
+  FrameBuffer frame(SenselType::f32, 4, 4);
+  const double area_mm2 = skin.pillar_pitch_mm() * skin.pillar_pitch_mm();
+  double held = 0;
+  for (int i = 0; i < 160; ++i) {
+    const double load = (i < 40 ? 2.5 : 5) * std::abs((i + 20) % 40 - 20);
+    held =
+        std::clamp(held, closed ? std::max(0.0, load - 30) : load - 15, closed ? load : load + 15);
+    std::ranges::fill(frame.readings<float>(), static_cast<float>(load + 0.2 * held));
+    finder.add(frame.view(), 0.05 * i, 1000 * load / 320 / area_mm2);
+  }
+  return finder.result();
+}
+
+TEST(MemoryCalibration, RefusesALoopThatIsOpenAtZero) {
+  EXPECT_NE(message_of([] { (void)remembered_loop(false); }).find("the skin keeps a reading of"),
+            std::string::npos);
+  EXPECT_TRUE(remembered_loop(true).found);
 }
 
 TEST(MemoryCalibration, FindsCreep) {

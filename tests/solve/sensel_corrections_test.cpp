@@ -59,7 +59,7 @@ double slope_of(const single_precision::CurvePolynomial& curve, float reading) {
 }
 
 TEST(ResponseCurve, HasAPolynomialThatIncreasesAndStaysNear) {
-  for (const auto& [power, rms] : {std::pair{0.8, 0.08}, {0.9, 0.04}, {1.1, 0.05}, {1.25, 0.12}}) {
+  for (const auto& [power, rms] : {std::pair{0.8, 0.12}, {0.9, 0.05}, {1.1, 0.05}, {1.25, 0.12}}) {
     ResponseCurve curve;
     for (const double reading : {5.0, 12.0, 30.0, 60.0, 100.0, 160.0, 240.0}) {
       curve.readings.push_back(reading);
@@ -77,6 +77,23 @@ TEST(ResponseCurve, HasAPolynomialThatIncreasesAndStaysNear) {
       if (reading < 2) continue;  // The root bends within the difference.
       EXPECT_NEAR(single_precision::curve_slope(reading, fit.polynomial),
                   slope_of(fit.polynomial, reading), 2e-3);
+    }
+  }
+}
+
+/// Whose loads decide about a touch.
+TEST(ResponseCurve, HasAPolynomialThatIsHeldToSmallReadings) {
+  for (const double power : {1.1, 1.25}) {
+    ResponseCurve curve;
+    for (const double reading : {5.0, 12.0, 30.0, 60.0, 100.0, 160.0, 240.0}) {
+      curve.readings.push_back(reading);
+      curve.loads.push_back(100 * std::pow(reading / 100, power));
+    }
+    const CurveFit fit = curve_polynomial(curve);
+    for (const float reading : {0.5F, 1.5F, 3.0F, 4.0F}) {
+      EXPECT_NEAR(single_precision::curve_load(reading, fit.polynomial), load_at(curve, reading),
+                  0.1)
+          << power << " " << reading;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include "cli/calibrate/input.h"
 #include "cli/calibrate/report.h"
 #include "cli/number_text.h"
+#include "pillarfield/untouched_skin.h"
 
 namespace pillarfield::cli {
 
@@ -21,6 +22,8 @@ void calibrate(const TareCommand& command) {
        .facts = {{"tare_counts", result.tare_counts, "tare", "counts, median of the valid sensels"},
                  {"noise_counts", result.noise_counts, "noise",
                   "counts, median of the valid sensels"},
+                 {"untouched_share", untouched_share(calibration), "untouched",
+                  "% of the untouched pillars would have a status"},
                  {"threshold_counts", *calibration.threshold_counts, "threshold",
                   fmt::format("counts, {:g} times the 99th percentile of the noise",
                               tare.threshold_factor)}},

@@ -68,7 +68,8 @@ class LeakFinder {
 
 inline constexpr std::size_t kMostLeakPresses = 20000;
 
-/// Replaces the leaks, and adapts counts per newton, dead zones and gains found with the old ones:
+/// Replaces the leaks, and adapts counts per newton, dead zones, widths of plays and gains found
+/// with the old ones:
 /// under a uniform load a sensel reads 1 + 2 inside + 2 across times more, less across at the
 /// skin's edge, and a pillar carries 1 + 4 edge + 4 corner times more.
 void rescale_for_leaks(SkinCalibration& calibration, const Skin& skin,

@@ -93,6 +93,7 @@
 #include "pillarfield/shear_calibration.h"
 #include "pillarfield/skin_calibration.h"
 #include "pillarfield/tare.h"
+#include "pillarfield/untouched_skin.h"
 #include "pillarfield/wire_calibration.h"
 
 // Simulation and its comparison with the truth.

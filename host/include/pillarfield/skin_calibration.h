@@ -63,8 +63,8 @@ void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::
 void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes);
 
 /// Sets the threshold to `factor` times the 99th percentile of noise · gain over the good sensels,
-/// through the power law or the response curve if there is one. The calibration must have a noise
-/// plane.
+/// through the power law, or the polynomial that the solver evaluates for a response curve: then at
+/// least the factor times the noise of the load. The calibration must have a noise plane.
 void set_threshold(SkinCalibration& calibration, double factor);
 
 /// Replaces the power law, and adjusts the threshold so that no reading crosses it.
