@@ -32,7 +32,7 @@ set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
     foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5"
-        "${lint_effects};${lint_skipping}" "${lint_effects};${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5")
+        "${lint_effects};${lint_skipping}" "${lint_effects};-DPF_WIRES_AFTER_TARE;-DPF_IDLE_LOAD=1.0f;${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
         -DPF_THRESHOLD=1.0f -DPF_MARGIN=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
     endforeach()

@@ -45,7 +45,8 @@ void for_each_frame(Frames& frames, WireCorrection& correct, Add add) {
 }
 
 WireCorrection correction_of(const Frames& frames, const SkinCalibration& before) {
-  return {frames.source->skin(), frames.source->sensel_type(), before.planes.effects.wires};
+  return {"frames", frames.source->skin(), frames.source->sensel_type(),
+          before.planes.effects.wires, before.planes.tare};
 }
 
 FrameStatistics statistics_of(Frames& frames, const SkinCalibration& before) {
@@ -61,6 +62,12 @@ std::vector<FrameStatistics> statistics_of(const SomeFrames& sources,
   std::vector<FrameStatistics> all;
   for (Frames& frames : sources) all.push_back(statistics_of(frames, before));
   return all;
+}
+
+/// What a step on unloaded skin knows: tares that are an offset behind wires stay in its frames.
+SkinCalibration without_tare(SkinCalibration before) {
+  before.planes.tare.clear();
+  return before;
 }
 
 void require_one_each(std::size_t frames, std::size_t values, const char* what) {
@@ -92,7 +99,8 @@ std::pair<SkinCalibration, py::dict> tare(Frames& unloaded, const SkinCalibratio
   TareResult result;
   {
     const py::gil_scoped_release unlocked;
-    result = take_tare(before, statistics_of(unloaded, before), {threshold_factor, preloaded});
+    result = take_tare(before, statistics_of(unloaded, without_tare(before)),
+                       {threshold_factor, preloaded});
   }
   py::dict facts;
   facts["tare_counts"] = result.tare_counts;
@@ -266,7 +274,7 @@ std::pair<SkinCalibration, py::dict> bending(
   BendingResult result;
   {
     const py::gil_scoped_release unlocked;
-    const auto statistics = statistics_of(shapes, before);
+    const auto statistics = statistics_of(shapes, without_tare(before));
     std::vector<BentSkin> known;
     for (std::size_t i = 0; i < statistics.size(); ++i) {
       const auto& [radius_mm, axis_deg] = cylinders[i];
@@ -294,18 +302,31 @@ std::pair<SkinCalibration, py::dict> arm(const SomeFrames& presses, const SkinCa
   return {with_step(std::move(result.calibration), "arm", presses), facts};
 }
 
+std::optional<TareOrigin> tares_named(const std::optional<std::string>& tares) {
+  if (!tares) return std::nullopt;
+  if (*tares == "conduct") return TareOrigin::conductance;
+  if (*tares == "offset") return TareOrigin::offset;
+  throw Error("wires", "tares is '" + *tares + "'", "give 'conduct' or 'offset'");
+}
+
 std::pair<SkinCalibration, py::dict> wires(const SomeFrames& presses, const SkinCalibration& before,
-                                           std::uint32_t tile_rows, std::uint32_t tile_cols) {
+                                           std::uint32_t tile_rows, std::uint32_t tile_cols,
+                                           const std::optional<std::string>& tares) {
+  const std::optional<TareOrigin> origin = tares_named(tares);
+  SkinCalibration bare = before;
+  bare.planes.effects.wires.reset();
   WireResult result;
   {
     const py::gil_scoped_release unlocked;
-    result = calibrate_wires(before, statistics_of(presses, before), {tile_rows, tile_cols});
+    result = calibrate_wires(before, statistics_of(presses, bare), {tile_rows, tile_cols}, origin);
   }
   py::dict facts;
   facts["found"] = result.found;
   facts["row_per_count"] = result.wires.row_per_count;
   facts["column_per_count"] = result.wires.column_per_count;
   facts["idle_per_count"] = result.wires.idle_per_count;
+  facts["tares"] = result.wires.tares == TareOrigin::offset ? "offset" : "conduct";
+  facts["conducting_share"] = result.conducting_share;
   facts["residual_before"] = result.residual_before;
   facts["residual_after"] = result.residual_after;
   return {with_step(std::move(result.calibration), "wires", presses), facts};
@@ -347,7 +368,7 @@ void bind_calibrate(py::module_& module) {
              kText);
   module.def("arm", &arm, py::arg("presses"), py::arg("before"), kText);
   module.def("wires", &wires, py::arg("presses"), py::arg("before"), py::arg("tile_rows"),
-             py::arg("tile_cols"), kText);
+             py::arg("tile_cols"), py::arg("tares"), kText);
 }
 
 }  // namespace pillarfield::python

@@ -24,6 +24,8 @@ constexpr double kDifferent = 1.1;
 constexpr double kExponentAccuracy = 1e-5;
 /// Largest root-mean-square relative error of the solved loads.
 constexpr double kMostMisfit = 0.5;
+/// Misfit, relative, that no stated deviation shows.
+constexpr double kNegligibleMisfit = 1e-3;
 
 /// The mean frame of a load, and its solution in counts (k = 1).
 class Press {
@@ -216,6 +218,18 @@ void require_fit(const std::vector<Press>& presses, const LoadResult& result) {
               "check which load belongs to which file");
 }
 
+/// Raises the residual error to what the loads leave; they also found `parameters` numbers.
+void store_misfit(LoadResult& result, std::size_t parameters) {
+  if (result.loads.size() <= parameters) return;
+  const auto count = static_cast<double>(result.loads.size());
+  const double relative =
+      result.misfit * std::sqrt(count / (count - static_cast<double>(parameters)));
+  if (relative < kNegligibleMisfit) return;
+  std::optional<ResidualError>& residual = result.calibration.planes.effects.residual;
+  if (!residual) residual.emplace();
+  residual->relative = std::min(1.0, std::max(residual->relative, relative));
+}
+
 }  // namespace
 
 LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLoad> loads,
@@ -232,6 +246,7 @@ LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLo
   }
   LoadResult result = result_of(presses, std::move(calibration));
   require_fit(presses, result);
+  store_misfit(result, model == LoadModel::power ? 2 : 1);
   require_untouched_idle(before, result.calibration, "load");
   return result;
 }

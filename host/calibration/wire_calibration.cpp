@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "base/quantile.h"
@@ -25,8 +27,40 @@ constexpr int kWireSteps = 10;
 constexpr double kStep = 1e-7;
 constexpr double kMostPerCount = 0.01;
 
+/// Distance from the median reading, in median distances, up to which a sensel is bare.
+constexpr double kNearMedian = 6;
+/// Largest standard error of the conducting share that tells conductance from an offset.
+constexpr double kClearShare = 0.1;
+
 /// Row, column, idle.
 using Resistances = std::array<double, 3>;
+
+struct Share {
+  double value = 0;
+  double error = std::numeric_limits<double>::infinity();
+};
+
+/// The factor for which seen = factor · expected with the least sum of absolute differences: the
+/// median of their ratios, weighted by the expected.
+Share share_of(std::vector<std::pair<double, double>> changes) {
+  if (changes.empty()) return {};
+  std::ranges::sort(changes, {}, [](const auto& c) { return c.second / c.first; });
+  double weights = 0;
+  double squares = 0;
+  for (const auto& [expected, seen] : changes) {
+    weights += std::abs(expected);
+    squares += expected * expected;
+  }
+  auto middle = changes.begin();
+  for (double sum = std::abs(middle->first); sum < weights / 2; sum += std::abs(middle->first)) {
+    ++middle;
+  }
+  const double share = middle->second / middle->first;
+  std::vector<double> left;
+  for (const auto& [expected, seen] : changes) left.push_back(std::abs(seen - share * expected));
+  // 1.4826 median distances are a standard deviation; that of a median is sqrt(pi/2) of a mean's.
+  return {share, 1.2533 * 1.4826 * median(left) / std::sqrt(squares)};
+}
 
 class WireFit {
  public:
@@ -34,36 +68,30 @@ class WireFit {
           const std::vector<std::uint8_t>& mask)
       : tile_(tile), skin_(presses.front().skin()) {
     for (const FrameStatistics& press : presses) means_.push_back(mean_frame(press));
-    std::vector<float> alone;
-    for (std::size_t i = 0; i < skin_.sensels(); ++i) {
-      if (std::isfinite(means_[0].readings<float>()[i])) {
-        alone.push_back(means_[0].readings<float>()[i]);
-      }
-    }
-    if (alone.empty()) return;
-    unloaded_ = median(alone);
-    const double least = kLeastResting * (*std::ranges::max_element(alone) - unloaded_);
+    std::vector<std::size_t> good;
     for (std::size_t i = 0; i < skin_.sensels(); ++i) {
       const auto is_good = [&](const FrameStatistics& press) {
         return press.sensels()[i].readings > 0 && press.sensels()[i].saturated == 0;
       };
-      if ((mask.empty() || mask[i] != 0) && std::ranges::all_of(presses, is_good) &&
-          means_[0].readings<float>()[i] - unloaded_ > least) {
-        resting_.push_back(i);
+      if ((mask.empty() || mask[i] == kGood) && std::ranges::all_of(presses, is_good)) {
+        good.push_back(i);
       }
     }
+    if (!good.empty()) find_bodies(good);
   }
+
+  /// From now on tares are an offset, and no load of the wires.
+  void set_offset() { tare_origin_ = TareOrigin::offset; }
 
   [[nodiscard]] std::size_t sensels() const { return resting_.size(); }
 
   /// Relative changes of the resting sensels' corrected readings against those of the body alone.
   [[nodiscard]] std::vector<double> changes(const Resistances& at) const {
-    const WireCrosstalk wires = {tile_.rows, tile_.cols, at[0], at[1], at[2]};
-    WireCorrection correct(skin_, SenselType::f32, wires);
+    WireCorrection correct = correction(at);
     std::vector<double> alone;
     std::vector<double> changes;
     for (const FrameBuffer& mean : means_) {
-      const FrameView corrected = correct(mean.view());
+      const FrameView corrected = correct.unlimited(mean.view());
       const auto* readings = static_cast<const float*>(corrected.data);
       for (std::size_t s = 0; s < resting_.size(); ++s) {
         const double reading = readings[resting_[s]];
@@ -98,12 +126,71 @@ class WireFit {
     return equations;
   }
 
+  /// Changes of unloaded sensels' readings under the other loads, as a part of those of sensels
+  /// whose whole tare conducts. A median, since bodies touch some of them lightly.
+  [[nodiscard]] Share conducting_share(const Resistances& at) const {
+    WireCorrection correct = correction(at);
+    std::vector<std::pair<double, double>> changes;  // expected, seen
+    const auto before = corrected_gains(correct, means_[0]);
+    for (std::size_t p = 1; p < means_.size(); ++p) {
+      const auto after = corrected_gains(correct, means_[p]);
+      for (std::size_t s = 0; s < bare_.size(); ++s) {
+        const float reading = means_[0].readings<float>()[bare_[s]];
+        const double expected = reading * (before[s] / after[s] - 1);
+        const double seen = means_[p].readings<float>()[bare_[s]] - reading;
+        if (!std::isfinite(expected) || expected == 0 || std::abs(seen) > near_) continue;
+        changes.emplace_back(expected, seen);
+      }
+    }
+    return share_of(std::move(changes));
+  }
+
  private:
+  /// Finds the sensels under the body at rest, and those that nothing touches beside it.
+  void find_bodies(const std::vector<std::size_t>& good) {
+    const std::span<const float> alone = std::as_const(means_[0]).readings<float>();
+    std::vector<float> values;
+    for (const std::size_t i : good) values.push_back(alone[i]);
+    const float most = *std::ranges::max_element(values);
+    const float unloaded = median(values);
+    for (float& value : values) value = std::abs(value - unloaded);
+    near_ = kNearMedian * median(values);
+    unloaded_ = unloaded;
+    tares_.assign(skin_.sensels(), unloaded);
+    for (const std::size_t i : good) {
+      const double rise = alone[i] - unloaded_;
+      if (rise > kLeastResting * (most - unloaded_)) resting_.push_back(i);
+      if (std::abs(rise) > near_) continue;
+      tares_[i] = alone[i];
+      bare_.push_back(i);
+    }
+  }
+
+  [[nodiscard]] WireCorrection correction(const Resistances& at) const {
+    return {"wires", skin_, SenselType::f32,
+            WireCrosstalk{tile_.rows, tile_.cols, at[0], at[1], at[2], tare_origin_}, tares_};
+  }
+
+  /// What the wires make too small, of each bare sensel.
+  [[nodiscard]] std::vector<double> corrected_gains(WireCorrection& correct,
+                                                    const FrameBuffer& mean) const {
+    const FrameView corrected = correct.unlimited(mean.view());
+    std::vector<double> gains;
+    for (const std::size_t i : bare_) {
+      gains.push_back(static_cast<const float*>(corrected.data)[i] / mean.readings<float>()[i]);
+    }
+    return gains;
+  }
+
   WireTile tile_;
   Skin skin_;
   std::vector<FrameBuffer> means_;
   double unloaded_ = 0;
-  std::vector<std::size_t> resting_;
+  double near_ = 0;                   ///< difference that a touch exceeds, counts
+  std::vector<float> tares_;          ///< the median where a sensel is loaded
+  std::vector<std::size_t> resting_;  ///< sensels under the body at rest
+  std::vector<std::size_t> bare_;     ///< sensels that read no load in the first frames
+  TareOrigin tare_origin_ = TareOrigin::conductance;
 };
 
 double rms_of(const std::vector<double>& values) {
@@ -127,12 +214,20 @@ void require_wire_presses(const SkinCalibration& before, std::span<const FrameSt
   check(effects, "wires");
 }
 
+Resistances fit_resistances(const WireFit& fit, Resistances at) {
+  for (int step = 0; step < kWireSteps; ++step) {
+    const std::vector<double> next = fit.linear_around(at).solve_non_negative({true, true, true});
+    for (std::size_t p = 0; p < 3; ++p) at.at(p) = std::min(next[p], kMostPerCount);
+  }
+  return at;
+}
+
 }  // namespace
 
 WireResult calibrate_wires(const SkinCalibration& before, std::span<const FrameStatistics> presses,
-                           const WireTile& tile) {
+                           const WireTile& tile, std::optional<TareOrigin> tares) {
   require_wire_presses(before, presses, tile);
-  const WireFit fit(presses, tile, before.planes.mask);
+  WireFit fit(presses, tile, before.planes.mask);
   WireResult result;
   result.sensels = fit.sensels();
   if (result.sensels < kLeastSensels) {
@@ -141,9 +236,16 @@ WireResult calibrate_wires(const SkinCalibration& before, std::span<const FrameS
   }
   Resistances at{};
   result.residual_before = rms_of(fit.changes(at));
-  for (int step = 0; step < kWireSteps; ++step) {
-    const std::vector<double> next = fit.linear_around(at).solve_non_negative({true, true, true});
-    for (std::size_t p = 0; p < 3; ++p) at.at(p) = std::min(next[p], kMostPerCount);
+  at = fit_resistances(fit, at);
+  const Share share = fit.conducting_share(at);
+  result.conducting_share = share.value;
+  if (share.error < kClearShare) {
+    result.tares_shown = share.value > 0.5 ? TareOrigin::conductance : TareOrigin::offset;
+  }
+  const TareOrigin origin = tares.value_or(result.tares_shown.value_or(TareOrigin::conductance));
+  if (origin == TareOrigin::offset) {
+    fit.set_offset();
+    at = fit_resistances(fit, at);
   }
   const NormalEquations equations = fit.linear_around(at);
   const std::vector<double> left = fit.changes(at);
@@ -159,7 +261,7 @@ WireResult calibrate_wires(const SkinCalibration& before, std::span<const FrameS
   for (std::size_t p = 0; p < 3; ++p) {
     errors.at(p) = result.residual_after * std::sqrt((*inverse)[p * 3 + p]);
   }
-  result.wires = {tile.rows, tile.cols, at[0], at[1], at[2]};
+  result.wires = {tile.rows, tile.cols, at[0], at[1], at[2], origin};
   result.standard_error = {tile.rows, tile.cols, errors[0], errors[1], errors[2]};
   result.found = at[0] > kWireInsignificant * errors[0] || at[1] > kWireInsignificant * errors[1];
   result.calibration = blank_calibration(presses[0].skin());

@@ -157,6 +157,7 @@ struct BendingCommand : StepOptions {
 struct WiresCommand : StepOptions {
   std::vector<std::string> files;
   WireTile tile;
+  std::optional<TareOrigin> tares;
 };
 
 struct FaultsCommand : StepOptions {

@@ -203,6 +203,7 @@ void define_idle_range(const SolverPlan& plan, Definitions& all) {
   all["PF_ACTIVATION_LOWEST"] = hex_float(range.lowest);
   all["PF_ACTIVATION_HIGHEST"] = hex_float(range.highest);
   all["PF_ACTIVATION_NEVER"] = hex_float(range.never);
+  if (has_offset_tares(plan.calibration.effects)) all["PF_IDLE_LOAD"] = hex_float(idle_load(plan));
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ void FileSource::measure_tare(const ReadOptions& options) {
     throw Error(path_.string(), fmt::format("has {} frames", frames_),
                 fmt::format("give a --tare-frames below {}", options.tare_frames));
   }
-  WireCorrection correct(skin_, type_, calibration_.effects.wires);
+  WireCorrection correct(path_.string(), skin_, type_, calibration_.effects.wires, {});
   FrameStatistics unloaded(path_.string(), correct.skin(), correct.type());
   FrameBuffer frame(type_, skin_.rows, skin_.cols);
   for (std::uint64_t index = 0; index < options.tare_frames; ++index) {

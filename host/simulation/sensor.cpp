@@ -163,17 +163,24 @@ void Sensor::read_frame(std::uint64_t frame, std::span<double> frame_signal,
   const auto row_signal = [&](std::uint32_t row) {
     return frame_signal.subspan(std::size_t{row} * skin_.cols, skin_.cols);
   };
-  for (std::uint32_t row = 0; row < skin_.rows; ++row) respond(frame, row, row_signal(row));
+  for (std::uint32_t row = 0; row < skin_.rows; ++row) respond(row, row_signal(row));
+  const bool offset = has_offset_tares(calibration_.effects);
+  const auto add_tares_to_frame = [&] {
+    for (std::uint32_t row = 0; row < skin_.rows; ++row) add_tares(frame, row, row_signal(row));
+  };
+  if (!offset) add_tares_to_frame();
   if (const auto& wires = calibration_.effects.wires) {
     read_through_wires(*wires, skin_.rows, skin_.cols, frame_signal);
   }
+  if (offset) add_tares_to_frame();
   for (std::uint32_t row = 0; row < skin_.rows; ++row) digitise(frame, row, row_signal(row), raw);
 }
 
 void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
                       FrameBuffer& raw) const {
   subtract_dead_zone(signal);
-  respond(frame, row, signal);
+  respond(row, signal);
+  add_tares(frame, row, signal);
   digitise(frame, row, signal, raw);
 }
 
@@ -184,7 +191,7 @@ void Sensor::subtract_dead_zone(std::span<double> signal) const {
   for (double& value : signal) value = std::max(0.0, value - dead_zone);
 }
 
-void Sensor::respond(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
+void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
   if (power_law_) {
     for (double& value : signal) value = value > 0 ? straightened(*power_law_, value) : value;
   }
@@ -195,6 +202,9 @@ void Sensor::respond(std::uint64_t frame, std::uint32_t row, std::span<double> s
     const auto gain = row_of(calibration_.gain, row, signal.size());
     for (std::size_t i = 0; i < signal.size(); ++i) signal[i] /= gain[i];
   }
+}
+
+void Sensor::add_tares(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
   if (!calibration_.tare.empty()) {
     const auto tare = row_of(calibration_.tare, row, signal.size());
     for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += tare[i];

@@ -15,7 +15,8 @@ namespace pillarfield {
 /// only if the scene lists it (docs/scenes.md):
 ///
 ///     dead zone, leak between sensels, memory (MemoryHistory), response curve or power law,
-///     sensitivity, tare, wires, drift, noise, full scale and rounding, dead.
+///     sensitivity, tare, wires (an offset: wires, tare), drift, noise, full scale and rounding,
+///     dead.
 ///
 /// Leak, memory and wires need whole frames: load() then read_frame(), with memory in between.
 class Sensor {
@@ -42,7 +43,8 @@ class Sensor {
 
  private:
   void subtract_dead_zone(std::span<double> signal) const;
-  void respond(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
+  void respond(std::uint32_t row, std::span<double> signal) const;
+  void add_tares(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void add_bending(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void digitise(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
                 FrameBuffer& raw) const;

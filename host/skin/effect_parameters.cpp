@@ -21,6 +21,10 @@ class ParameterWriter {
     if (effect) visit(*effect);
   }
   void number(const char* name, double value) { parameters_.push_back({name, {value}, false}); }
+  /// Only an offset is stored: conductance is what files without the parameter mean.
+  void origin(const char* name, TareOrigin value) {
+    if (value == TareOrigin::offset) number(name, 1);
+  }
   void list(const char* name, const std::vector<double>& values) {
     if (!values.empty()) parameters_.push_back({name, values, true});
   }
@@ -72,6 +76,15 @@ class ParameterReader {
     }
     value = static_cast<std::uint32_t>(read);
   }
+  void origin(const char* name, TareOrigin& value) {
+    const auto values = find_(name);
+    if (!values) return;
+    if (values->size() != 1 || (values->front() != 0 && values->front() != 1)) {
+      throw Error(where_, fmt::format("'{}' is neither 0 nor 1", name),
+                  "store 1 where tares are an offset, 0 where they conduct");
+    }
+    value = values->front() == 1 ? TareOrigin::offset : TareOrigin::conductance;
+  }
   void list(const char* name, std::vector<double>& values) {
     values = look_up(name).value_or(std::vector<double>());
   }
@@ -122,6 +135,7 @@ void visit(Effects& effects, Visitor& to) {
     to.number("wire_row_per_count", wires.row_per_count);
     to.number("wire_column_per_count", wires.column_per_count);
     to.number("wire_idle_per_count", wires.idle_per_count);
+    to.origin("wire_tares_offset", wires.tares);
   });
   to.effect(effects.memory, [&](auto& memory) {
     to.list("play_widths_counts", memory.plays, &Play::width_counts);

@@ -73,4 +73,15 @@ std::vector<float> activation_thresholds(const SolverPlan& plan) {
   return thresholds;
 }
 
+double idle_load(const SolverPlan& plan) {
+  constexpr double kRounding = 1;  // of the largest tare in single precision, counts
+  const Calibration& calibration = plan.calibration;
+  const ActivationRange range = activation_range(plan);
+  double least_gain = 1;
+  for (std::size_t i = 0; i < calibration.gain.size(); ++i) {
+    if (is_good(calibration, i)) least_gain = std::min<double>(least_gain, calibration.gain[i]);
+  }
+  return range.threshold / least_gain + range.step + kRounding;
+}
+
 }  // namespace pillarfield

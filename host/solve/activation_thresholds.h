@@ -25,4 +25,7 @@ struct ActivationRange {
 /// tare, gain and mask. Forces and status of a block do not depend on readings below it.
 [[nodiscard]] std::vector<float> activation_thresholds(const SolverPlan& plan);
 
+/// The most that an idle sensel reads above its tare, counts, whatever its tare.
+[[nodiscard]] double idle_load(const SolverPlan& plan);
+
 }  // namespace pillarfield

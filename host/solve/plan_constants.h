@@ -27,6 +27,7 @@ Stages plan_constants(const SolverPlan& plan) {
           .mask = !calibration.mask.empty(),
           .saturation = skin.full_scale_counts.has_value(),
           .wires = effects.wires.has_value(),
+          .wires_after_tare = has_offset_tares(effects),
           .tare = !calibration.tare.empty() || !calibration.bend_x.empty(),
           .gain = !calibration.gain.empty(),
           .power_law = skin.power_law.has_value(),

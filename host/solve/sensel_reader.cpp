@@ -21,7 +21,6 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
     : calibration_(plan.calibration),
       frame_(frame),
       stages_(plan_constants<maths::Stages>(plan)),
-      wires_(plan, frame),
       state_(state),
       noise_(static_cast<float>(reading_noise(plan))) {
   const SensorEffects& effects = plan.calibration.effects;
@@ -33,6 +32,7 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
                          real(taps.both_inside), real(taps.mixed),  real(taps.both_across)};
   }
   if (!calibration_.bend_x.empty()) bend(plan);
+  wires_ = WireFactors(plan, frame, tares());
   if (!effects.memory) return;
   stages_.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
   if (state_ == nullptr) return;
@@ -145,14 +145,17 @@ float SenselReader::sensel_noise(std::size_t row, std::size_t col) const {
                                 stages_);
 }
 
+const std::vector<float>& SenselReader::tares() const {
+  return state_ != nullptr && state_->curvature ? state_->tare : calibration_.tare;
+}
+
 maths::Correction SenselReader::correction(std::size_t row, std::size_t col) const {
   const std::size_t index = row * frame_.cols + col;
   const auto value = [index](const auto& plane) {
     return plane.empty() ? 0.0F : static_cast<float>(plane[index]);
   };
-  const bool bent = state_ != nullptr && state_->curvature;
-  return {value(bent ? state_->tare : calibration_.tare), value(calibration_.gain),
-          value(calibration_.dead_zone), value(calibration_.mask), wires_.at(row, col)};
+  return {value(tares()), value(calibration_.gain), value(calibration_.dead_zone),
+          value(calibration_.mask), wires_.at(row, col)};
 }
 
 }  // namespace pillarfield

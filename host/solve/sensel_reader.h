@@ -37,6 +37,7 @@ class SenselReader {
  private:
   /// Updates the tare of a bent skin.
   void bend(const SolverPlan& plan);
+  [[nodiscard]] const std::vector<float>& tares() const;
   [[nodiscard]] single_precision::Correction correction(std::size_t row, std::size_t col) const;
   [[nodiscard]] single_precision::Sensel linear(std::size_t row, std::size_t col) const;
   /// A sensel without the leak of its neighbours.

@@ -35,6 +35,8 @@ constexpr std::array kStages = {
           [](const Plan& plan) {
             return !plan.calibration.tare.empty() || plan.baseline_rate || is_bent(plan);
           }},
+    Stage{"wires_after_tare", "PF_WIRES_AFTER_TARE",
+          [](const Plan& plan) { return has_offset_tares(effects(plan)); }},
     Stage{"gain", "PF_GAIN", [](const Plan& plan) { return !plan.calibration.gain.empty(); }},
     Stage{"power_law", "PF_POWER_EXPONENT",
           [](const Plan& plan) { return plan.skin.power_law.has_value(); }},

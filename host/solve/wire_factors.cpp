@@ -12,19 +12,24 @@ std::size_t tiles_along(std::size_t sensels, std::size_t tile) {
   return (sensels + tile - 1) / tile;
 }
 
-/// A raw reading for the sums; a missing sensel counts as zero.
-float summed_reading(const SolverPlan& plan, const FrameView& frame, std::size_t row,
-                     std::size_t col) {
+/// A reading less its offset, if there are some, for the sums; a missing sensel counts as zero.
+float summed_reading(const SolverPlan& plan, const FrameView& frame, std::span<const float> offsets,
+                     std::size_t row, std::size_t col) {
   const auto& mask = plan.calibration.mask;
-  if (!mask.empty() && mask[row * frame.cols + col] != 1) return 0;
+  const std::size_t i = row * frame.cols + col;
+  if (!mask.empty() && mask[i] != 1) return 0;
   const auto reading = raw_reading(frame, row, col);
-  return std::abs(reading) <= static_cast<float>(kMaxCounts) ? reading : 0;
+  if (!(std::abs(reading) <= static_cast<float>(kMaxCounts))) return 0;
+  return offsets.empty() ? reading : reading - offsets[i];
 }
 
 }  // namespace
 
-WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame) {
+WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame,
+                         std::span<const float> tares) {
   if (!plan.calibration.effects.wires) return;
+  const auto offsets =
+      has_offset_tares(plan.calibration.effects) ? tares : std::span<const float>();
   wires_ = *plan.calibration.effects.wires;
   rows_ = 2 * std::size_t{plan.skin.pillar_rows()};
   cols_ = 2 * std::size_t{plan.skin.pillar_cols()};
@@ -32,7 +37,7 @@ WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame) {
   column_gains_.resize(cols_ * tiles_along(rows_, wires_.tile_rows));
   for (std::size_t row = 0; row < rows_; row += wires_.tile_rows) {
     for (std::size_t col = 0; col < cols_; col += wires_.tile_cols)
-      find_tile(plan, frame, row, col);
+      find_tile(plan, frame, offsets, row, col);
   }
 }
 
@@ -42,8 +47,8 @@ single_precision::Wires WireFactors::at(std::size_t row, std::size_t col) const 
   return {gain, driven * gain, column_gains_[row / wires_.tile_rows * cols_ + col]};
 }
 
-void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std::size_t row,
-                            std::size_t col) {
+void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame,
+                            std::span<const float> offsets, std::size_t row, std::size_t col) {
   const single_precision::WireModel model = {static_cast<float>(wires_.row_per_count),
                                              static_cast<float>(wires_.column_per_count),
                                              static_cast<float>(wires_.idle_per_count)};
@@ -57,7 +62,7 @@ void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std:
   for (int sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
     for (std::size_t r = row; r < row + rows; ++r) {
       for (std::size_t c = 0; c < cols; ++c) {
-        readings[c] = summed_reading(plan, frame, r, col + c);
+        readings[c] = summed_reading(plan, frame, offsets, r, col + c);
       }
       auto& factors = row_factors_[col / wires_.tile_cols * rows_ + r];
       const auto [load, square] =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "pillarfield/frame.h"
@@ -13,14 +14,17 @@ namespace pillarfield {
 /// nothing if the plan has no crosstalk of wires.
 class WireFactors {
  public:
-  WireFactors(const SolverPlan& plan, const FrameView& frame);
+  WireFactors() = default;
+  /// `tares` are those of the frame; with TareOrigin::offset they are no load of the wires.
+  WireFactors(const SolverPlan& plan, const FrameView& frame, std::span<const float> tares);
 
   /// Wires of a sensel; meaningless outside the pillars, and without crosstalk.
   [[nodiscard]] single_precision::Wires at(std::size_t row, std::size_t col) const;
 
  private:
   /// Finds the factors of the tile whose first sensel is at (row, col).
-  void find_tile(const SolverPlan& plan, const FrameView& frame, std::size_t row, std::size_t col);
+  void find_tile(const SolverPlan& plan, const FrameView& frame, std::span<const float> offsets,
+                 std::size_t row, std::size_t col);
 
   WireCrosstalk wires_;
   std::size_t rows_ = 0;  ///< sensels under pillars; 0: no crosstalk

@@ -1,6 +1,7 @@
 /* Finds how the wires of each tile act on its readings, before solve_frame reads them, and which
  * tiles are idle. Stage PF_WIRES, with PF_ROW_PER_COUNT, PF_COLUMN_PER_COUNT, PF_IDLE_PER_COUNT,
- * PF_TILE_ROWS and PF_TILE_COLS. */
+ * PF_TILE_ROWS and PF_TILE_COLS. Stage PF_WIRES_AFTER_TARE: the wires act on readings less the
+ * tare, which is an offset behind them. */
 #ifdef PF_WIRES
 
 #define PF_TILE_PARTS ((PF_TILE_COLS + PF_WIRE_PARTS - 1) / PF_WIRE_PARTS * PF_WIRE_PARTS)
@@ -10,12 +11,11 @@
 #else
 #define PF_IN_RANGE(type, reading) ((type)(0.0f) == (type)(0.0f))
 #endif
-/* Raw readings for the sums; missing sensels count as zero. */
-#define PF_DEFINE_SUMMED(name, type)                    \
-  PF_INLINE type name(type reading, type good) {        \
-    const type none = (type)(0.0f);                     \
-    reading = good == (type)(1.0f) ? reading : none;    \
-    return PF_IN_RANGE(type, reading) ? reading : none; \
+/* Readings less their offset for the sums; missing sensels count as zero. */
+#define PF_DEFINE_SUMMED(name, type)                                                     \
+  PF_INLINE type name(type reading, type offset, type good) {                            \
+    const type none = (type)(0.0f);                                                      \
+    return good == (type)(1.0f) && PF_IN_RANGE(type, reading) ? reading - offset : none; \
   }
 PF_DEFINE_SUMMED(summed_reading, float)
 #if PF_LANES > 1
@@ -26,6 +26,14 @@ PF_DEFINE_SUMMED(summed_readings, Real)
 PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
                              uint cols, float* readings) {
   uint col = 0;
+#if PF_AFTER_TARE && defined(PF_TARE)
+  global const float* const tares = PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset;
+#define PF_OFFSETS_AT(col) PF_LOAD_WHOLE(float, tares + (col))
+#define PF_OFFSET_AT(col) tares[col]
+#else
+#define PF_OFFSETS_AT(col) PF_REAL(0.0)
+#define PF_OFFSET_AT(col) 0.0f
+#endif
 #ifdef PF_MASK
   global const uchar* const good = PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset;
 #endif
@@ -36,7 +44,7 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
     valid = PF_TO_REAL(PF_LOAD_WHOLE(uchar, good + col));
 #endif
     const Real reading = PF_TO_REAL(PF_LOAD_WHOLE(PF_SENSEL, raw + col));
-    PF_STORE_WIRES(summed_readings(reading, valid), readings + col);
+    PF_STORE_WIRES(summed_readings(reading, PF_OFFSETS_AT(col), valid), readings + col);
   }
 #endif
   for (; col < cols; ++col) {
@@ -44,7 +52,7 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
 #ifdef PF_MASK
     valid = (float)good[col];
 #endif
-    readings[col] = summed_reading((float)raw[col], valid);
+    readings[col] = summed_reading((float)raw[col], PF_OFFSET_AT(col), valid);
   }
 }
 

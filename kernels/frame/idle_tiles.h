@@ -10,6 +10,15 @@
 #define PF_SATURATED_ROW INFINITY
 #define PF_FLOAT(x) x##f
 #define PF_ROWS_AHEAD 64 /* that are prefetched */
+/* The largest load of an idle sensel: with PF_WIRES_AFTER_TARE the wires act on what it reads above
+ * its tare, which the activation threshold bounds (PF_IDLE_LOAD). */
+#ifdef PF_WIRES_AFTER_TARE
+#define PF_LARGEST_LOAD(range) (float)(PF_IDLE_LOAD)
+#define PF_LOAD_OF(counts) (Real)(PF_IDLE_LOAD)
+#else
+#define PF_LARGEST_LOAD(range) range.largest
+#define PF_LOAD_OF(counts) fabs(counts)
+#endif
 /* Factor above 1 that covers the rounding of a bound. */
 #define PF_BOUND_RESERVE 1.00001f
 
@@ -135,9 +144,10 @@ PF_INLINE float largest_gain(float largest, Tile tile) {
 PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, size_t first,
                               global float* columns) {
 #ifdef PF_SKIP_IDLE_TILES
-  const float gain = largest_gain(range.largest, tile);
+  const float largest = PF_LARGEST_LOAD(range);
+  const float gain = largest_gain(largest, tile);
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
-                    range.largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
+                    largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
   for (uint i = 0; idle && i < tile.rows; ++i) {
     wires.row[first + i] = 1.0f;
     wires.own[first + i] = 0.0f;
@@ -161,7 +171,7 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
   }
   for (uint at = first; at < first + tile.rows; ++at) {
     const float row = wires.row[at];
-    const float own = wires.own[at] * range.largest;
+    const float own = wires.own[at] * PF_LARGEST_LOAD(range);
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
     const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
     wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) ? max(high, low) : PF_SATURATED_ROW;
@@ -182,7 +192,7 @@ PF_INLINE float bound_of(WireVectors wires, Place place) {
 PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise) {
   const Real counts = PF_REALS_OF(reading);
   const Mask idle =
-      counts + fabs(counts) * rise <= PF_REALS_OF(threshold) - (Real)(PF_ACTIVATION_STEP);
+      counts + PF_LOAD_OF(counts) * rise <= PF_REALS_OF(threshold) - (Real)(PF_ACTIVATION_STEP);
 #ifdef PF_LARGEST_READING
   return idle && fabs(counts) <= (Real)(PF_LARGEST_READING);
 #else

@@ -22,6 +22,8 @@
 #define PF_MASK
 #define PF_FULL_SCALE stages.full_scale
 #define PF_WIRES
+#define PF_AFTER_TARE stages.wires_after_tare
+#define PF_WIRES_ACT(after_tare) (stages.wires && stages.wires_after_tare == (after_tare))
 #define PF_TARE
 #define PF_GAIN
 #define PF_CURVE
@@ -56,6 +58,7 @@ typedef struct {
   bool mask;
   bool saturation;
   bool wires;
+  bool wires_after_tare;
   bool tare;
   bool gain;
   bool power_law;
@@ -95,6 +98,12 @@ typedef struct {
 } Stages;
 #else
 #define PF_NAMED(stage) 1
+#ifdef PF_WIRES_AFTER_TARE
+#define PF_AFTER_TARE 1
+#else
+#define PF_AFTER_TARE 0
+#endif
+#define PF_WIRES_ACT(after_tare) (PF_AFTER_TARE == (after_tare))
 typedef int Stages; /* A program has macros instead. */
 #endif
 
@@ -139,7 +148,7 @@ PF_INLINE CurvePolynomial curve_of(Stages stages) {
 PF_INLINE Sensel untared_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = validate_reading(raw, at.good, stages);
 #ifdef PF_WIRES
-  if (PF_NAMED(wires)) sensel = remove_crosstalk(sensel, at.wires);
+  if (PF_WIRES_ACT(false)) sensel = remove_crosstalk(sensel, at.wires);
 #endif
   return sensel;
 }
@@ -149,6 +158,9 @@ PF_INLINE Sensel gained_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = untared_sensel(raw, at, stages);
 #ifdef PF_TARE
   if (PF_NAMED(tare)) sensel = subtract_tare(sensel, at.tare);
+#endif
+#ifdef PF_WIRES
+  if (PF_WIRES_ACT(true)) sensel = remove_crosstalk(sensel, at.wires);
 #endif
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) sensel = apply_gain(sensel, at.gain);
@@ -190,7 +202,7 @@ PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
 /* Noise of a sensel after correction, counts. */
 PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
 #ifdef PF_WIRES
-  if (PF_NAMED(wires)) noise = noise * wire_gain(raw, at.wires);
+  if (PF_NAMED(wires)) noise = noise * wire_gain(PF_AFTER_TARE ? raw - at.tare : raw, at.wires);
 #endif
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) noise = noise * at.gain;

@@ -149,10 +149,12 @@ def arm(presses: Sequence[Any], before: Before, *, skin: Optional[_core.Skin] = 
 
 
 def wires(presses: Sequence[Any], before: Before, *, skin: Optional[_core.Skin] = None,
-          tile: tuple[int, int] = (64, 64)) -> Step:
+          tile: tuple[int, int] = (64, 64), tares: Optional[str] = None) -> Step:
     """Resistance of the wires from one body at rest, alone in the first frames.
 
     tile: rows and columns of sensels that share wires.
+    tares: 'conduct' where unloaded sensels conduct, 'offset' where the converter adds the tare;
+    None: as the frames show, or else 'conduct'.
     """
     sources = _sources(presses, skin)
-    return Step(*_core.wires(sources, _calibration(before, sources[0]), *tile))
+    return Step(*_core.wires(sources, _calibration(before, sources[0]), *tile, tares))

@@ -218,6 +218,9 @@ double curve_error(PressedSkin& skin, const EquilibrationResult& result) {
     const auto& law = skin.skin().power_law;
     double reading = std::max(0.0, load - zone);
     if (law) reading = straightened({1 / law->exponent, law->reference_counts}, reading);
+    if (const auto& curve = truth.effects.curve; !curve.empty()) {
+      reading = reading_at(curve, reading);
+    }
     const double share = 1 / mean_of(truth.gain);
     const double solved = load_at(found.effects.curve, reading * share) +
                           (found.dead_zone.empty() ? 0 : mean_of(found.dead_zone));
@@ -244,6 +247,28 @@ TEST(Equilibration, FindsAResponseCurveAndADeadZone) {
   ASSERT_TRUE(result.calibration.planes.effects.residual);
   EXPECT_LT(result.calibration.planes.effects.residual->relative, 0.01);
   EXPECT_LT(result.calibration.planes.effects.residual->offset_counts, 0.5);
+}
+
+/// The response V/(1 + V/600), from V = 1 to 300 counts.
+ResponseCurve saturating_curve() {
+  ResponseCurve curve;
+  for (double load = 1; load < 300; load *= 1.2) {
+    curve.loads.push_back(load);
+    curve.readings.push_back(load / (1 + load / 600));
+  }
+  return curve;
+}
+
+TEST(Equilibration, FindsNoDeadZoneInAResponseThatSaturates) {
+  for (const auto& [dead_zone, accuracy] : {std::pair(0.0, 0.1), std::pair(5.0, 0.6)}) {
+    PressedSkin skin = curved_skin(dead_zone, 1);
+    skin.scene().sensor.response_curve = saturating_curve();
+    const EquilibrationResult result = equilibrate_at_loads(skin, {}, {14, 28, 56, 100, 160, 240});
+    EXPECT_EQ(result.model, ResponseModel::curve);
+    EXPECT_NEAR(result.dead_zone_counts * 320 / *result.calibration.counts_per_newton, dead_zone,
+                accuracy);
+    EXPECT_LT(curve_error(skin, result), 0.15);
+  }
 }
 
 TEST(Equilibration, FindsACurveFromThreePressures) {

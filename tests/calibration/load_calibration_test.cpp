@@ -6,7 +6,9 @@
 
 #include <cmath>
 
+#include "calibration/mean_frame.h"
 #include "pillarfield/equilibration.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"
@@ -102,6 +104,43 @@ TEST(LoadCalibration, ShearedPillarsGiveAnIntervalThatHoldsTheTruth) {
   EXPECT_GT(result.loads[0].ambiguous_share, 0.5);
   EXPECT_LT(result.least_counts_per_newton, 0.9 * 320);
   EXPECT_GT(result.most_counts_per_newton, 320);
+}
+
+/// A response of power 0.8 for which straight lines are fitted: loads in between have as large
+/// errors as those of the calibration, and the deviations must say so.
+TEST(LoadCalibration, WhatSeveralLoadsLeaveIsStated) {
+  PressedSkin skin(20, 20, noisy_sensor());
+  skin.scene().skin.power_law = {0.8, 100};
+  const SkinCalibration before = tared_skin(skin);
+  const double forces_n[] = {0.2, 0.3, 0.4, 0.6};
+  std::vector<FrameStatistics> frames;
+  for (const double force_n : forces_n) frames.push_back(skin.press(force_n, kLoadFrames));
+  std::vector<KnownLoad> loads;
+  for (std::size_t i = 0; i < 4; ++i) loads.push_back({frames[i], 400 * forces_n[i]});
+  const LoadResult result = calibrate_load(before, loads, LoadModel::linear);
+  EXPECT_GT(result.misfit, 0.05);
+  ASSERT_TRUE(result.calibration.planes.effects.residual);
+  EXPECT_NEAR(result.calibration.planes.effects.residual->relative,
+              result.misfit * std::sqrt(4.0 / 3), 1e-9);
+  EXPECT_FALSE(calibrate_load(before, {loads.data(), 1}, LoadModel::linear)
+                   .calibration.planes.effects.residual);
+
+  int held = 0;
+  for (const double force_n : {0.22, 0.35, 0.5, 0.58}) {
+    const FrameBuffer mean = mean_frame(skin.press(force_n, 1));
+    SolverPlan plan;
+    plan.skin = skin.skin();
+    plan.skin.power_law.reset();
+    plan.sensel_type = SenselType::f32;
+    plan.uncertainty = true;
+    apply(result.calibration, plan.skin, plan.calibration);
+    const ForceField solved = solve_on_host(plan, mean.view());
+    const std::vector<float>& deviation = solved.uncertainty[Uncertainty::normal];
+    for (std::size_t i = 0; i < solved.pillars(); ++i) {
+      held += std::abs(solved.normal[i] - force_n) < 1.96 * deviation[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(held, 0.93 * 4 * 400);
 }
 
 class PowerLawLoad : public testing::TestWithParam<double> {};

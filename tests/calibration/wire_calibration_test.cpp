@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "calibration/wire_correction.h"
+#include "simulation/effects/wire_network.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"
 
@@ -16,15 +18,18 @@ using core_test::message_of;
 using core_test::PressedSkin;
 
 /// 32 x 32 sensels on wires; 10 kohm at 255 counts.
-PressedSkin wired_skin(double row_ohm, double column_ohm, double noise_counts = 0.5) {
+PressedSkin wired_skin(double row_ohm, double column_ohm, double noise_counts = 0.5,
+                       TareOrigin tares = TareOrigin::conductance) {
   SensorModel sensor;
   sensor.tare_counts = 12;
+  sensor.tare_spread_counts = 2;
   sensor.gain_spread = 0.05;
   sensor.noise_counts = noise_counts;
   if (row_ohm + column_ohm > 0) {
     sensor.wires.emplace();
     sensor.wires->row_ohm = row_ohm;
     sensor.wires->column_ohm = column_ohm;
+    sensor.wires->tares = tares;
   }
   return {16, 16, sensor};
 }
@@ -49,9 +54,9 @@ std::vector<FrameStatistics> presses_of(PressedSkin& skin) {
           under(skin, {rest, ball_at(-5, -5, 15)}), under(skin, {rest, ball_at(5, -5, 15)})};
 }
 
-WireResult fitted(PressedSkin& skin) {
+WireResult fitted(PressedSkin& skin, std::optional<TareOrigin> tares = std::nullopt) {
   const std::vector<FrameStatistics> presses = presses_of(skin);
-  return calibrate_wires(blank_calibration(skin.skin()), presses, {64, 64});
+  return calibrate_wires(blank_calibration(skin.skin()), presses, {64, 64}, tares);
 }
 
 TEST(WireCalibration, FindsTheResistances) {
@@ -65,6 +70,55 @@ TEST(WireCalibration, FindsTheResistances) {
   EXPECT_GT(result.residual_before, 5 * result.residual_after);
   ASSERT_TRUE(result.calibration.planes.effects.wires);
   EXPECT_TRUE(result.calibration.planes.tare.empty());
+}
+
+TEST(WireCalibration, TellsHowTaresArise) {
+  for (const TareOrigin origin : {TareOrigin::conductance, TareOrigin::offset}) {
+    PressedSkin skin = wired_skin(60, 30, 0.5, origin);
+    const WireResult result = fitted(skin);
+    const WireCrosstalk truth = *skin.truth().effects.wires;
+    EXPECT_EQ(result.tares_shown, origin);
+    EXPECT_NEAR(result.conducting_share, origin == TareOrigin::offset ? 0 : 1, 0.1);
+    EXPECT_EQ(result.calibration.planes.effects.wires->tares, origin);
+    EXPECT_NEAR(result.wires.row_per_count, truth.row_per_count, 0.05 * truth.row_per_count);
+    EXPECT_NEAR(result.wires.column_per_count, truth.column_per_count, 0.05 * truth.row_per_count);
+    EXPECT_EQ(fitted(skin, TareOrigin::offset).wires.tares, TareOrigin::offset);
+  }
+}
+
+/// Tares of 12 counts that the converter adds to what the wires leave.
+TEST(WireCorrection, TakesAnOffsetOffFirst) {
+  Skin skin;
+  skin.rows = skin.cols = 64;
+  const double per_count = 50 / (1e4 * 200);
+  const WireCrosstalk wires = {64, 64, per_count, per_count, per_count, TareOrigin::offset};
+  FrameBuffer frame(SenselType::f32, 64, 64);
+  std::vector<double> readings(64 * 64, 90);
+  read_through_wires(wires, 64, 64, readings);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    frame.readings<float>()[i] = static_cast<float>(12 + readings[i]);
+  }
+  WireCorrection correct("p.h5", skin, SenselType::f32, wires, std::vector<float>(64 * 64, 12));
+  EXPECT_NEAR(static_cast<const float*>(correct(frame.view()).data)[0], 12 + 90, 0.05);
+}
+
+TEST(WireCorrection, RefusesRowsThatLoseTooMuch) {
+  Skin skin;
+  skin.rows = skin.cols = 64;
+  const double per_count = 50 / (1e4 * 200);
+  const WireCrosstalk wires = {64, 64, per_count, per_count, per_count};
+  const auto correct = [&](double counts) {
+    FrameBuffer frame(SenselType::f32, 64, 64);
+    std::vector<double> readings(64 * 64, counts);
+    read_through_wires(wires, 64, 64, readings);
+    std::ranges::copy(readings, frame.readings<float>().begin());
+    (void)WireCorrection("p240.h5", skin, SenselType::f32, wires, {})(frame.view());
+  };
+  EXPECT_NO_THROW(correct(120));
+  EXPECT_EQ(
+      message_of([&] { correct(240); }),
+      "p240.h5: a row of sensels loses 27.7 % of its voltage in the wires, more than the 20 % "
+      "that a calibration can correct; press less, or fewer sensels of a row at once");
 }
 
 TEST(WireCalibration, StoresNothingWithoutResistance) {

@@ -191,6 +191,15 @@ TEST_P(SensorEffectsOnDevice, WiresHaveTheBitsOfTheHost) {
   expect_host_bits(plan_with(effects, true), true);
 }
 
+/// The wires act on what sensels read above tares that are an offset, as does the bound of idle
+/// tiles.
+TEST_P(SensorEffectsOnDevice, WiresBeforeAnOffsetHaveTheBitsOfTheHost) {
+  SensorEffects effects;
+  const double per_count = GetParam().type == SenselType::u16 ? 3e-5 / 16 : 3e-5;
+  effects.wires = {16, 24, per_count, per_count, per_count, TareOrigin::offset};
+  expect_host_bits(plan_with(effects, true), true, 12.99);
+}
+
 /// Readings just below the threshold that the gain of their wires lifts above it, and rows that are
 /// refused.
 TEST_P(SensorEffectsOnDevice, WiresMakeSenselsActive) {
@@ -291,7 +300,7 @@ TEST_P(SensorEffectsOnDevice, BendingHasTheBitsOfTheHost) {
 /// Activation thresholds that each frame changes, before its wires are found.
 TEST_P(SensorEffectsOnDevice, WiresOfABentSkinHaveTheBitsOfTheHost) {
   SensorEffects effects;
-  effects.wires = {16, 24, 3e-5, 3e-5, 3e-5};
+  effects.wires = {16, 24, 3e-5, 3e-5, 3e-5, TareOrigin::offset};
   SolverPlan plan = plan_with(effects, true);
   add_patterns(plan, 50);
   expect_host_bits(plan, true, 12.99);

@@ -53,7 +53,7 @@ SkinCalibration full_calibration() {
                                 .shear_coefficient = {{1.1, 0.9}},
                                 .sensel_leak = {{0.05, 0.02}},
                                 .pillar_leak = {{0.01, -0.002}},
-                                .wires = {{32, 48, 1e-4, 2e-4, 3e-5}},
+                                .wires = {{32, 48, 1e-4, 2e-4, 3e-5, TareOrigin::offset}},
                                 .memory = {{{{5, 0.02}, {20, 0.03}}, {{0.3, 0.01}}}},
                                 .arm_mm = 0.224,
                                 .residual = {{0.01, 0.4}}};

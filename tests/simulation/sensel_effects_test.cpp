@@ -282,6 +282,19 @@ TEST(WireNetwork, OfASceneReadsThroughItsOhms) {
   EXPECT_NEAR(simulator.calibration().effects.wires->row_per_count, 30 / (1e4 * 200), 1e-12);
 }
 
+TEST(WireNetwork, OfASceneMayLieBeforeTheTare) {
+  Scene scene = sensels(2, 2);
+  scene.skin.counts_per_newton = 100;
+  scene.skin.full_scale_counts = 200;
+  scene.load = DirectionSweep{1, 1, 0, {0.5}};
+  scene.sensor.tare_counts = 60;
+  scene.sensor.wires = Wires{2, 2, 30, 0, 0.0, 1e4, TareOrigin::offset};
+  FrameBuffer raw(SenselType::f32, 2, 2);
+  ForceField truth(1, 1);
+  Simulator(scene).render(0, raw, truth);
+  for (const float reading : raw.readings<float>()) EXPECT_NEAR(reading, 60 + 50 / 1.0015, 1e-4);
+}
+
 /// Every stage of [sensor] and [surface], composed here in the documented order.
 TEST(SensorEffectsOfAScene, FollowTheOrderOfTheSignal) {
   Scene scene = sensels(6, 8);

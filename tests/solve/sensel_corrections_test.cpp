@@ -366,6 +366,19 @@ TEST(Wires, OfTheNodalSolveComeBack) {
   }
 }
 
+TEST(Wires, LeaveTaresThatAreAnOffset) {
+  const ForceField truth = random_patch(kPatchSide, kPatchSide, 9);
+  SensorEffects effects = with_wires(50, 32);
+  std::vector<double> readings = through_wires(loads_of(truth), effects, kPatchSide);
+  for (double& reading : readings) reading += 30;
+  effects.wires->tares = TareOrigin::offset;
+  SolverPlan plan = pressed_plan(kPatchSide, kPatchSide, effects);
+  plan.calibration.tare.assign(readings.size(), 30);
+  EXPECT_LT(largest_error(solve_readings(plan, readings), truth), 0.001 * 150);
+  plan.calibration.effects.wires->tares = TareOrigin::conductance;
+  EXPECT_GT(largest_error(solve_readings(plan, readings), truth), 1);
+}
+
 TEST(Wires, OfNoResistanceChangeNothing) {
   const std::vector<double> v = loads_of(random_patch(kPatchSide, kPatchSide, 9));
   const ForceField expected = solve_readings(pressed_plan(kPatchSide, kPatchSide, {}), v);

@@ -11,7 +11,7 @@
 namespace pillarfield::cli {
 
 void calibrate(const BendingCommand& command) {
-  const StepInput input = read_input(command.files, command);
+  const StepInput input = read_input(command.files, command, WireUse::unloaded);
   std::vector<BentSkin> shapes;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
     shapes.push_back(

@@ -15,7 +15,7 @@ FaultResult find_faults(const FaultsCommand& command) {
   check_step_output({command.frames}, command, OutputKind::calibration);
   const std::unique_ptr<FrameSource> source = open_for_step(command.frames, command);
   const SkinCalibration before = initial_calibration(command, *source, command.frames);
-  WireCorrection correct = wire_correction(*source, before);
+  WireCorrection correct = wire_correction(*source, command.frames, before);
   FaultFinder finder(command.frames, correct.skin(), correct.type(), before, command.faults);
   FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
   Progress progress("Testing", source->frames(), command.quiet);

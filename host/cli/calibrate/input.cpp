@@ -48,11 +48,14 @@ SkinCalibration initial_calibration(const StepOptions& options, const FrameSourc
   return calibration;
 }
 
-WireCorrection wire_correction(const FrameSource& source, const SkinCalibration& calibration) {
-  return {source.skin(), source.sensel_type(), calibration.planes.effects.wires};
+WireCorrection wire_correction(const FrameSource& source, const std::string& file,
+                               const SkinCalibration& calibration) {
+  return {file, source.skin(), source.sensel_type(), calibration.planes.effects.wires,
+          calibration.planes.tare};
 }
 
-StepInput read_input(const std::vector<std::string>& files, const StepOptions& options) {
+StepInput read_input(const std::vector<std::string>& files, const StepOptions& options,
+                     WireUse use) {
   check_step_output(files, options, OutputKind::calibration);
   StepInput input;
   for (const std::string& file : files) {
@@ -60,8 +63,11 @@ StepInput read_input(const std::vector<std::string>& files, const StepOptions& o
     if (input.files.empty()) input.calibration = initial_calibration(options, *source, file);
     require_fitting(input.calibration, source->skin(), file);
     mask_missing(input.calibration, source->calibration().mask);
+    SkinCalibration known = input.calibration;
+    if (use != WireUse::loaded) known.planes.tare.clear();
+    if (use == WireUse::none) known.planes.effects.wires.reset();
     input.files.push_back(
-        statistics_of(*source, file, options, wire_correction(*source, input.calibration)));
+        statistics_of(*source, file, options, wire_correction(*source, file, known)));
     input.frames += source->frames();
   }
   return input;

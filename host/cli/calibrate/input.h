@@ -25,7 +25,15 @@ SkinCalibration initial_calibration(const StepOptions& options, const FrameSourc
                                     const std::string& file);
 
 /// What removes the crosstalk of wires that `calibration` knows from the frames of `source`.
-WireCorrection wire_correction(const FrameSource& source, const SkinCalibration& calibration);
+WireCorrection wire_correction(const FrameSource& source, const std::string& file,
+                               const SkinCalibration& calibration);
+
+/// What a step may use of the wires in the calibration that it extends.
+enum class WireUse : std::uint8_t {
+  loaded,    ///< crosstalk is removed
+  unloaded,  ///< nothing touches the skin: tares that are an offset behind the wires stay
+  none,      ///< the step finds the wires
+};
 
 struct StepInput {
   SkinCalibration calibration;
@@ -35,6 +43,7 @@ struct StepInput {
 
 /// Checks the output, a calibration, and reads the calibration to extend and all frames of `files`,
 /// without the crosstalk of its wires.
-StepInput read_input(const std::vector<std::string>& files, const StepOptions& options);
+StepInput read_input(const std::vector<std::string>& files, const StepOptions& options,
+                     WireUse use = WireUse::loaded);
 
 }  // namespace pillarfield::cli

@@ -18,7 +18,7 @@ LeakResult find_leak(const LeakCommand& command, std::uint64_t& frames) {
   for (const std::string& file : command.files) {
     const std::unique_ptr<FrameSource> source = open_for_step(file, command);
     const SkinCalibration calibration = initial_calibration(command, *source, file);
-    WireCorrection correct = wire_correction(*source, calibration);
+    WireCorrection correct = wire_correction(*source, file, calibration);
     if (!finder) finder.emplace(correct.skin(), calibration);
     FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
     Progress progress("Reading", source->frames(), command.quiet);

@@ -68,6 +68,7 @@ void calibrate(const LoadCommand& command) {
         100 * load.ambiguous_share));
   }
   report.more.push_back({"loads", loads});
+  add_residual(report, calibration.planes.effects);
   warn_of_loads(command, result.loads);
   finish_step(command, calibration, "load", command.files, input.frames,
               fmt::format("loads_n = {}, model = {}", fmt::join(command.loads_n, " "),

@@ -26,7 +26,7 @@ MemoryResult find_memory(const MemoryCommand& command, std::uint64_t& frames) {
     const PressureLog pressure(command.logs[i]);
     const std::unique_ptr<FrameSource> source = open_for_step(command.files[i], command);
     const SkinCalibration before = initial_calibration(command, *source, command.files[i]);
-    WireCorrection correct = wire_correction(*source, before);
+    WireCorrection correct = wire_correction(*source, command.files[i], before);
     if (!finder) finder.emplace(correct.skin(), before);
     finder->begin();
     FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);

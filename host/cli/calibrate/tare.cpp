@@ -10,7 +10,7 @@
 namespace pillarfield::cli {
 
 void calibrate(const TareCommand& command) {
-  const StepInput input = read_input({command.unloaded}, command);
+  const StepInput input = read_input({command.unloaded}, command, WireUse::unloaded);
   const TareOptions& tare = command.tare;
   const TareResult result = take_tare(input.calibration, input.files.front(), tare);
   const SkinCalibration& calibration = result.calibration;

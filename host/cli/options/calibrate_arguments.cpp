@@ -250,6 +250,11 @@ void add_wires(CLI::App& parent, Work& work) {
   step.whole("--tile-rows", options->tile.rows, "N", "Sensel rows that share wires [64]", 2, 1024);
   step.whole("--tile-cols", options->tile.cols, "N", "Sensel columns that share wires [64]", 2,
              1024);
+  step.choice<TareOrigin>(
+      "--tares", options->tares,
+      {{"conduct", TareOrigin::conductance}, {"offset", TareOrigin::offset}},
+      "How tares arise. conduct: unloaded sensels conduct; offset: the converter adds it [as the "
+      "frames show, or else conduct]");
   add_step(command, *options, false, kCalibration);
 }
 

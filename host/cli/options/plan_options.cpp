@@ -43,7 +43,8 @@ std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
 void apply_calibration(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
   const SkinCalibration calibration = read_calibration_file(options.calibration, options.read);
   require_fitting(calibration, plan.skin, source);
-  if (options.read.tare_frames > 0 && calibration.planes.effects.wires) {
+  const SensorEffects& effects = calibration.planes.effects;
+  if (options.read.tare_frames > 0 && effects.wires && !has_offset_tares(effects)) {
     throw Error(
         "--tare-frames", "the tare of a skin with crosstalk of wires needs its calibration",
         fmt::format("write one: pillarfield calibrate tare UNLOADED --calibration {} -o FILE",

@@ -41,7 +41,8 @@ struct LoadResult {
 
 /// Fits the counts per newton and, for LoadModel::power, the exponent, so that the solved normal
 /// forces add up to the known loads. Averages the frames of a load first. Replaces the power law of
-/// `before`, or removes it for LoadModel::linear; keeps everything else. Formulas and limits:
+/// `before`, or removes it for LoadModel::linear, raises the residual error to what several loads
+/// leave, and keeps everything else. Formulas and limits:
 /// docs/calibration.md. Throws Error if the frames of a load show no contact or the loads do not
 /// determine the fit.
 [[nodiscard]] LoadResult calibrate_load(const SkinCalibration& before,

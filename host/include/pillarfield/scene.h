@@ -26,6 +26,7 @@ struct Wires {
   double column_ohm = 0;               ///< of a column
   std::optional<double> idle_row_ohm;  ///< of a row that is not driven; unset: row_ohm
   double sensel_ohm = 1e4;             ///< resistance of a sensel that reads full scale
+  TareOrigin tares = TareOrigin::conductance;
 };
 
 /// Deviations of a sensor from the model, absent by default, in the order of the signal: pillars

@@ -42,6 +42,12 @@ struct PillarLeak {
 };
 inline constexpr double kMostPillarLeak = 0.5;
 
+/// How the readings of unloaded sensels behind wires arise.
+enum class TareOrigin : std::uint8_t {
+  conductance,  ///< unloaded sensels conduct: the wires act on tare and load
+  offset,       ///< the converter adds the tare: the wires act on the load alone
+};
+
 /// Crosstalk of a scanned array whose rows and columns have series resistance (E5). The array is
 /// wired in tiles, from the upper left sensel on, each with rows and columns of its own.
 struct WireCrosstalk {
@@ -50,6 +56,7 @@ struct WireCrosstalk {
   double row_per_count = 0;     ///< resistance of a driven row times the conductance of one count
   double column_per_count = 0;  ///< of a column
   double idle_per_count = 0;    ///< of a row that is not driven
+  TareOrigin tares = TareOrigin::conductance;
 };
 
 /// One-sided play operator: p follows V between V − width and V and stays in between (E6).
@@ -101,6 +108,11 @@ struct SensorEffects {
            !memory && !arm_mm && !residual;
   }
 };
+
+/// True if tares are an offset behind the wires, and so are no load of them.
+[[nodiscard]] constexpr bool has_offset_tares(const SensorEffects& effects) {
+  return effects.wires && effects.wires->tares == TareOrigin::offset;
+}
 
 /// Throws Error, naming `where`, if a member is out of range.
 void check(const SensorEffects& effects, std::string_view where);

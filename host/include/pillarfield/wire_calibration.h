@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "pillarfield/frame_statistics.h"
@@ -21,6 +22,11 @@ struct WireResult {
   WireCrosstalk standard_error;
   bool found = false;       ///< whether the row's or the column's exceeds three standard errors
   std::size_t sensels = 0;  ///< under the body at rest
+  /// Part of the tares that conducts, near 0 or 1: how far the readings of unloaded sensels follow
+  /// the loss of their wires.
+  double conducting_share = 0;
+  /// What `conducting_share` shows; unset where tares or the loss are within the noise.
+  std::optional<TareOrigin> tares_shown;
   /// RMS change of their readings under the other loads, as a fraction: before and after.
   double residual_before = 0;
   double residual_after = 0;
@@ -30,10 +36,12 @@ struct WireResult {
 /// in the first one it is alone, in the others another body presses elsewhere, in some in its rows
 /// and in some in its columns. What its sensels read then changes only through the wires. Tares,
 /// gains and noise of `before` were measured through the wires and are removed: take them anew.
-/// Formulas and limits: docs/calibration.md. Throws Error without a body that rests alone, or
-/// if the other loads change nothing that tells rows from columns.
+/// `tares` says how tares arise; unset: as the readings of unloaded sensels show, or else by
+/// conductance. Formulas and limits: docs/calibration.md. Throws Error without a body that rests
+/// alone, or if the other loads change nothing that tells rows from columns.
 [[nodiscard]] WireResult calibrate_wires(const SkinCalibration& before,
                                          std::span<const FrameStatistics> presses,
-                                         const WireTile& tile);
+                                         const WireTile& tile,
+                                         std::optional<TareOrigin> tares = std::nullopt);
 
 }  // namespace pillarfield

@@ -5,9 +5,12 @@ namespace {
 
 WireCrosstalk per_count(const Wires& wires, const Skin& skin) {
   const double count_siemens = 1 / (wires.sensel_ohm * full_scale_or_255(skin));
-  return {wires.tile_rows, wires.tile_cols, wires.row_ohm * count_siemens,
+  return {wires.tile_rows,
+          wires.tile_cols,
+          wires.row_ohm * count_siemens,
           wires.column_ohm * count_siemens,
-          wires.idle_row_ohm.value_or(wires.row_ohm) * count_siemens};
+          wires.idle_row_ohm.value_or(wires.row_ohm) * count_siemens,
+          wires.tares};
 }
 
 }  // namespace

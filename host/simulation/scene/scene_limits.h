@@ -200,6 +200,10 @@ inline constexpr std::array<Named<SurfaceShape>, 4> kSurfaceShapes = {{
     {"height_map", SurfaceShape::height_map},
 }};
 
+inline constexpr std::array<Named<TareOrigin>, 2> kTareOrigins = {{
+    {"conduct", TareOrigin::conductance},
+    {"offset", TareOrigin::offset},
+}};
 inline constexpr std::array<Named<Estimator>, 4> kEstimators = {{
     {"direct", Estimator::direct},
     {"paper", Estimator::paper},

@@ -170,6 +170,7 @@ std::optional<Wires> read_wires(TomlSection section) {
   read_quantities(section, kWireQuantities, wires);
   if (!section.has("sensel_ohm")) section.fail_missing("sensel_ohm", "resistance at full scale");
   wires.idle_row_ohm = section.number("idle_row_ohm", kIdleRowOhm);
+  wires.tares = read_name(section, "tares", kTareOrigins).value_or(wires.tares);
   if (const auto tile = section.numbers("tile", 2, kTileSensels)) {
     wires.tile_rows = static_cast<std::uint32_t>((*tile)[0]);
     wires.tile_cols = static_cast<std::uint32_t>((*tile)[1]);
