@@ -64,7 +64,7 @@ void read_packets(const std::filesystem::path& path, [[maybe_unused]] const Read
   PacketRun in_any_order(PacketOrder::not_kept);
   std::optional<FrameShape> shape;
   Packet packet;
-  const auto take = [&] {
+  const auto take_some = [&] {
     while (parser.next(packet)) {
       if (!shape) parser.prepare(*(shape = shape_of(packet.header)));
       if (std::size_t{shape->rows} * shape->cols > kMaxRead) continue;
@@ -72,6 +72,11 @@ void read_packets(const std::filesystem::path& path, [[maybe_unused]] const Read
       in_order.add(packet);
       in_any_order.add(packet);
     }
+  };
+  const auto take = [&] {
+    do {
+      take_some();
+    } while (parser.is_busy());
   };
   for (std::size_t fed = 0; fed < bytes.size();) {
     const auto space = parser.space();

@@ -75,6 +75,7 @@ class LiveFrames {
     counts["clock_jumps"] = health.clock_jumps;
     counts["overrun"] = health.overrun;
     counts["rate_hz"] = health.rate_hz;
+    counts["mismatch"] = health.mismatch;
     return counts;
   }
 
@@ -167,10 +168,11 @@ LiveSinkInfo info_of(const SolverPlan& plan, bool contacts, const std::string& d
 class Sink {
  public:
   Sink(const std::string& target, const SolverPlan& plan, bool contacts, const std::string& source,
-       bool overwrite)
+       bool overwrite, std::vector<std::string> allow_origins)
       : target_(target), plan_(plan) {
     const py::gil_scoped_release unlocked;
-    const LiveSinkInfo info = info_of(plan, contacts, "", source, overwrite);
+    LiveSinkInfo info = info_of(plan, contacts, "", source, overwrite);
+    info.allowed_origins = std::move(allow_origins);
     sink_.emplace(create_live_sink(target, info));
   }
 
@@ -201,6 +203,7 @@ class Sink {
     counts["clients"] = done.clients;
     counts["refused"] = done.refused;
     counts["failure"] = done.failure;
+    counts["notice"] = done.notice;
     return counts;
   }
 
@@ -244,9 +247,10 @@ void bind_live(py::module_& module) {
           "sensel_type", [](const LiveFrames& self) { return name_of(self.sensel_type()); },
           "'uint8', 'uint16' or 'float32'");
   py::class_<Sink>(module, "LiveSink", kLiveSink)
-      .def(py::init<const std::string&, const SolverPlan&, bool, const std::string&, bool>(),
+      .def(py::init<const std::string&, const SolverPlan&, bool, const std::string&, bool,
+                    std::vector<std::string>>(),
            py::arg("target"), py::arg("plan"), py::arg("contacts"), py::arg("source"),
-           py::arg("overwrite"))
+           py::arg("overwrite"), py::arg("allow_origins"))
       .def("send", &Sink::send, py::arg("planes"), py::arg("contacts"), py::arg("time_s"),
            py::arg("sequence"))
       .def("statistics", &Sink::statistics)

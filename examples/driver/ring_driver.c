@@ -6,6 +6,7 @@
  *
  * Copy the first half, and replace scan() by what reads your sensor. */
 #define _DEFAULT_SOURCE
+#include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <linux/futex.h>
@@ -44,9 +45,13 @@ static PillarfieldRing* open_ring(const char* name, uint32_t rows, uint32_t cols
     PillarfieldRing* ring = NULL;
     const int segment = shm_open(name, O_RDWR | O_CREAT, 0600);
     if (segment < 0 || fstat(segment, &status) != 0) fail(name);
+    if (status.st_uid != geteuid()) {
+      errno = EPERM;
+      fail("this ring belongs to another user");
+    }
     if (flock(segment, LOCK_EX | LOCK_NB) != 0) fail("another driver writes this ring");
-    if (status.st_size == 0 && posix_fallocate(segment, 0, (off_t)bytes) != 0) fail(name);
     if (status.st_size == 0 || (size_t)status.st_size == bytes) {
+      if (posix_fallocate(segment, 0, (off_t)bytes) != 0) fail(name);
       ring = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, segment, 0);
       if (ring == MAP_FAILED) fail(name);
       if (status.st_size == 0)

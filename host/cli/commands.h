@@ -85,8 +85,9 @@ struct StreamOptions : PrintOptions {
   bool repeat = false;
   std::uint32_t serial_baud = 2'000'000;
   std::vector<std::string> sinks;
-  std::string record;   ///< file of raw frames; empty: none
-  std::string control;  ///< socket, "-" for standard input, empty: none
+  std::vector<std::string> allowed_origins;  ///< of web pages
+  std::string record;                        ///< file of raw frames; empty: none
+  std::string control;                       ///< socket, "-" for standard input, empty: none
   Replace replace = Replace::results;
   double tare_s = 0;  ///< duration of a tare at the start; 0: none
   std::optional<double> seconds;

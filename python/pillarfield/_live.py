@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Any, Optional
 
@@ -49,7 +49,8 @@ class LiveSource:
 
     @property
     def health(self) -> dict[str, Any]:
-        """What came and what did not: frames, lost, incomplete, late, ..., rate_hz."""
+        """What came and what did not: frames, lost, incomplete, late, ..., rate_hz; as mismatch, the
+        size of frames that came instead, or ''."""
         return self._frames.health()
 
     def receive(self, timeout_s: float) -> Optional[Frame]:
@@ -104,8 +105,8 @@ class LiveSink:
     """Passes forces on without waiting for who receives them; sink() opens one."""
 
     def __init__(self, target: str, plan: _core.Plan, *, contacts: bool = False, source: str = "",
-                 overwrite: bool = False) -> None:
-        self._sink = _core.LiveSink(target, plan, contacts, source, overwrite)
+                 overwrite: bool = False, allow_origins: Sequence[str] = ()) -> None:
+        self._sink = _core.LiveSink(target, plan, contacts, source, overwrite, list(allow_origins))
         self._contacts = contacts
         self._sent = 0
 
@@ -119,7 +120,8 @@ class LiveSink:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """frames, dropped, clients, refused, and the failure that stopped it, or ''."""
+        """frames, dropped, clients, refused; the failure that stopped it, or ''; and as notice the
+        first client refused for its origin, or ''."""
         return self._sink.statistics()
 
     def close(self, finish: bool = True) -> None:
@@ -135,7 +137,7 @@ class LiveSink:
 
 
 def sink(target: str, plan: _core.Plan, *, contacts: bool = False, source: str = "",
-         overwrite: bool = False) -> LiveSink:
+         overwrite: bool = False, allow_origins: Sequence[str] = ()) -> LiveSink:
     """Opens a live sink for the forces of a Processor of this plan.
 
     target: 'foxglove:[ADDRESS:]PORT', 'udp:ADDRESS:PORT', 'shm:NAME', a .mcap file or a file of
@@ -143,7 +145,9 @@ def sink(target: str, plan: _core.Plan, *, contacts: bool = False, source: str =
     contacts: forces come with contacts
     source: name of the frames' source, for files
     overwrite: replace any file, not only other results
+    allow_origins: web pages that may connect to 'foxglove:', such as 'https://app.foxglove.dev'
 
     Raises Error for another target or one that cannot be opened.
     """
-    return LiveSink(target, plan, contacts=contacts, source=source, overwrite=overwrite)
+    return LiveSink(target, plan, contacts=contacts, source=source, overwrite=overwrite,
+                    allow_origins=allow_origins)

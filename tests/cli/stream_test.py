@@ -1,5 +1,6 @@
 """`pillarfield stream`: frames of files and of sockets through the solver to files and sockets."""
 
+import itertools
 import json
 import os
 import signal
@@ -7,6 +8,7 @@ import socket
 import stat
 import struct
 import subprocess
+import threading
 import time
 import unittest
 
@@ -15,7 +17,7 @@ import numpy as np
 
 from command import BALL, PROGRAM, CommandTest, run
 
-PATIENCE_S = 60
+PATIENCE_S = 600
 
 
 def wait_for(condition, what):
@@ -124,6 +126,16 @@ class Replay(StreamTest):
         with h5py.File(forces) as file:
             self.assertEqual(len(file["force/normal"]), solved)
 
+    def test_a_reader_that_ends_completes_the_files(self):
+        copy = self.folder / "copy.h5"
+        process = self.started(self.recording, "--repeat", "--record", copy, "--json",
+                               "--health-interval", 0.1)
+        process.stdout.readline()
+        process.stdout.close()
+        self.assertEqual(process.wait(PATIENCE_S), 0)
+        with h5py.File(copy) as file:
+            self.assertGreater(len(file["frames/raw"]), 0)
+
     def test_a_killed_run_leaves_the_flushed_frames_of_its_recording(self):
         copy = self.folder / "copy.h5"
         process = self.started(self.recording, "--repeat", "--rate", 500, "--record", copy,
@@ -160,7 +172,7 @@ class Replay(StreamTest):
                 (("nothing.h5",), ("nothing.h5",)),
                 ((self.recording, "--to", "nowhere"), ("nowhere", ".mcap")),
                 ((self.recording, "--to", "udp:127.0.0.1:99999"), ("99999",)),
-                ((self.recording, "--control", self.recording), ("no socket",)),
+                ((self.recording, "--control", self.recording), ("not a socket",)),
                 ((self.recording, "--record", self.recording), (str(self.recording),)),
                 ((self.recording, "--follow-baseline", 3), ("--rate",))]:
             self.assert_fails("stream", *arguments, names=names)
@@ -195,6 +207,57 @@ class Patches(StreamTest):
                 normal = file["force/normal"][:]
                 self.assertEqual(normal.shape, (20, side // 2, side // 2))
                 np.testing.assert_allclose(normal, reading / file.attrs["counts_per_newton"])
+
+
+class Network(StreamTest):
+    def test_frames_of_another_size_are_named_once(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            address = probe.getsockname()
+        rows, done = [8], threading.Event()
+
+        def send():
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+                for number in itertools.count():
+                    size = 16 * rows[0]
+                    out.sendto(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, rows[0], 16, 0, number, 0, 0,
+                                           1, 0, 0, 0, size) + bytes(size), address)
+                    if done.wait(0.01):
+                        return
+
+        sender = threading.Thread(target=send)
+        calibration = self.folder / "skin.h5"
+        np.save(self.folder / "idle.npy", np.zeros((20, 12, 16), np.uint8))
+        run("calibrate", "tare", self.folder / "idle.npy", "-o", calibration)
+        process = self.started(f"udp:127.0.0.1:{address[1]}", "--calibration", calibration, "--json",
+                               "--health-interval", 0.1)
+        sender.start()
+        self.addCleanup(lambda: (done.set(), sender.join()))
+        self.assertIn("frames are 8 x 16, 12 x 16 expected", process.stderr.readline())
+        rows[0] = 12
+        while json.loads(process.stdout.readline())["health"]["solved"] < 3:
+            pass
+        rows[0] = 20
+        for _ in range(5):
+            while "mismatch" not in json.loads(process.stdout.readline())["health"]:
+                pass
+        process.send_signal(signal.SIGINT)
+        errors = process.communicate(timeout=PATIENCE_S)[1]
+        self.assertEqual((process.returncode, errors.count("20 x 16, 12 x 16 expected")), (0, 1))
+
+    def test_web_pages_must_be_allowed(self):
+        process = self.started(self.scene, "--repeat", "--to", "foxglove:0", "--json",
+                               "--allow-origin", "https://app.foxglove.dev", "--health-interval",
+                               0.1)
+        [sink] = json.loads(process.stdout.readline())["health"]["sinks"]
+        for page, status in (("https://app.foxglove.dev", b"101"), ("https://evil.example", b"403")):
+            with socket.create_connection(("127.0.0.1", int(sink["name"].rsplit(":", 1)[1]))) as client:
+                client.sendall(f"GET / HTTP/1.1\r\nHost: localhost\r\nOrigin: {page}\r\nUpgrade: "
+                               "websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                               "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n"
+                               "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n".encode())
+                self.assertEqual(client.recv(12)[9:], status)
+        self.assertIn("refused the web page https://evil.example", process.stderr.readline())
 
 
 class ControlLines(StreamTest):
@@ -254,6 +317,62 @@ class ControlLines(StreamTest):
         with h5py.File(copy) as file:
             np.testing.assert_array_equal(file["calibration/tare"][:], raw)
             self.assertFalse(file["frames/missing"][:].any())
+
+    def test_an_answer_comes_after_the_client_closed_its_sending_side(self):
+        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
+        self.control().say("health")
+        client = socket.socket(socket.AF_UNIX)
+        client.settimeout(PATIENCE_S)
+        client.connect(str(self.socket))
+        client.sendall(b"tare 0.7\n")
+        client.shutdown(socket.SHUT_WR)
+        parts = []
+        while part := client.recv(4096):
+            parts.append(part)
+        client.close()
+        self.assertIn("touched", json.loads(b"".join(parts))["error"])
+        self.assertGreater(len(parts), 2)  # socat leaves where nothing comes for half a second.
+        self.control().say("quit")
+        self.ended(process)
+
+    def test_the_command_that_controls(self):
+        def control(*words, **options):
+            return json.loads(run("control", self.socket, *words, **options).stdout)
+
+        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
+        wait_for(self.socket.exists, "the control socket")
+        self.assertGreaterEqual(control("health")["health"]["frames"], 0)
+        self.assertEqual(control("pause"), {"ok": True, "done": "pause"})
+        control("resume")
+        self.assertIn("touched", control("tare", 0.1, expect=1)["error"])
+        self.assertEqual(control("tare", 0.1, "preloaded"), {"ok": True, "done": "tare"})
+        control("record", "a copy.h5", cwd=self.folder)
+        control("record", "stop")
+        self.assertTrue((self.folder / "a copy.h5").exists())
+        control("hold", expect=1)
+        control("quit")
+        self.ended(process)
+        self.assert_fails("control", self.socket, "health", names=("no stream listens",))
+
+    def test_a_name_lies_in_the_private_folder(self):
+        private = {"env": dict(os.environ, XDG_RUNTIME_DIR=str(self.folder))}
+        process = self.started(self.scene, "--repeat", "--control", "skin", "--json", **private)
+        wait_for((self.folder / "skin").exists, "the control socket")
+        run("control", "skin", "quit", **private)
+        self.ended(process)
+
+    def test_a_socket_whose_owner_is_busy_is_neither_waited_for_nor_removed(self):
+        owner = socket.socket(socket.AF_UNIX)
+        self.addCleanup(owner.close)
+        owner.bind(str(self.socket))
+        owner.listen(0)
+        for _ in range(3):
+            client = socket.socket(socket.AF_UNIX)
+            self.addCleanup(client.close)
+            client.setblocking(False)
+            client.connect_ex(str(self.socket))
+        self.assert_fails("stream", self.recording, "--control", self.socket, names=("listens",))
+        self.assertTrue(self.socket.exists())
 
     def test_rubbish_and_many_clients_do_no_harm(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")

@@ -42,15 +42,23 @@ class RawClient {
     static_cast<void>(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL));
   }
 
-  /// Shakes hands; returns the two messages of greeting.
-  std::string greet() {
-    write(
-        "GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: upgrade\r\n"
-        "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n"
-        "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n");
+  /// Shakes hands, with an Origin unless it is empty; returns the status of the answer.
+  std::string shake_hands(const std::string& origin, const std::string& host) {
+    write("GET / HTTP/1.1\r\nHost: " + host +
+          "\r\nUpgrade: websocket\r\nConnection: upgrade\r\n"
+          "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n"
+          "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n" +
+          (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n");
     while (received_.find("\r\n\r\n") == std::string::npos && receive()) {
     }
+    const std::string status = received_.substr(received_.find(' ') + 1, 3);
     received_.erase(0, received_.find("\r\n\r\n") + 4);
+    return status;
+  }
+
+  /// Shakes hands; returns the two messages of greeting.
+  std::string greet() {
+    EXPECT_EQ(shake_hands("", "127.0.0.1"), "101");
     return message().value_or("") + message().value_or("");
   }
 
@@ -192,6 +200,43 @@ TEST_F(FoxgloveServerTest, PlacesOfClientsAreFreedAgain) {
   EXPECT_FALSE(two.greet().empty());
   RawClient three(server_->port());
   EXPECT_TRUE(three.is_closed());
+  EXPECT_EQ(statistics().refused, 1u);
+}
+
+TEST_F(FoxgloveServerTest, WebPagesMustBeAllowed) {
+  serve({.allowed_origins = {"https://app.foxglove.dev", "http://robot.example:80"}});
+  const auto status = [&](const std::string& origin, const std::string& host) {
+    return RawClient(server_->port()).shake_hands(origin, host);
+  };
+  for (const char* origin : {"", "file://", "http://localhost:3000", "https://127.0.0.1",
+                             "http://[::1]:8080", "https://app.foxglove.dev"}) {
+    EXPECT_EQ(status(origin, "localhost:8765"), "101") << origin;
+  }
+  for (const char* host : {"192.0.2.7:8765", "[2001:db8::7]:8765", "robot.example:8765"}) {
+    EXPECT_EQ(status("", host), "101") << host;
+  }
+  EXPECT_EQ(statistics().notice, "");
+  for (const char* origin :
+       {"https://evil.example", "null", "http://localhost.evil.example",
+        "https://127.0.0.1.evil.example", "https://app.foxglove.dev.evil.example", "file://x"}) {
+    EXPECT_EQ(status(origin, "127.0.0.1:8765"), "403") << origin;
+  }
+  EXPECT_EQ(status("", "evil.example:8765"), "403");
+  EXPECT_EQ(statistics().refused, 7u);
+  EXPECT_EQ(statistics().notice,
+            "refused the web page https://evil.example; --allow-origin https://evil.example admits "
+            "it");
+}
+
+TEST_F(FoxgloveServerTest, ClientsThatFloodWithPingsAreDisconnected) {
+  serve({.controls_per_s = 10});
+  RawClient client(server_->port());
+  client.greet();
+  const std::string ping("\x89\x80\0\0\0\0", 6);
+  for (int i = 0; i < 10; ++i) client.write(ping);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(client.message(), "");
+  for (int i = 0; i < 5000; ++i) client.write(ping);
+  EXPECT_TRUE(client.is_closed());
   EXPECT_EQ(statistics().refused, 1u);
 }
 

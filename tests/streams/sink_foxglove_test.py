@@ -133,7 +133,7 @@ class FoxgloveTest(SinkTest):
         with self.assertRaises(Closed):
             WebSocket(port, protocols=("other",))
         with socket.create_connection(("127.0.0.1", port)) as plain:
-            plain.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+            plain.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
             self.assertEqual(plain.recv(100), b"")
 
     def test_clients_beyond_the_limit_are_refused(self):

@@ -28,7 +28,7 @@ class WebSocket:
         self.socket = socket.create_connection((host, port), timeout=20)
         self.received = b""
         try:
-            self.shake_hands(f"{host}:{port}", protocols)
+            self.shake_hands(f"[{host}]:{port}" if ":" in host else f"{host}:{port}", protocols)
         except BaseException:
             self.socket.close()
             raise

@@ -479,6 +479,11 @@ SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
 OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) {
   LiveSourceOptions live;
   live.stop = options.stop;
+  live.say = options.say;
+  if (!options.calibration.empty()) {
+    const auto stated = read_calibration_file(options.calibration, options.producer.read);
+    live.size = {stated.rows, stated.cols};
+  }
   std::unique_ptr<FrameStream> stream = open_live_source(source, live);
   if (stream == nullptr) return {};
   const SolverPlan plan = live_plan(*stream, options);

@@ -43,9 +43,10 @@ class LiveControl {
 
 struct LiveOptions {
   ProducerOptions producer = {};
-  std::optional<double> counts_per_newton = {};  ///< unset: that of the skin
-  std::filesystem::path calibration = {};        ///< a file; empty: none
-  std::function<bool()> stop = {};               ///< gives up waiting for the first frame
+  std::optional<double> counts_per_newton = {};      ///< unset: that of the skin
+  std::filesystem::path calibration = {};            ///< a file; empty: none
+  std::function<bool()> stop = {};                   ///< gives up waiting for the first frame
+  std::function<void(const std::string&)> say = {};  ///< as LiveSourceOptions has it
 };
 
 /// Solves every frame of a sensor as it arrives, by a Pipeline in a thread of its own, and hands

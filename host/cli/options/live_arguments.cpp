@@ -14,6 +14,11 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
             "Send forces on, any number of times: shm:NAME, udp:ADDRESS:PORT, foxglove[:PORT], "
             "FILE.mcap, or a file as solve writes it")
       ->allow_extra_args(false);
+  output
+      .text("--allow-origin", options.allowed_origins, "ORIGIN",
+            "Let a web page connect to foxglove, any number of times, such as "
+            "https://app.foxglove.dev")
+      ->allow_extra_args(false);
   output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
   add_overwrite(command, options.replace);
   Group run(command, "Run");

@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <future>
 #include <sstream>
 #include <utility>
@@ -54,6 +56,7 @@ nlohmann::ordered_json sink_json(const LiveSink& sink) {
                                  {"clients", statistics.clients},
                                  {"refused", statistics.refused}};
   if (!statistics.failure.empty()) json["failure"] = statistics.failure;
+  if (!statistics.notice.empty()) json["notice"] = statistics.notice;
   return json;
 }
 
@@ -144,6 +147,7 @@ class StreamSession::Sinks final : public ForceSink {
     for (const auto& sink : sinks_) {
       sink->report(health);
       note_failure(*sink);
+      tell_notice(*sink);
     }
   }
 
@@ -157,6 +161,13 @@ class StreamSession::Sinks final : public ForceSink {
     std::future<void> done = {};
   };
 
+  void tell_notice(const LiveSink& sink) {
+    const std::string notice = sink.statistics().notice;
+    if (notice.empty() || std::ranges::count(noticed_, sink.name()) > 0) return;
+    noticed_.push_back(sink.name());
+    fmt::print(stderr, "pillarfield: {}: {}\n", printable(sink.name()), printable(notice));
+  }
+
   void note_failure(const LiveSink& sink) {
     const std::string failure = sink.statistics().failure;
     if (failure.empty() || std::ranges::count(failed_, sink.name()) > 0) return;
@@ -168,6 +179,7 @@ class StreamSession::Sinks final : public ForceSink {
   std::vector<std::unique_ptr<LiveSink>> sinks_;
   std::vector<Finishing> finishing_;
   std::vector<std::string> failed_;
+  std::vector<std::string> noticed_;  ///< sinks whose notice was told
 };
 
 StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
@@ -286,6 +298,10 @@ void StreamSession::report_health() {
   last_health_ = health();
   next_report_ = now + nanoseconds_of(options_.health_interval_s);
   sinks_->report(last_health_);
+  const std::string& mismatch = last_health_.stream.mismatch;
+  if (!mismatch.empty() && !std::exchange(mismatch_told_, true)) {
+    fmt::print(stderr, "pillarfield: {}: {}\n", printable(options_.source), mismatch);
+  }
   show(last_health_);
   recent_latencies_.clear();
 }
@@ -311,18 +327,25 @@ nlohmann::ordered_json StreamSession::health_json(const HealthReport& health) co
       {"sensels", {{"dead", health.dead}, {"stuck", health.stuck}, {"drifting", health.drifting}}},
       {"contacts", contacts_},
       {"paused", paused_}};
+  if (!stream.mismatch.empty()) json["mismatch"] = stream.mismatch;
   if (!recording_.empty()) json["recording"] = recording_;
   json["sinks"] = nlohmann::ordered_json::array();
   for (const auto& sink : sinks_->all()) json["sinks"].push_back(sink_json(*sink));
   return json;
 }
 
+/// Prints a line; if its reader is gone, ends the run as an interrupt does.
+void StreamSession::print_line(const std::string& line) {
+  std::fputs((line + '\n').c_str(), stdout);
+  if (std::fflush(stdout) == 0 || errno != EPIPE) return;
+  quit_ = true;
+  [[maybe_unused]] const std::FILE* const nowhere = std::freopen("/dev/null", "w", stdout);
+}
+
 /// A line of JSON, or on a terminal a line that each report draws anew.
 void StreamSession::show(const HealthReport& health) {
   if (options_.json) {
-    fmt::print("{}\n", json_text({{"health", health_json(health)}}));
-    std::fflush(stdout);
-    return;
+    return print_line(json_text({{"health", health_json(health)}}));
   }
   if (options_.quiet || isatty(STDERR_FILENO) != 1) return;
   const StreamHealth& stream = health.stream;

@@ -55,6 +55,7 @@ class StreamSession {
   [[nodiscard]] HealthReport health() const;
   [[nodiscard]] nlohmann::ordered_json health_json(const HealthReport& health) const;
   void show(const HealthReport& health);
+  void print_line(const std::string& line);
 
   std::string obey(std::uint64_t client, std::string_view line);
   std::string start_tare(std::uint64_t client, const std::vector<std::string>& words);
@@ -88,6 +89,7 @@ class StreamSession {
   double replay_hz_ = 0;  ///< over the last report
   HealthReport last_health_;
   bool line_drawn_ = false;
+  bool mismatch_told_ = false;
 };
 
 }  // namespace pillarfield::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <filesystem>
 #include <optional>
 
@@ -12,12 +13,25 @@
 #include "cli/stream/replay.h"
 #include "cli/stream/session.h"
 #include "io/extension.h"
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
 #include "pillarfield/printable.h"
+#include "pillarfield/scene.h"
 
 namespace pillarfield::cli {
 namespace {
+
+/// The size of frames that the calibration or the scene states.
+std::optional<FrameSize> stated_size(const PlanOptions& options) {
+  if (!options.calibration.empty()) {
+    const SkinCalibration calibration = read_calibration_file(options.calibration, options.read);
+    return FrameSize{calibration.rows, calibration.cols};
+  }
+  if (options.scene.empty()) return std::nullopt;
+  const Skin skin = load_scene(options.scene).skin;
+  return FrameSize{skin.rows, skin.cols};
+}
 
 std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   if (!is_live_source(options.source)) {
@@ -30,6 +44,10 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   LiveSourceOptions live;
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
+  live.size = stated_size(options.plan);
+  live.say = [&](const std::string& words) {
+    fmt::print(stderr, "pillarfield: {}: {}\n", printable(options.source), words);
+  };
   return open_live_source(options.source, live);
 }
 
@@ -71,6 +89,7 @@ LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, con
   info.sensel_type = plan.sensel_type;
   info.calibration = plan.calibration;
   info.replace = options.replace;
+  info.allowed_origins = options.allowed_origins;
   ForceFileInfo& forces = info.forces;
   forces.rows = plan.skin.pillar_rows();
   forces.cols = plan.skin.pillar_cols();
@@ -97,6 +116,8 @@ std::vector<std::filesystem::path> files_read(const StreamOptions& options) {
 }
 
 void stream(const StreamOptions& options) {
+  // A reader of standard output that ends, as `head` does, must not end the recording.
+  std::signal(SIGPIPE, SIG_IGN);
   check_files(options);
   const std::unique_ptr<FrameStream> source = opened_source(options);
   if (!source) return;  // Interrupted before a frame came.

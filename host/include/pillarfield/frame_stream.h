@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pillarfield/calibration.h"
@@ -42,6 +43,9 @@ struct StreamHealth {
   std::uint64_t clock_jumps = 0;  ///< sensor times that went back, or ahead by over a second
   std::uint64_t overrun = 0;      ///< packets or ring slots that came faster than they were read
   double rate_hz = 0;             ///< frames per second, over about the last second
+  /// What came instead of frames of this stream: "frames are 32 x 32, 40 x 60 expected", rows and
+  /// columns of sensels; empty: nothing.
+  std::string mismatch = {};
 };
 
 /// Result of FrameStream::next().

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pillarfield/force_file.h"
 #include "pillarfield/frame_stream.h"
+#include "pillarfield/read_options.h"
 
 namespace pillarfield {
 
@@ -18,6 +20,11 @@ struct LiveSourceOptions {
   /// Skin constants other than rows and columns, which the frames bring, and the calibration.
   Skin skin = {};
   Calibration calibration = {};
+  /// The size of the frames, where it is known. `udp:`, to which anyone may send, waits for frames
+  /// of this size; with another source, frames of another size are an Error.
+  std::optional<FrameSize> size = {};
+  /// Called once with StreamHealth::mismatch while frames of `size` are waited for.
+  std::function<void(const std::string&)> say = {};
   /// Called about ten times a second while no frame has arrived yet; true gives up.
   std::function<bool()> stop = {};
   std::uint32_t serial_baud = 2'000'000;  ///< of `serial:`
@@ -27,11 +34,12 @@ struct LiveSourceOptions {
 /// shared memory), `udp:ADDRESS:PORT` or `serial:DEVICE` (docs/streams.md).
 [[nodiscard]] bool is_live_source(std::string_view source);
 
-/// Opens a live source and waits for its first valid packet, which gives size and type of the
-/// frames. Its streams follow a sensor that stops and starts again. next() never throws for what a
-/// sensor sends: invalid packets are counted in health(). Returns null if LiveSourceOptions::stop
-/// gave up. Throws Error if the name is none of a live source, the source cannot be opened (a
-/// ring that does not exist yet is waited for), or the calibration does not fit the frames.
+/// Opens a live source and waits for its first frame, or as many bytes of packets as one has, which
+/// gives size and type of the frames; memory for them is allocated then. Its streams follow a
+/// sensor that stops and starts again. next() never throws for what a sensor sends: invalid packets
+/// are counted in health(). Returns null if LiveSourceOptions::stop gave up. Throws Error if the
+/// name is none of a live source, the source cannot be opened (a ring that does not exist yet is
+/// waited for), or the calibration or the size does not fit the frames.
 [[nodiscard]] std::unique_ptr<FrameStream> open_live_source(const std::string& source,
                                                             const LiveSourceOptions& options);
 
@@ -42,6 +50,7 @@ struct LiveSinkStatistics {
   std::uint64_t clients = 0;  ///< connected now
   std::uint64_t refused = 0;  ///< clients refused or disconnected by a limit
   std::string failure = {};   ///< why it stopped; empty while it works
+  std::string notice = {};    ///< the first client refused for where it comes from; empty: none
 };
 
 /// The state of a live run, about once a second.
@@ -76,6 +85,9 @@ struct LiveSinkInfo {
   SenselType sensel_type = SenselType::u8;
   Calibration calibration = {};        ///< for recordings of raw frames
   Replace replace = Replace::results;  ///< which existing file a sink of files may replace
+  /// Web pages, such as "https://app.foxglove.dev", that may connect to a server; programs and
+  /// pages of this computer always may.
+  std::vector<std::string> allowed_origins = {};
 };
 
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "streams/source/restart_limits.h"
 
 namespace pillarfield {
 namespace {
@@ -54,9 +55,13 @@ bool RingReader::attach() {
   }
   struct stat status = {};
   fstat(segment.get(), &status);
+  const bool is_foreign = status.st_uid != geteuid() && status.st_uid != 0;
+  if (is_foreign && !layout_) {
+    throw Error(name_, "belongs to another user", "give the name of a ring of your own");
+  }
   std::swap(segment_, segment);
   const auto ring = load<PillarfieldRing>(0);
-  if (ring.magic != 0 && fits(ring, static_cast<std::uint64_t>(status.st_size))) {
+  if (ring.magic != 0 && !is_foreign && fits(ring, static_cast<std::uint64_t>(status.st_size))) {
     head_ = Mapping(segment_, sizeof ring, false);
   }
   if (head_.data() == nullptr) {
@@ -80,6 +85,7 @@ bool RingReader::attach() {
 
 bool RingReader::fits(const PillarfieldRing& ring, std::uint64_t bytes) {
   const bool valid = is_valid(ring, bytes) && layout_of(ring).kind == kind_;
+  if (valid && layout_ && layout_of(ring) != *layout_) other_ = layout_of(ring);
   if (layout_) return valid && layout_of(ring) == *layout_;
   if (valid) return true;
   throw Error(name_,
@@ -107,7 +113,7 @@ void RingReader::detach_if_replaced() {
 }
 
 void RingReader::skip_to(std::uint64_t number) {
-  overrun_ += number - next_;
+  if (number - next_ <= kFarAhead) overrun_ += number - next_;  // else the writer counts anew
   next_ = number;
 }
 

@@ -20,7 +20,7 @@ class RingReader {
   RingReader(const std::string& name, PillarfieldRingKind kind);
 
   /// Opens the ring if it exists; whether it is open. Throws Error if the segment is none of this
-  /// kind, or may not be read.
+  /// kind, belongs to another user than this one or root, or may not be read.
   bool open();
 
   /// The layout of the first ring; later ones must have it too. Set once the ring was open.
@@ -35,6 +35,8 @@ class RingReader {
   [[nodiscard]] std::uint64_t overrun() const { return overrun_; }
   /// Segments that did not fit.
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
+  /// The layout of the latest ring of this kind that did not fit.
+  [[nodiscard]] const std::optional<RingLayout>& other() const { return other_; }
   void clear_counts() { overrun_ = invalid_ = 0; }
 
  private:
@@ -58,6 +60,7 @@ class RingReader {
   std::uint64_t rejected_inode_ = 0;
   Time checked_{0};  ///< when a replacement was last looked for
   std::optional<RingLayout> layout_;
+  std::optional<RingLayout> other_;
   std::vector<std::byte> slot_;
   std::uint64_t next_ = 0;
   std::uint64_t overrun_ = 0;

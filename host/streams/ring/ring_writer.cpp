@@ -41,6 +41,7 @@ RingWriter::RingWriter(const std::string& name, const RingLayout& layout, std::u
   layout_.type = layout.type;
   layout_.slots = slots;
   layout_.slot_bytes = (*content + 63) / 64 * 64;
+  guard_.begin();
   // Another process may unlink the segment between two steps.
   for (int attempts = 0; !open(); ++attempts) {
     if (attempts == 100) throw Error(name_, "is unlinked again and again", "give another name");
@@ -48,6 +49,7 @@ RingWriter::RingWriter(const std::string& name, const RingLayout& layout, std::u
   number_ = ring().published;
   ring().session = draw_session();
   store(ring().closed, 0U);
+  guard_.end();
 }
 
 RingWriter::~RingWriter() { close(); }
@@ -70,8 +72,9 @@ bool RingWriter::open() {
   fstat(segment_.get(), &status);
   if (status.st_nlink == 0) return false;
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size == 0) create(bytes);
+  if (size == 0 || size == bytes) allocate(bytes);
   memory_ = Mapping(segment_, bytes, true);
+  guard_.watch({memory_.data(), bytes});
   if (memory_.data() == nullptr) throw Error(name_, std::strerror(errno), "free some memory");
   if (size == 0) {
     PillarfieldRing unfinished = layout_;
@@ -87,8 +90,8 @@ bool RingWriter::open() {
   return false;
 }
 
-/// Allocates the memory of a new segment.
-void RingWriter::create(std::uint64_t bytes) {
+/// Allocates all memory of the segment, of which that of a killed writer may lack some.
+void RingWriter::allocate(std::uint64_t bytes) {
   const int failure = posix_fallocate(segment_.get(), 0, static_cast<off_t>(bytes));
   if (failure != 0) {
     shm_unlink(segment_name_.c_str());
@@ -98,6 +101,7 @@ void RingWriter::create(std::uint64_t bytes) {
 }
 
 std::span<std::byte> RingWriter::begin() {
+  guard_.begin();
   std::byte* const slot = memory_.data() + slot_offset(layout_, number_);
   std::atomic_ref(*reinterpret_cast<std::uint64_t*>(slot))
       .store(2 * number_ + 1, std::memory_order_relaxed);
@@ -105,18 +109,22 @@ std::span<std::byte> RingWriter::begin() {
   return {slot, layout_.slot_bytes};
 }
 
-void RingWriter::publish() {
+bool RingWriter::publish() {
   std::byte* const slot = memory_.data() + slot_offset(layout_, number_);
   store(*reinterpret_cast<std::uint64_t*>(slot), 2 * number_ + 2);
   ++number_;
   store(ring().published, number_);
   store(ring().signal, static_cast<std::uint32_t>(number_));
   wake_waiting(reinterpret_cast<std::byte*>(&ring().signal));
+  guard_.end();
+  return !guard_.is_cut();
 }
 
 void RingWriter::close() {
   if (memory_.data() == nullptr) return;
+  guard_.begin();
   store(ring().closed, 1U);
+  guard_.end();
   wake_waiting(reinterpret_cast<std::byte*>(&ring().signal));
   // Another segment may have the name by now.
   const Descriptor named(shm_open(segment_name_.c_str(), O_RDONLY | O_CLOEXEC, 0));

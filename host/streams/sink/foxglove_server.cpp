@@ -14,6 +14,7 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <semaphore>
 #include <set>
@@ -24,6 +25,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/sink/foxglove_protocol.h"
+#include "streams/sink/web_origin.h"
 
 namespace pillarfield {
 namespace {
@@ -69,6 +71,8 @@ struct Hub {
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> lost = 0;
   std::atomic<unsigned long> subscribed = 0;
+  mutable std::mutex mutex;  // guards `notice`
+  std::string notice;        // why a client was refused; the first one
 
   void update_subscribed();
 };
@@ -96,6 +100,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void write();
   void closed(ErrorCode) { end(); }
   void refuse();
+  void forbid(const std::string& why);
+  void count_control();
   void end();
 
   /// Binds a member function to a result of an operation and the life of the session.
@@ -111,11 +117,14 @@ class Session : public std::enable_shared_from_this<Session> {
   websocket::stream<beast::tcp_stream> socket_;
   asio::steady_timer pause_;
   http::request<http::empty_body> request_;
+  http::response<http::string_body> forbidden_;
   beast::flat_buffer buffer_;
   Subscriptions subscriptions_;
   std::deque<Outgoing> queue_;  // the first is being written
   std::size_t queued_bytes_ = 0;
   std::size_t invalid_ = 0;
+  std::size_t controls_ = 0;  // in the second from `controls_since_` on
+  std::chrono::steady_clock::time_point controls_since_;
   bool is_client_ = false;  // after the handshake
   bool is_closing_ = false;
   bool has_ended_ = false;
@@ -137,6 +146,13 @@ void Session::start() {
 
 void Session::accept_upgrade(ErrorCode error) {
   if (error) return refuse();
+  const auto text = [this](http::field field) {
+    const auto value = request_[field];
+    return std::string_view(value.data(), value.size());
+  };
+  const std::string why =
+      refusal_of(text(http::field::origin), text(http::field::host), hub_.limits.allowed_origins);
+  if (!why.empty()) return forbid(why);
   const std::string subprotocol = chosen_subprotocol(request_);
   if (!websocket::is_upgrade(request_) || subprotocol.empty()) return refuse();
   beast::get_lowest_layer(socket_).expires_never();  // The WebSocket has timeouts of its own.
@@ -151,6 +167,7 @@ void Session::accept_upgrade(ErrorCode error) {
       }));
   socket_.read_message_max(hub_.limits.message_bytes);
   socket_.auto_fragment(false);
+  socket_.control_callback([this](websocket::frame_type, beast::string_view) { count_control(); });
   socket_.async_accept(request_, then(&Session::greet));
 }
 
@@ -245,6 +262,33 @@ void Session::close(websocket::close_code code) {
 void Session::refuse() {
   ++hub_.refused;
   end();
+}
+
+/// Counts a ping or pong, of which a flood of any length comes within one message.
+void Session::count_control() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - controls_since_ >= std::chrono::seconds(1)) {
+    controls_since_ = now;
+    controls_ = 0;
+  }
+  // Not at once, since the caller still uses the socket.
+  if (++controls_ == hub_.limits.controls_per_s + 1) {
+    asio::post(socket_.get_executor(), [self = shared_from_this()] { self->refuse(); });
+  }
+}
+
+/// Answers a request that may not connect.
+void Session::forbid(const std::string& why) {
+  ++hub_.refused;
+  {
+    const std::scoped_lock lock(hub_.mutex);
+    if (hub_.notice.empty()) hub_.notice = why;
+  }
+  forbidden_ = {http::status::forbidden, request_.version(), why + "\n"};
+  forbidden_.set(http::field::content_type, "text/plain; charset=utf-8");
+  forbidden_.keep_alive(false);
+  forbidden_.prepare_payload();
+  http::async_write(socket_.next_layer(), forbidden_, then(&Session::closed));
 }
 
 void Session::end() {
@@ -405,6 +449,10 @@ void FoxgloveServer::add_to(LiveSinkStatistics& statistics) const {
   const Hub& hub = state_->hub;
   statistics.clients = hub.clients;
   statistics.refused = hub.refused;
+  {
+    const std::scoped_lock lock(hub.mutex);
+    statistics.notice = hub.notice;
+  }
   statistics.dropped += hub.lost;
 }
 

@@ -19,8 +19,10 @@ struct ServerLimits {
   std::size_t message_bytes = std::size_t{64} << 10;  ///< of a client
   std::size_t invalid_messages = 16;                  ///< then the client is disconnected
   std::size_t queue_bytes = std::size_t{8} << 20;     ///< that wait for one client
+  std::size_t controls_per_s = 1000;                  ///< pings and pongs; then disconnected
   double handshake_s = 5;
-  double silence_s = 30;  ///< without an answer to pings
+  double silence_s = 30;                          ///< without an answer to pings
+  std::vector<std::string> allowed_origins = {};  ///< as LiveSinkInfo has them
 };
 
 /// A message to the clients that subscribe to its topic.
@@ -30,8 +32,8 @@ struct ServerMessage {
   std::shared_ptr<const std::vector<std::byte>> bytes;
 };
 
-/// A WebSocket server of the Foxglove protocol, in a thread of its own. From a client it reads
-/// at most 1000 messages and 64 kB a second.
+/// A WebSocket server of the Foxglove protocol, in a thread of its own. Web pages must be allowed
+/// (refusal_of()). From a client it reads at most 1000 messages and 64 kB a second.
 class FoxgloveServer {
  public:
   /// Listens; port 0 is any free one. Throws Error, naming `target`, if it cannot.
@@ -54,7 +56,8 @@ class FoxgloveServer {
   /// Waits up to a second until the clients have received everything, and closes.
   void finish();
 
-  /// Sets `clients` and `refused`, and adds the frames that clients lost; any thread may ask.
+  /// Sets `clients`, `refused` and `notice`, and adds the frames that clients lost; any thread may
+  /// ask.
   void add_to(LiveSinkStatistics& statistics) const;
 
  private:

@@ -74,7 +74,8 @@ std::unique_ptr<LiveSink> create_foxglove_sink(const std::string& target,
   if (target.size() > kFoxglovePrefix.size()) {
     text = std::string_view(target).substr(kFoxglovePrefix.size());
   }
-  auto server = std::make_unique<FoxgloveServer>(address_of(text, target, 0), target);
+  auto server = std::make_unique<FoxgloveServer>(
+      address_of(text, target, 0), target, ServerLimits{.allowed_origins = info.allowed_origins});
   const std::string host = split_address(text).host;
   const bool is_v6 = host.find(':') != std::string::npos;
   const std::string name = fmt::format("{}{}{}{}:{}", kFoxglovePrefix, is_v6 ? "[" : "", host,

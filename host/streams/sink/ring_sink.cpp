@@ -103,7 +103,10 @@ void RingSink::append(const SolvedFrame& frame) {
     place += plane.size_bytes();
   }
   std::memcpy(place, forces.status.data(), forces.status.size());
-  writer_->publish();
+  if (!writer_->publish()) {
+    done_.failure = "another program shortened the shared memory";
+    return writer_.reset();
+  }
   ++done_.frames;
 }
 

@@ -9,6 +9,9 @@
 
 namespace pillarfield {
 
+/// Reads of bytes without a packet after which receive() returns, as of /dev/zero.
+inline constexpr int kMostReads = 64;
+
 /// What read_bytes() read: bytes, or why none.
 struct BytesRead {
   std::size_t bytes = 0;

@@ -32,7 +32,10 @@ FrameAssembler::FrameAssembler(const FrameShape& shape, PacketOrder order)
 void FrameAssembler::add(const Packet& packet) {
   const PillarfieldPacket& header = packet.header;
   const bool is_last_number = header.sequence == std::numeric_limits<std::uint64_t>::max();
-  if (is_last_number || shape_of(header) != shape_ || !is_intact(packet, shape_)) {
+  const auto shape = shape_of(header);
+  const bool intact = shape && is_intact(packet, *shape);
+  if (is_last_number || !intact || shape != shape_) {
+    if (intact && shape != shape_) other_ = shape;
     ++counts_.invalid;
     return;
   }

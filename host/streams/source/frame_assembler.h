@@ -49,6 +49,8 @@ class FrameAssembler {
   void discard();
 
   [[nodiscard]] const FrameShape& shape() const { return shape_; }
+  /// Shape of the latest packet that is sound, but of other frames.
+  [[nodiscard]] const std::optional<FrameShape>& other() const { return other_; }
   [[nodiscard]] StreamHealth health(Time now) const;
   void set_counts(const StreamHealth& counts) { counts_ = counts; }
 
@@ -85,6 +87,7 @@ class FrameAssembler {
   void merge_blocks(const Slot& slot);
 
   FrameShape shape_;
+  std::optional<FrameShape> other_;
   std::uint64_t window_;
   std::vector<Slot> slots_;
   FrameBuffer latest_;  ///< readings of the last frame delivered

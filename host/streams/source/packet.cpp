@@ -1,5 +1,6 @@
 #include "streams/source/packet.h"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -10,19 +11,6 @@ namespace {
 
 constexpr std::uint32_t kSide = PILLARFIELD_BLOCK_SIDE;
 constexpr std::size_t kChecksumBytes = 4;
-
-std::optional<SenselType> type_of(const PillarfieldPacket& header) {
-  switch (header.type) {
-    case PILLARFIELD_U8:
-      return SenselType::u8;
-    case PILLARFIELD_U16:
-      return SenselType::u16;
-    case PILLARFIELD_F32:
-      return SenselType::f32;
-    default:
-      return std::nullopt;
-  }
-}
 
 bool is_checked(const PillarfieldPacket& header) {
   return (header.content & PILLARFIELD_CHECKED) != 0;
@@ -65,6 +53,19 @@ bool names_blocks_of_frame(const Packet& packet, const FrameShape& shape) {
 
 }  // namespace
 
+std::optional<SenselType> reading_type(std::uint32_t type) {
+  switch (type) {
+    case PILLARFIELD_U8:
+      return SenselType::u8;
+    case PILLARFIELD_U16:
+      return SenselType::u16;
+    case PILLARFIELD_F32:
+      return SenselType::f32;
+    default:
+      return std::nullopt;
+  }
+}
+
 std::uint32_t FrameShape::block_cols() const { return (cols + kSide - 1) / kSide; }
 
 std::uint32_t FrameShape::blocks() const { return (rows + kSide - 1) / kSide * block_cols(); }
@@ -92,7 +93,7 @@ PillarfieldContent content_of(const PillarfieldPacket& header) {
 }
 
 std::optional<FrameShape> shape_of(const PillarfieldPacket& header) {
-  const auto type = type_of(header);
+  const auto type = reading_type(header.type);
   if (header.magic != PILLARFIELD_PACKET_MAGIC || !type || header.patch != 0) return std::nullopt;
   if ((header.content & ~PILLARFIELD_CHECKED) > PILLARFIELD_END) return std::nullopt;
   const FrameShape shape = {*type, header.rows, header.cols};
@@ -107,6 +108,14 @@ std::optional<FrameShape> shape_of(const PillarfieldPacket& header) {
   const std::size_t checksum = is_checked(header) ? kChecksumBytes : 0;
   if (!bytes || header.bytes != *bytes + checksum) return std::nullopt;
   return shape;
+}
+
+std::string mismatch_words(const FrameShape& came, const FrameShape& expected) {
+  if (came.rows == expected.rows && came.cols == expected.cols) {
+    return fmt::format("frames are {}, {} expected", name_of(came.type), name_of(expected.type));
+  }
+  return fmt::format("frames are {} x {}, {} x {} expected", came.rows, came.cols, expected.rows,
+                     expected.cols);
 }
 
 bool is_intact(const Packet& packet, const FrameShape& shape) {

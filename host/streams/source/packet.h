@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "pillarfield/frame.h"
 #include "pillarfield/stream_format.h"
@@ -49,6 +50,13 @@ struct Packet {
 /// Size and type of the packet's frame; none if a member of the header is out of range or
 /// contradicts another one.
 [[nodiscard]] std::optional<FrameShape> shape_of(const PillarfieldPacket& header);
+
+/// The type of readings that a packet or ring names as a PillarfieldReadingType.
+[[nodiscard]] std::optional<SenselType> reading_type(std::uint32_t type);
+
+/// What a user reads of frames that are not those of the stream: "frames are 32 x 32, 40 x 60
+/// expected".
+[[nodiscard]] std::string mismatch_words(const FrameShape& came, const FrameShape& expected);
 
 /// Whether the packet, whose header has a shape, is as long as the header says, has the right
 /// checksum, and names only blocks of the frame.

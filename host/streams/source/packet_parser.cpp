@@ -66,11 +66,6 @@ bool PacketParser::find_magic() {
   return false;
 }
 
-bool PacketParser::fits(const PillarfieldPacket& header) const {
-  const auto shape = shape_of(header);
-  return shape && (!shape_ || shape == shape_);
-}
-
 /// Grows the buffer, until the shape is final, for the packets of another shape.
 void PacketParser::make_room(const FrameShape& shape) {
   const std::size_t most = kHeaderBytes + shape.most_packet_bytes() + kReadBytes;
@@ -80,9 +75,10 @@ void PacketParser::make_room(const FrameShape& shape) {
 /// The packet's bytes that belong to it, header included: all, or those before the header of
 /// another packet, which shows that this one was cut short; only the magic if the checksum is
 /// wrong. None: bytes to come will tell.
-std::optional<std::size_t> PacketParser::valid_bytes(const Packet& packet) const {
+std::optional<std::size_t> PacketParser::valid_bytes(const Packet& packet) {
   const std::size_t all = kHeaderBytes + packet.bytes.size();
   if ((packet.header.content & PILLARFIELD_CHECKED) != 0) {
+    checked_ += all;
     return is_intact(packet, *shape_of(packet.header)) ? all : kMagic.size();
   }
   const std::string_view bytes = text();
@@ -91,7 +87,7 @@ std::optional<std::size_t> PacketParser::valid_bytes(const Packet& packet) const
     if (place >= all) return all;
     const bool has_header = bytes.size() - place >= kHeaderBytes;
     if (!has_header && !finished_) return std::nullopt;
-    if (has_header && fits(header_at(bytes, place))) return place;
+    if (has_header && fits(shape_of(header_at(bytes, place)))) return place;
   }
 }
 
@@ -100,8 +96,12 @@ PacketParser::Found PacketParser::find_packet(Packet& packet) {
   const Found unfinished = finished_ ? Found::rubbish : Found::more_needed;
   if (waiting() < kHeaderBytes) return unfinished;
   packet.header = header_at(text(), 0);
-  if (!fits(packet.header)) return Found::rubbish;
-  make_room(*shape_of(packet.header));
+  const auto shape = shape_of(packet.header);
+  if (!fits(shape)) {
+    if (shape) other_ = shape;
+    return Found::rubbish;
+  }
+  make_room(*shape);
   const std::size_t all = kHeaderBytes + packet.header.bytes;
   if (waiting() < all) return unfinished;
   packet.bytes = std::span(buffer_).subspan(begin_ + kHeaderBytes, packet.header.bytes);
@@ -119,7 +119,8 @@ PacketParser::Found PacketParser::find_packet(Packet& packet) {
 }
 
 bool PacketParser::next(Packet& packet) {
-  while (find_magic()) {
+  checked_ = 0;
+  while (!is_busy() && find_magic()) {
     switch (find_packet(packet)) {
       case Found::packet:
         return true;

@@ -13,7 +13,10 @@ namespace pillarfield {
 
 /// Finds packets in a stream of bytes, and finds them again after rubbish.
 ///
-///     while (!parser.next(packet)) parser.commit(read(fd, parser.space()));
+///     while (!parser.next(packet)) {
+///       if (parser.is_busy()) return;  // to look at the time, and call next() again
+///       parser.commit(read(fd, parser.space()));
+///     }
 class PacketParser {
  public:
   PacketParser();
@@ -22,14 +25,18 @@ class PacketParser {
   /// more.
   void prepare(const FrameShape& shape) { shape_ = shape; }
 
-  /// Memory for bytes to come, not empty; next() must have returned false.
+  /// Memory for bytes to come, not empty; next() must have returned false, and is_busy() too.
   [[nodiscard]] std::span<std::byte> space();
   /// Takes the first bytes of space().
   void commit(std::size_t bytes);
 
-  /// The next packet, without its time of arrival; false: more bytes are needed. Its bytes are
-  /// valid until the following call of space().
+  /// The next packet, without its time of arrival; false: more bytes are needed, or is_busy(). Its
+  /// bytes are valid until the following call of space().
   bool next(Packet& packet);
+
+  /// Whether next() returned false because it had computed checksums of kMostChecked bytes or more.
+  [[nodiscard]] bool is_busy() const { return checked_ >= kMostChecked; }
+  static constexpr std::size_t kMostChecked = std::size_t{4} << 20;  ///< about a millisecond
 
   /// Declares the bytes so far all that there are: next() takes an unfinished packet for rubbish.
   void finish() { finished_ = true; }
@@ -37,6 +44,8 @@ class PacketParser {
   /// Runs of bytes that are no packet.
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
   void clear_counts() { invalid_ = 0; }
+  /// Shape of the latest header that is sound, but of other frames than those of prepare().
+  [[nodiscard]] const std::optional<FrameShape>& other() const { return other_; }
 
  private:
   enum class Found : std::uint8_t { packet, more_needed, rubbish, cut_short };
@@ -45,15 +54,19 @@ class PacketParser {
   [[nodiscard]] std::string_view text() const;
   bool find_magic();
   void skip(std::size_t bytes);
-  [[nodiscard]] bool fits(const PillarfieldPacket& header) const;
+  [[nodiscard]] bool fits(const std::optional<FrameShape>& shape) const {
+    return shape && (!shape_ || shape == shape_);
+  }
   void make_room(const FrameShape& shape);
-  [[nodiscard]] std::optional<std::size_t> valid_bytes(const Packet& packet) const;
+  [[nodiscard]] std::optional<std::size_t> valid_bytes(const Packet& packet);
   Found find_packet(Packet& packet);
 
   std::vector<std::byte> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
+  std::size_t checked_ = 0;  ///< bytes of checksums in this call of next()
   std::optional<FrameShape> shape_;
+  std::optional<FrameShape> other_;
   bool finished_ = false;
   bool in_rubbish_ = false;
   std::uint64_t invalid_ = 0;

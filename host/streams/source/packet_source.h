@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "pillarfield/live.h"
@@ -32,17 +33,21 @@ class PacketSource {
   /// Whether what waits is as old as its reader lets it be, as in a pipe: it is not outdated.
   [[nodiscard]] virtual bool holds_sender_back() const { return false; }
 
+  /// Whether anyone may send to it: then frames of another size need not be the sensor's.
+  [[nodiscard]] virtual bool is_open_to_all() const { return false; }
+
   /// What was received since clear_counts().
   struct Counts {
-    std::uint64_t invalid = 0;  ///< no packets
-    std::uint64_t overrun = 0;  ///< packets lost because nobody received them in time
+    std::uint64_t invalid = 0;             ///< no packets
+    std::uint64_t overrun = 0;             ///< packets lost because nobody received them in time
+    std::optional<FrameShape> other = {};  ///< of frames refused since prepare(), the latest
   };
   [[nodiscard]] virtual Counts counts() const = 0;
   virtual void clear_counts() = 0;
 };
 
-/// Opens a stream of the frames of a source: waits for its first packet. Null if options.stop gave
-/// up. Throws Error, naming `name`, if the source ends before or the calibration does not fit.
+/// Opens a stream of the frames of a source: waits for its first frame. Null if options.stop gave
+/// up. Throws Error, naming `name`, if the source ends before, or calibration or size do not fit.
 [[nodiscard]] std::unique_ptr<FrameStream> open_packet_stream(const std::string& name,
                                                               std::unique_ptr<PacketSource> source,
                                                               PacketOrder order,

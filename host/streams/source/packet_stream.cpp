@@ -10,14 +10,85 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::nanoseconds;
 
+/// A packet with its bytes.
+struct KeptPacket {
+  explicit KeptPacket(const Packet& packet)
+      : header(packet.header),
+        bytes(packet.bytes.begin(), packet.bytes.end()),
+        arrived(packet.arrived) {}
+  PillarfieldPacket header;
+  std::vector<std::byte> bytes;
+  nanoseconds arrived;
+};
+
+/// The packets of a source until its frames are known: until as many bytes of one shape have come
+/// as a frame of it has. So a header alone, which may claim any size, allocates nothing.
+class FirstPackets {
+ public:
+  /// `size` throws Error, naming `name`, for frames of another size, or passes over them if the
+  /// source is open to all.
+  FirstPackets(const std::string& name, bool is_open_to_all, const std::optional<FrameSize>& size)
+      : name_(name), is_open_to_all_(is_open_to_all), size_(size) {}
+
+  /// Takes a packet; whether the shape is known now.
+  bool add(const Packet& packet);
+
+  [[nodiscard]] const FrameShape& shape() const { return *shape_; }
+  [[nodiscard]] std::vector<KeptPacket> take() { return std::move(packets_); }
+  /// Packets that are not kept.
+  [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
+  /// What came instead of frames of the size; empty: nothing.
+  [[nodiscard]] const std::string& mismatch() const { return mismatch_; }
+
+ private:
+  [[nodiscard]] bool has_size(const FrameShape& shape);
+
+  const std::string& name_;
+  bool is_open_to_all_;
+  std::optional<FrameSize> size_;
+  std::optional<FrameShape> shape_;
+  std::vector<KeptPacket> packets_;
+  std::size_t bytes_ = 0;
+  std::uint64_t invalid_ = 0;
+  std::string mismatch_;
+};
+
+bool FirstPackets::has_size(const FrameShape& shape) {
+  if (!size_ || (shape.rows == size_->rows && shape.cols == size_->cols)) return true;
+  mismatch_ = mismatch_words(shape, {shape.type, size_->rows, size_->cols});
+  if (is_open_to_all_) return false;
+  throw Error(name_, mismatch_, "give the calibration or scene of this sensor");
+}
+
+bool FirstPackets::add(const Packet& packet) {
+  const auto shape = shape_of(packet.header);
+  if (!shape || !is_intact(packet, *shape) || !has_size(*shape)) {
+    ++invalid_;
+    return false;
+  }
+  if (content_of(packet.header) == PILLARFIELD_END) return false;
+  if (shape != shape_) {
+    invalid_ += packets_.size();
+    packets_.clear();
+    bytes_ = 0;
+    shape_ = shape;
+  }
+  packets_.emplace_back(packet);
+  bytes_ += sizeof packet.header + packet.bytes.size();
+  return bytes_ >= shape->bytes();
+}
+
 class PacketStream final : public FrameStream {
  public:
-  PacketStream(std::unique_ptr<PacketSource> source, const FrameShape& shape, PacketOrder order,
+  PacketStream(std::unique_ptr<PacketSource> source, FirstPackets& first, PacketOrder order,
                const LiveSourceOptions& options)
       : source_(std::move(source)),
-        assembler_(shape, order),
+        first_(first.take()),
+        assembler_(first.shape(), order),
         skin_(options.skin),
-        calibration_(options.calibration) {}
+        calibration_(options.calibration) {
+    assembler_.set_counts({.invalid = first.invalid()});
+  }
 
   [[nodiscard]] const Skin& skin() const override { return skin_; }
   [[nodiscard]] SenselType sensel_type() const override { return assembler_.shape().type; }
@@ -26,14 +97,12 @@ class PacketStream final : public FrameStream {
   void discard_waiting() override;
   [[nodiscard]] Arrival next(StreamedFrame& frame, nanoseconds timeout) override;
 
-  /// Adds the packet that the source received when the stream was opened, after `invalid` others.
-  void begin(const Packet& packet, std::uint64_t invalid) {
-    assembler_.set_counts({.invalid = invalid});
-    assembler_.add(packet);
-  }
-
  private:
+  [[nodiscard]] Arrival receive(Packet& packet, nanoseconds timeout);
+
   std::unique_ptr<PacketSource> source_;
+  std::vector<KeptPacket> first_;  ///< received while the stream was opened
+  std::size_t next_first_ = 0;
   FrameAssembler assembler_;
   Skin skin_;
   Calibration calibration_;
@@ -44,7 +113,20 @@ StreamHealth PacketStream::health() const {
   const PacketSource::Counts counts = source_->counts();
   health.invalid += counts.invalid;
   health.overrun += counts.overrun;
+  const std::optional<FrameShape>& other = assembler_.other() ? assembler_.other() : counts.other;
+  if (other) health.mismatch = mismatch_words(*other, assembler_.shape());
   return health;
+}
+
+Arrival PacketStream::receive(Packet& packet, nanoseconds timeout) {
+  if (next_first_ == first_.size()) {
+    first_ = {};
+    next_first_ = 0;
+    return source_->receive(packet, timeout);
+  }
+  const KeptPacket& kept = first_[next_first_++];
+  packet = {kept.header, kept.bytes, kept.arrived};
+  return Arrival::arrived;
 }
 
 void PacketStream::discard_waiting() {
@@ -56,7 +138,7 @@ void PacketStream::discard_waiting() {
   do {
     while (assembler_.pop(frame)) {
     }
-    if (source_->receive(packet, 0ns) != Arrival::arrived) break;
+    if (receive(packet, 0ns) != Arrival::arrived) break;
     assembler_.add(packet);
   } while (steady_now() < until);
   assembler_.discard();
@@ -71,7 +153,7 @@ Arrival PacketStream::next(StreamedFrame& frame, nanoseconds timeout) {
   for (int packets = 0; packets < kMostPackets;) {
     if (assembler_.pop(frame)) return Arrival::arrived;
     const nanoseconds deadline = std::min(assembler_.deadline().value_or(until), until);
-    const Arrival arrival = source_->receive(packet, std::max(deadline - steady_now(), 0ns));
+    const Arrival arrival = receive(packet, std::max(deadline - steady_now(), 0ns));
     if (arrival == Arrival::arrived) {
       assembler_.add(packet);
       ++packets;
@@ -88,25 +170,25 @@ Arrival PacketStream::next(StreamedFrame& frame, nanoseconds timeout) {
   return Arrival::timed_out;
 }
 
-/// Waits for the first valid packet; its shape, or none if the user gave up.
-std::optional<FrameShape> receive_first(const std::string& name, PacketSource& source,
-                                        const std::function<bool()>& stop, Packet& packet,
-                                        std::uint64_t& invalid) {
+/// Waits until the source's frames are known; false if the user gave up.
+bool receive_first(const std::string& name, PacketSource& source, const LiveSourceOptions& options,
+                   FirstPackets& first) {
   constexpr nanoseconds kPoll = 100ms;
+  Packet packet;
+  bool said = false;
   for (nanoseconds polled = steady_now();;) {
     const Arrival arrival = source.receive(packet, kPoll);
     if (arrival == Arrival::ended) {
       throw Error(name, "ended before its first frame", "docs/streams.md describes the packets");
     }
-    if (arrival == Arrival::arrived) {
-      const auto shape = shape_of(packet.header);
-      const bool is_valid = shape && is_intact(packet, *shape);
-      if (is_valid && content_of(packet.header) != PILLARFIELD_END) return shape;
-      if (!is_valid) ++invalid;
+    if (arrival == Arrival::arrived && first.add(packet)) return true;
+    if (options.say && !said && !first.mismatch().empty()) {
+      said = true;
+      options.say(first.mismatch());
     }
     if (steady_now() - polled < kPoll) continue;
     polled = steady_now();
-    if (stop && stop()) return std::nullopt;
+    if (options.stop && options.stop()) return false;
   }
 }
 
@@ -116,19 +198,15 @@ std::unique_ptr<FrameStream> open_packet_stream(const std::string& name,
                                                 std::unique_ptr<PacketSource> source,
                                                 PacketOrder order,
                                                 const LiveSourceOptions& options) {
-  Packet packet;
-  std::uint64_t invalid = 0;
-  const auto shape = receive_first(name, *source, options.stop, packet, invalid);
-  if (!shape) return nullptr;
+  FirstPackets first(name, source->is_open_to_all(), options.size);
+  if (!receive_first(name, *source, options, first)) return nullptr;
   LiveSourceOptions fitting = options;
-  fitting.skin.rows = shape->rows;
-  fitting.skin.cols = shape->cols;
+  fitting.skin.rows = first.shape().rows;
+  fitting.skin.cols = first.shape().cols;
   check(fitting.skin, name);
-  check(fitting.calibration, fitting.skin, name, shape->type);
-  source->prepare(*shape);
-  auto stream = std::make_unique<PacketStream>(std::move(source), *shape, order, fitting);
-  stream->begin(packet, invalid);
-  return stream;
+  check(fitting.calibration, fitting.skin, name, first.shape().type);
+  source->prepare(first.shape());
+  return std::make_unique<PacketStream>(std::move(source), first, order, fitting);
 }
 
 }  // namespace pillarfield

@@ -14,7 +14,7 @@ class RingSource final : public PacketSource {
   explicit RingSource(const std::string& name) : reader_(name, PILLARFIELD_RING_FRAMES) {}
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
-  [[nodiscard]] Counts counts() const override { return {reader_.invalid(), reader_.overrun()}; }
+  [[nodiscard]] Counts counts() const override;
   void clear_counts() override { reader_.clear_counts(); }
 
  private:
@@ -29,6 +29,15 @@ Arrival RingSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
   const std::size_t bytes = *content_bytes(*reader_.layout()) - sizeof(PillarfieldFrameSlot);
   packet.bytes = {slot + sizeof(PillarfieldFrameSlot), bytes};
   return Arrival::arrived;
+}
+
+PacketSource::Counts RingSource::counts() const {
+  Counts counts = {reader_.invalid(), reader_.overrun()};
+  if (const auto& other = reader_.other()) {
+    counts.other =
+        FrameShape{reading_type(other->type).value_or(SenselType::u8), other->rows, other->cols};
+  }
+  return counts;
 }
 
 std::unique_ptr<FrameStream> open_ring(const std::string& rest, const LiveSourceOptions& options) {

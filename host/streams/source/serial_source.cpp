@@ -56,7 +56,7 @@ class SerialSource final : public PacketSource {
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   void prepare(const FrameShape& shape) override { parser_.prepare(shape); }
-  [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0}; }
+  [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0, parser_.other()}; }
   void clear_counts() override { parser_.clear_counts(); }
 
  private:
@@ -75,7 +75,8 @@ void SerialSource::leave() {
 }
 
 Arrival SerialSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
-  while (!parser_.next(packet)) {
+  for (int reads = 0; !parser_.next(packet); ++reads) {
+    if (reads == kMostReads || parser_.is_busy()) return Arrival::timed_out;
     if (descriptor_ < 0) descriptor_ = open_serial_device(device_, baud_);
     if (descriptor_ < 0) {
       std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(timeout, 50ms));

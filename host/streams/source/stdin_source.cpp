@@ -13,7 +13,7 @@ class StdinSource final : public PacketSource {
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   void prepare(const FrameShape& shape) override { parser_.prepare(shape); }
   [[nodiscard]] bool holds_sender_back() const override { return true; }
-  [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0}; }
+  [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0, parser_.other()}; }
   void clear_counts() override { parser_.clear_counts(); }
 
  private:
@@ -23,10 +23,9 @@ class StdinSource final : public PacketSource {
 };
 
 Arrival StdinSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
-  constexpr int kMostReads = 64;  // of bytes without a packet, as of /dev/zero
   for (int reads = 0; !parser_.next(packet); ++reads) {
-    if (ended_) return Arrival::ended;
-    if (reads == kMostReads) return Arrival::timed_out;
+    if (ended_ && !parser_.is_busy()) return Arrival::ended;
+    if (reads == kMostReads || parser_.is_busy()) return Arrival::timed_out;
     const BytesRead read = read_bytes(STDIN_FILENO, parser_.space(), timeout);
     if (read.bytes == 0 && !read.ended) return Arrival::timed_out;
     arrived_ = steady_now();

@@ -31,6 +31,7 @@ class UdpSource final : public PacketSource {
   UdpSource& operator=(const UdpSource&) = delete;
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
+  [[nodiscard]] bool is_open_to_all() const override { return true; }
   [[nodiscard]] Counts counts() const override { return counts_; }
   void clear_counts() override;
 
@@ -65,7 +66,8 @@ UdpSource::UdpSource(int socket) : socket_(socket), memory_(kDatagrams * kDatagr
 }
 
 Arrival UdpSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
-  for (;;) {
+  constexpr int kMostBatches = 4;  // of datagrams that are no packets
+  for (int batches = 0; batches < kMostBatches; ++batches) {
     while (next_ < received_) {
       if (take(next_++, packet)) return Arrival::arrived;
     }
@@ -73,6 +75,7 @@ Arrival UdpSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
     if (timeout.count() <= 0 || !wait_readable(socket_, timeout)) return Arrival::timed_out;
     timeout = std::chrono::nanoseconds(0);
   }
+  return Arrival::timed_out;
 }
 
 bool UdpSource::receive_batch() {

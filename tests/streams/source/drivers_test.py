@@ -1,6 +1,8 @@
 """Builds the drivers of examples/driver with a C99 compiler, and lets them feed the program."""
 
 import json
+import os
+import pathlib
 import re
 import signal
 import socket
@@ -79,6 +81,17 @@ class Drivers(DriverTest):
         self.assertEqual(segments(), [NAME])
         subprocess.run([driver, NAME, "--rows", "20", "--seconds", "0.05"], check=True)
         self.assertEqual(segments(), [])
+
+    @unittest.skipIf(os.geteuid() != 0, "only root gives files away")
+    def test_a_driver_refuses_a_ring_of_another_user(self):
+        segment = pathlib.Path("/dev/shm", NAME)
+        segment.touch()
+        os.chown(segment, 65534, 65534)
+        driver = subprocess.run([self.folder / "ring_driver", NAME], stderr=subprocess.PIPE,
+                                text=True, check=False)
+        segment.unlink()
+        self.assertEqual(driver.returncode, 1)
+        self.assertIn("another user", driver.stderr)
 
     def test_udp_driver(self):
         port = free_port()

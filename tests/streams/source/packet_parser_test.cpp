@@ -18,10 +18,12 @@ std::uint64_t parse(const std::string& bytes, std::mt19937& random, Found found)
   Packet packet;
   bool prepared = false;
   const auto take = [&] {
-    while (parser.next(packet)) {
-      if (!std::exchange(prepared, true)) parser.prepare(*shape_of(packet.header));
-      found(packet);
-    }
+    do {
+      while (parser.next(packet)) {
+        if (!std::exchange(prepared, true)) parser.prepare(*shape_of(packet.header));
+        found(packet);
+      }
+    } while (parser.is_busy());
   };
   for (std::size_t fed = 0; fed < bytes.size();) {
     const auto space = parser.space();
@@ -117,6 +119,30 @@ TEST(PacketParser, AcceptsOnlyTheShapeOfTheFirstPacket) {
       bytes, random, [&](const Packet& packet) { received.push_back(packet.header.sequence); });
   EXPECT_EQ(received, (std::vector<std::uint64_t>{1, 3}));
   EXPECT_EQ(invalid, 1);
+}
+
+TEST(PacketParser, ReturnsBetweenChecksums) {
+  constexpr FrameShape kLarge = {SenselType::f32, 256, 256};
+  constexpr std::size_t kHeaders = 400;
+  SentPacket claim = frame_packet(kLarge, 1);
+  claim.header.content |= PILLARFIELD_CHECKED;
+  claim.header.bytes += 4;
+  claim.readings.clear();
+  std::string bytes;
+  for (std::size_t i = 0; i < kLarge.bytes() / 64 + kHeaders; ++i) bytes += claim.bytes();
+  PacketParser parser;
+  Packet packet;
+  std::size_t busy = 0;
+  for (std::size_t fed = 0; fed < bytes.size();) {
+    const auto space = parser.space();
+    const auto size = std::min(bytes.size() - fed, space.size());
+    std::memcpy(space.data(), &bytes[fed], size);
+    parser.commit(size);
+    fed += size;
+    EXPECT_FALSE(parser.next(packet));
+    for (; parser.is_busy(); ++busy) EXPECT_FALSE(parser.next(packet));
+  }
+  EXPECT_GE(busy, (kHeaders - 20) * kLarge.bytes() / PacketParser::kMostChecked);
 }
 
 TEST(PacketParser, AHeaderAloneNeverAllocatesMuch) {

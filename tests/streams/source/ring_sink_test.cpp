@@ -129,6 +129,13 @@ TEST(RingSink, StopsAtAFrameOfAnotherSize) {
   EXPECT_FALSE(std::filesystem::exists("/dev/shm/" + results_name()));
 }
 
+TEST(RingSink, StopsWhenAnotherProgramShortensItsRing) {
+  const auto sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
+  ASSERT_EQ(truncate(("/dev/shm/" + results_name()).c_str(), 0), 0);
+  for (std::uint64_t i = 0; i < 3; ++i) sink->append(Solved(i).frame);
+  EXPECT_EQ(sink->statistics().failure, "another program shortened the shared memory");
+}
+
 TEST(LiveSink, AKindWithoutItsTargetIsNone) {
   for (const char* target : {"shm", "udp", "shm:", "udp:"}) {
     EXPECT_THROW((void)create_live_sink(target, info_of_skin(6, 10)), Error) << target;

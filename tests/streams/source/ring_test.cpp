@@ -42,12 +42,12 @@ class Name {
   std::string text_;
 };
 
-void publish(RingWriter& writer, const SentPacket& packet) {
+bool publish(RingWriter& writer, const SentPacket& packet) {
   std::byte* const slot = writer.begin().data();
   auto& head = *reinterpret_cast<PillarfieldFrameSlot*>(slot);
   head.packet = packet.header;
   std::memcpy(slot + sizeof head, packet.readings.data(), packet.readings.size());
-  writer.publish();
+  return writer.publish();
 }
 
 /// A child process, killed at the end.
@@ -231,6 +231,7 @@ TEST(Ring, FollowsOneThatReplacesIt) {
   writer.emplace(name.text(), RingLayout{PILLARFIELD_RING_FRAMES, 40, 31, PILLARFIELD_U8}, 4);
   take_frames(*stream, 120ms, [](auto&) { ADD_FAILURE() << "a frame of another size"; });
   EXPECT_EQ(stream->health().invalid, 1);
+  EXPECT_EQ(stream->health().mismatch, "frames are 40 x 31, 40 x 30 expected");
   writer.reset();
   writer.emplace(name.text(), kLayout, 16);
   SentPacket packet = frame_packet(kShape, 1);
@@ -389,6 +390,44 @@ TEST(HostileRing, CannotMisleadItsWriter) {
     segment.put(0, ring);
     publish(writer, frame_packet(kShape, round));
   }
+}
+
+TEST(HostileRing, ItsWriterSurvivesAnotherThatShortensIt) {
+  for (const std::uint64_t bytes : {0U, 100U, 4096U}) {
+    const Name name;
+    RingWriter writer(name.text(), kLayout, 4);
+    EXPECT_TRUE(publish(writer, frame_packet(kShape, 0)));
+    Segment segment(name, 64 + 4 * 1344);
+    segment.resize(bytes);
+    bool published = true;
+    for (std::uint64_t i = 1; i < 5; ++i) published = publish(writer, frame_packet(kShape, i));
+    EXPECT_FALSE(published);
+  }
+}
+
+TEST(HostileRing, OfAnotherUserIsRefused) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root gives files away";
+  const Name name;
+  Segment segment(name, 64 + 4 * 1344);
+  segment.put(0, ring_of_frames());
+  ASSERT_EQ(chown(("/dev/shm/" + name.text()).c_str(), 65534, 65534), 0);
+  EXPECT_NE(message_of([&] {
+              (void)open_live_source(name.source(), {.stop = [] { return true; }});
+            }).find("another user"),
+            std::string::npos);
+}
+
+TEST(HostileRing, AJumpOfItsCountIsNoOverrun) {
+  const Name name;
+  RingWriter writer(name.text(), kLayout, 4);
+  publish(writer, frame_packet(kShape, 0));
+  const auto stream = open_live_source(name.source(), {});
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  EXPECT_EQ(stream->next(frame, 10ms), Arrival::arrived);
+  Segment segment(name, 64 + 4 * 1344);
+  segment.put(offsetof(PillarfieldRing, published), std::uint64_t{1} << 63);
+  EXPECT_EQ(stream->next(frame, 0ns), Arrival::timed_out);
+  EXPECT_LE(stream->health().overrun, 1);
 }
 
 TEST(HostileRing, MayShrinkAtAnyMoment) {

@@ -99,6 +99,36 @@ TEST(StdinSource, RefusesAnEndWithoutAFrame) {
   expect_failure([] { (void)open_live_source("-", {}); }, "ended before its first frame");
 }
 
+TEST(StdinSource, NamesFramesOfAnotherSize) {
+  Stdin input;
+  input.send(frame_packet(kShape, 0).bytes());
+  expect_failure(
+      [] {
+        (void)open_live_source("-", {.size = FrameSize{8, 8}});
+      },
+      "frames are 16 x 24, 8 x 8 expected");
+  input.send(frame_packet(kShape, 1).bytes());
+  const auto stream = open_live_source("-", {.size = FrameSize{16, 24}});
+  EXPECT_EQ(stream->health().mismatch, "");
+  input.send(frame_packet({SenselType::u16, 16, 24}, 2).bytes());
+  input.end();
+  EXPECT_TRUE(take_frames(*stream, 1s, [](auto&) {}));
+  EXPECT_EQ(stream->health().mismatch, "frames are uint16, uint8 expected");
+}
+
+TEST(StdinSource, KeepsThePacketsOfItsFirstFrames) {
+  Stdin input;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    for (const SentPacket& part : row_packets(kShape, i, 4)) input.send(part.bytes());
+  }
+  input.end();
+  const auto stream = open_live_source("-", {});
+  std::vector<std::string> received;
+  EXPECT_TRUE(take_frames(*stream, 1s, [&](auto& frame) { received.push_back(bytes_of(frame)); }));
+  EXPECT_EQ(received,
+            (std::vector{readings_of(kShape, 0), readings_of(kShape, 1), readings_of(kShape, 2)}));
+}
+
 TEST(StdinSource, GivesUpWhenTold) {
   const Stdin input;
   EXPECT_EQ(open_live_source("-", {.stop = [] { return true; }}), nullptr);
@@ -246,6 +276,55 @@ TEST(UdpSource, CountsWhatTheKernelDroppedUnlessItIsDiscarded) {
   EXPECT_EQ(stream->health().frames, health.frames + 2);
   EXPECT_EQ(stream->health().lost, health.lost);
   EXPECT_EQ(stream->health().overrun, health.overrun);
+}
+
+TEST(UdpSource, AClaimFixesNoSize) {
+  constexpr FrameShape kClaimed = {SenselType::f32, 65534, 256};
+  SentPacket claim = {header_of(kClaimed, 0), std::string(kClaimed.row_bytes(), '\0')};
+  claim.header.content = PILLARFIELD_ROWS;
+  claim.header.parts = 65534;
+  claim.header.count = 1;
+  claim.header.bytes = static_cast<std::uint32_t>(claim.readings.size());
+  const Sender sender(AF_INET);
+  const auto stream = open_live_source(sender.source(), {.stop = [&] {
+                                         sender.send(claim.bytes());
+                                         sender.send(frame_packet(kShape, 1).bytes());
+                                         return false;
+                                       }});
+  EXPECT_EQ(stream->skin().rows, kShape.rows);
+  EXPECT_GE(stream->health().invalid, 1);
+}
+
+TEST(UdpSource, WaitsForFramesOfTheStatedSize) {
+  constexpr FrameShape kOther = {SenselType::u8, 8, 8};
+  const Sender sender(AF_INET);
+  std::vector<std::string> said;
+  int asked = 0;
+  const auto stream = open_live_source(
+      sender.source(), {.size = FrameSize{kShape.rows, kShape.cols},
+                        .say = [&](const std::string& words) { said.push_back(words); },
+                        .stop =
+                            [&] {
+                              sender.send(frame_packet(++asked < 3 ? kOther : kShape, 1).bytes());
+                              return false;
+                            }});
+  EXPECT_EQ(stream->skin().rows, kShape.rows);
+  EXPECT_EQ(said, std::vector<std::string>{"frames are 8 x 8, 16 x 24 expected"});
+  EXPECT_EQ(stream->health().mismatch, "");
+  sender.send(frame_packet(kOther, 2).bytes());
+  take_frames(*stream, 30ms, [](auto&) {});
+  EXPECT_EQ(stream->health().mismatch, "frames are 8 x 8, 16 x 24 expected");
+}
+
+TEST(UdpSource, ReturnsBetweenShortDatagrams) {
+  const Sender sender(AF_INET);
+  const auto stream = sender.open(frame_packet(kShape, 0));
+  stream->discard_waiting();
+  for (int i = 0; i < 1000; ++i) sender.send("");  // the smallest buffer holds over 200
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  (void)stream->next(frame, 0ns);
+  EXPECT_GT(stream->health().invalid, 0);
+  EXPECT_LE(stream->health().invalid, 128);
 }
 
 TEST(UdpSource, RefusesBadAddresses) {

@@ -67,6 +67,7 @@ void sensor_panel(const Command& command) {
     const std::string name = std::filesystem::path(status.recording).filename().string();
     faint_text(style, fmt::format("{}: {}", name, recorded_words(status.recorded)).c_str());
   }
+  if (!status.stream.mismatch.empty()) faint_text(style, status.stream.mismatch.c_str());
   value_table(style, health_lines(status));
 }
 

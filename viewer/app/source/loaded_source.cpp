@@ -27,19 +27,22 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
                          const LoadProgress& tell) {
   LoadedSource loaded;
   loaded.name = name;
-  tell(fmt::format("waiting for frames from {}", printable(name)));
+  std::string waiting = fmt::format("waiting for frames from {}", printable(name));
+  tell(waiting);
   const auto stop = [&] {
     try {
-      tell(fmt::format("waiting for frames from {}", printable(name)));
+      tell(waiting);
       return is_interrupted();
     } catch (const Error&) {
       return true;
     }
   };
-  OpenedSensor opened = open_sensor(name, {.producer = producer_options(options, tell),
-                                           .counts_per_newton = options.plain.counts_per_newton,
-                                           .calibration = options.calibration,
-                                           .stop = stop});
+  OpenedSensor opened =
+      open_sensor(name, {.producer = producer_options(options, tell),
+                         .counts_per_newton = options.plain.counts_per_newton,
+                         .calibration = options.calibration,
+                         .stop = stop,
+                         .say = [&](const std::string& words) { waiting += ": " + words; }});
   if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
   loaded.curves = std::move(opened.curves);
   loaded.settings = live_settings(options, opened.player->info(), scale);
