@@ -34,7 +34,7 @@ calibration: Calibration, or None)";
 
 using TimeArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Frames of an array. The array must not change meanwhile.
+/// Frames of an array, whose values must not change meanwhile.
 class ArraySource final : public FrameSource {
  public:
   ArraySource(py::array readings, const TimeArray& times, const Skin& skin,
@@ -67,6 +67,10 @@ class ArraySource final : public FrameSource {
   double time(std::uint64_t index) override { return times_[index]; }
   double read(std::uint64_t index, FrameBuffer& frame) override {
     const std::span<std::byte> bytes = frame.bytes();
+    if (readings_.data() != first_ ||
+        static_cast<std::uint64_t>(readings_.nbytes()) < frames_ * bytes.size()) {
+      throw Error("frames", "their array was resized", "give an array that keeps its size");
+    }
     std::memcpy(bytes.data(), first_ + index * bytes.size(), bytes.size());
     return times_[index];
   }

@@ -3,6 +3,26 @@
 #include "pillarfield/version.h"
 #include "python/bindings.h"
 
+namespace {
+
+namespace py = pybind11;
+
+/// Where an object was made by __new__ alone, pybind11 would allocate its value without
+/// constructing it, and read that.
+void* refuse_to_allocate(std::size_t) {
+  throw py::type_error("the object was not constructed: call its class, not __new__()");
+}
+
+void require_construction(const py::module_& module) {
+  for (const auto& [name, item] : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(item.ptr())) continue;
+    auto* const bound = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(item.ptr()));
+    if (bound != nullptr) bound->operator_new = refuse_to_allocate;
+  }
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_core, module) {
   using namespace pillarfield::python;
   module.attr("__version__") = pillarfield::kVersion;
@@ -21,4 +41,5 @@ PYBIND11_MODULE(_core, module) {
   bind_calibrate(module);
   bind_live(module);
   bind_picture(module);
+  require_construction(module);
 }

@@ -48,6 +48,10 @@ Surface height_map(const FloatPlane& heights_mm) {
   Surface surface;
   surface.shape = SurfaceShape::height_map;
   surface.heights_mm.assign(heights_mm.data(), heights_mm.data() + heights_mm.size());
+  check(surface,
+        {static_cast<std::uint32_t>(heights_mm.shape(0)),
+         static_cast<std::uint32_t>(heights_mm.shape(1)), Skin().pillar_pitch_mm()},
+        "Surface.height_map");
   return surface;
 }
 
@@ -114,8 +118,9 @@ void bind_surface(py::module_& module) {
           },
           py::arg("radius_mm"),
           "A sphere. radius_mm: |radius| 1..1e6, positive with the skin outside.")
-      .def_static("height_map", &height_map, py::arg("heights_mm"),
-                  "A surface of given heights of pillars, [pillar rows, cols], mm.")
+      .def_static(
+          "height_map", &height_map, py::arg("heights_mm"),
+          "A surface of given heights of pillars, [pillar rows, cols], within 1e4 mm of the plane.")
       .def_property_readonly(
           "shape", [](const Surface& self) { return name_of(self.shape); },
           "'plane', 'cylinder', 'sphere' or 'height_map'")

@@ -17,6 +17,7 @@
 #include <cstring>
 
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 
 namespace pillarfield {
 namespace {
@@ -34,8 +35,6 @@ constexpr bool kShadowMemory = false;
 #else
 constexpr bool kShadowMemory = false;
 #endif
-
-constexpr int kOutputDescriptor = 3;  // the child's end of the pipe
 
 /// `resource` is an enumeration in some C libraries, and an int in others.
 template <class Resource>
@@ -78,16 +77,24 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// Closes all files but the pipe, and replaces the standard streams by /dev/null: a file inherited
-/// from the parent would share its position.
-void leave_only(int output) {
-  output = fcntl(output, F_DUPFD, kOutputDescriptor + 1);
+/// Closes all files but `output` and `input`, and replaces the standard streams by /dev/null: a
+/// file inherited from the parent would share its position. Returns the new number of `output`.
+int leave_only(int output, int input) {
+  constexpr int kFirst = STDERR_FILENO + 1;
+  output = fcntl(output, F_DUPFD, kFirst);
   const int nothing = open("/dev/null", O_RDWR);
-  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
-  dup2(output, kOutputDescriptor);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (standard != input) dup2(nothing, standard);
+  }
 #if defined(__linux__) && defined(SYS_close_range)
-  syscall(SYS_close_range, kOutputDescriptor + 1, ~0U, 0);
+  int first = kFirst;
+  for (const int kept : {std::min(input, output), std::max(input, output)}) {
+    if (kept > first) syscall(SYS_close_range, first, kept - 1, 0);
+    first = std::max(first, kept + 1);
+  }
+  syscall(SYS_close_range, first, ~0U, 0);
 #endif
+  return output;
 }
 
 void write_all(int file, const std::string& text) {
@@ -98,44 +105,51 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-[[noreturn]] void be_child(int output, const ChildLimits& limits,
+[[noreturn]] void be_child(int output, int input, const ChildLimits& limits,
                            const std::function<std::string()>& work) {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
   reset_signals();
-  leave_only(output);
+  output = leave_only(output, input);
   limit_child(limits);
-  write_all(kOutputDescriptor, work() + '\0');
+  write_all(output, work() + '\0');
   _exit(0);
 }
 
-/// Reads to the end of the pipe; false if `deadline` came first.
-bool read_output(int output, ChildClock::time_point deadline, std::string& text) {
-  for (;;) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - ChildClock::now());
-    if (left.count() <= 0) return false;
+/// Reads to the end of the pipe.
+ChildEnd::Reason read_output(int output, ChildClock::time_point deadline, std::string& text) {
+  constexpr int kIntervalMs = 100;  // A child that needs less is not interrupted.
+  while (ChildClock::now() < deadline) {
     pollfd waiting = {output, POLLIN, 0};
-    const int ready = poll(&waiting, 1, static_cast<int>(left.count()));
-    if (ready < 0 && errno != EINTR) return false;
+    const int ready = poll(&waiting, 1, kIntervalMs);
+    if (ready < 0 && errno != EINTR) break;
+    if (ready == 0 && is_interrupted()) return ChildEnd::Reason::interrupted;
     if (ready <= 0) continue;
     char block[512];
     const ssize_t got = read(output, block, sizeof block);
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return true;
+    if (got <= 0) return ChildEnd::Reason::died;
     text.append(block, static_cast<std::size_t>(got));
-    if (text.back() == '\0') return true;
+    if (text.back() == '\0') return ChildEnd::Reason::returned;
   }
+  return ChildEnd::Reason::late;
 }
 
-/// The signal that ended the child; 0 if none did or another thread waited for the child.
-int signal_of_end(pid_t child) {
+std::chrono::microseconds duration(const timeval& time) {
+  return std::chrono::seconds(time.tv_sec) + std::chrono::microseconds(time.tv_usec);
+}
+
+/// Leaves `end` as it is if another thread waited for the child.
+void wait_for_child(pid_t child, ChildEnd& end) {
   int status = 0;
+  rusage used = {};
   pid_t ended = 0;
-  do ended = waitpid(child, &status, 0);
+  do ended = wait4(child, &status, 0, &used);
   while (ended < 0 && errno == EINTR);
-  return ended == child && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (ended != child) return;
+  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  end.processor_time = duration(used.ru_utime) + duration(used.ru_stime);
 }
 
 [[noreturn]] void fail_to_start(const std::string& where) {
@@ -146,26 +160,27 @@ int signal_of_end(pid_t child) {
 
 }  // namespace
 
-ChildEnd run_in_child(const std::string& where, const ChildLimits& limits,
+ChildEnd run_in_child(const std::string& where, const ChildLimits& limits, int input,
                       const std::function<int()>& do_fork,
                       const std::function<std::string()>& work) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail_to_start(where);
   const pid_t child = do_fork();
-  if (child == 0) be_child(ends[1], limits, work);
+  if (child == 0) be_child(ends[1], input, limits, work);
   close(ends[1]);
   if (child < 0) {
     close(ends[0]);
     fail_to_start(where);
   }
   ChildEnd end;
-  end.in_time = read_output(ends[0], ChildClock::now() + limits.time, end.text);
+  end.reason = read_output(ends[0], ChildClock::now() + limits.time, end.text);
   close(ends[0]);
-  if (!end.in_time) kill(child, SIGKILL);
-  end.signal = signal_of_end(child);
-  if (end.signal == SIGXCPU) end.in_time = false;
-  end.returned = !end.text.empty() && end.text.back() == '\0';
-  if (end.returned) end.text.pop_back();
+  if (end.reason == ChildEnd::Reason::returned) {
+    end.text.pop_back();
+  } else if (end.reason != ChildEnd::Reason::died) {
+    kill(child, SIGKILL);
+  }
+  wait_for_child(child, end);
   return end;
 }
 

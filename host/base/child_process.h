@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -14,17 +15,20 @@ struct ChildLimits {
 };
 
 struct ChildEnd {
-  std::string text;       ///< returned by the function
-  bool returned = false;  ///< the function returned, and `text` is complete
-  bool in_time = true;    ///< the child was not ended by a time limit
-  int signal = 0;         ///< that ended the child; 0: none, or unknown
+  /// `late`: at the limit of wall time. `interrupted`: is_interrupted() ended the wait.
+  enum class Reason : std::uint8_t { returned, died, late, interrupted };
+  Reason reason = Reason::died;
+  std::string text;  ///< returned by the function
+  int signal = 0;    ///< that ended the child, SIGXCPU at the limit of processor time; 0: unknown
+  std::chrono::microseconds processor_time{0};  ///< that the child took; 0: unknown
 };
 
 /// Runs `work` in a forked child process and waits for its end. The child discards its output, has
-/// default signal actions, and closes inherited files. `work` must not throw, and must take no lock
-/// that another thread may hold; it may use the heap. `do_fork` calls fork() while holding such a
-/// lock, or is fork() itself. Throws Error at `where` if the child cannot be started.
-[[nodiscard]] ChildEnd run_in_child(const std::string& where, const ChildLimits& limits,
+/// default signal actions, and closes inherited files but `input`. `work` must not throw, and must
+/// take no lock that another thread may hold; it may use the heap. `do_fork` calls fork() while
+/// holding such a lock, or is fork() itself. Throws Error at `where` if the child cannot be
+/// started.
+[[nodiscard]] ChildEnd run_in_child(const std::string& where, const ChildLimits& limits, int input,
                                     const std::function<int()>& do_fork,
                                     const std::function<std::string()>& work);
 

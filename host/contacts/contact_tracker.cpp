@@ -250,6 +250,10 @@ void ContactTracker::State::identify(double time_s) {
 /// Processes a frame whose labels are set.
 const FrameContacts& ContactTracker::State::track(const ForceFieldView& forces, double time_s,
                                                   std::span<const ContactFriction> friction) {
+  if (!std::isfinite(time_s) && labels.contacts() > 0) {
+    throw Error(kPlace, fmt::format("a frame with contacts has the time {}", time_s),
+                "give finite seconds");
+  }
   frame.time_s = time_s;
   measure(forces, friction);
   identify(time_s);

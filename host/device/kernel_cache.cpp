@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -47,6 +49,34 @@ std::vector<fs::path> usual_places() {
   return places;
 }
 
+/// Whether PoCL may have given a directory this name: digits of a hash, as letters from A on.
+bool is_hash(const fs::path& name) {
+  return std::ranges::all_of(name.string(), [](char c) { return c >= 'A' && c <= 'P'; });
+}
+
+bool is_older(const fs::path& file, std::chrono::hours age) {
+  std::error_code failed;
+  const auto written = fs::last_write_time(file, failed);
+  return !failed && fs::file_time_type::clock::now() - written > age;
+}
+
+/// PoCL never removes a program, and leaves an empty file for each that a process builds, others if
+/// it is killed. It writes `last_accessed` at each use.
+void remove_old(const fs::path& entry) {
+  constexpr std::chrono::hours kLongestBuild{1};
+  constexpr std::chrono::hours kUnused{24 * 30};
+  std::error_code failed;
+  if (entry.filename().string().starts_with("tempfile_")) {
+    if (is_older(entry, kLongestBuild)) fs::remove(entry, failed);
+    return;
+  }
+  if (!is_hash(entry.filename())) return;
+  for (const auto& program : fs::directory_iterator(entry, failed)) {
+    if (!is_hash(program.path().filename())) continue;
+    if (is_older(program.path() / "last_accessed", kUnused)) fs::remove_all(program, failed);
+  }
+}
+
 KernelCache choose_directory(std::unique_ptr<TemporaryDirectory>& temporary) {
   if (const std::string wanted = environment("POCL_CACHE_DIR"); !wanted.empty()) {
     return cache_of_user(wanted);
@@ -75,7 +105,14 @@ struct ProcessCache {
 }  // namespace
 
 KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary) {
+  remove_left_over_directories();
   KernelCache cache = choose_directory(temporary);
+  try {
+    std::error_code absent;
+    for (const auto& entry : fs::directory_iterator(cache.directory, absent)) remove_old(entry);
+  } catch (const fs::filesystem_error&) {
+    // What cannot be removed stays.
+  }
   if (cache.not_kept.empty() && environment("POCL_KERNEL_CACHE") == "0") {
     cache.not_kept = "POCL_KERNEL_CACHE is 0";
   }

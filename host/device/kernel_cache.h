@@ -18,7 +18,8 @@ struct KernelCache {
 
 /// Chooses the directory: $POCL_CACHE_DIR, or the first usable one of
 /// $XDG_CACHE_HOME/pillarfield/kernels, $HOME/.cache/pillarfield/kernels and a new `temporary` one.
-/// Creates missing directories. Throws Error if $POCL_CACHE_DIR is not writable, has too little
+/// Creates missing directories, and removes directories of killed processes and programs that no
+/// process has used for 30 days. Throws Error if $POCL_CACHE_DIR is not writable, has too little
 /// space, or is not private.
 [[nodiscard]] KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary);
 

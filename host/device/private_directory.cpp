@@ -19,6 +19,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace pillarfield {
@@ -137,8 +138,7 @@ std::string reason_not_usable(const fs::path& real, std::uintmax_t least_free_by
                      free >> 10U, least_free_bytes >> 10U);
 }
 
-/// Removes unlocked directories: those of killed processes.
-void remove_left_over(const fs::path& parent) {
+void remove_left_over_in(const fs::path& parent) {
   std::error_code ignored;  // Directories that cannot be removed stay.
   for (fs::directory_iterator entry(parent, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
@@ -162,6 +162,10 @@ std::vector<fs::path> temporary_parents() {
 }
 
 }  // namespace
+
+void remove_left_over_directories() {
+  for (const fs::path& parent : temporary_parents()) remove_left_over_in(parent);
+}
 
 PrivateDirectory private_directory(const fs::path& wanted, std::uintmax_t least_free_bytes) {
   if (std::string reason = make_directories(wanted); !reason.empty()) return {{}, reason};
@@ -191,7 +195,6 @@ bool TemporaryDirectory::make_in(const fs::path& parent, std::uintmax_t least_fr
     directory_.refused = fmt::format("{}: {}", parent.string(), failed.message());
     return false;
   }
-  remove_left_over(real);
   std::string name = (real / kTemporaryPrefix).string() + "XXXXXX";
   if (mkdtemp(name.data()) == nullptr) {
     directory_.refused =
@@ -199,12 +202,15 @@ bool TemporaryDirectory::make_in(const fs::path& parent, std::uintmax_t least_fr
     return false;
   }
   lock_ = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
+  if (lock_ >= 0) flock(lock_, LOCK_EX);
+  if (!fs::exists(name, failed)) {  // Taken for a left one before it was locked.
+    if (lock_ >= 0) close(std::exchange(lock_, -1));
+    return make_in(parent, least_free_bytes);
+  }
   directory_ = private_directory(name, least_free_bytes);
   if (directory_.refused.empty()) return true;
   rmdir(name.c_str());
-  if (lock_ >= 0) close(lock_);
-  lock_ = -1;
+  if (lock_ >= 0) close(std::exchange(lock_, -1));
   return false;
 }
 

@@ -19,9 +19,11 @@ struct PrivateDirectory {
 [[nodiscard]] PrivateDirectory private_directory(const std::filesystem::path& wanted,
                                                  std::uintmax_t least_free_bytes);
 
+/// Removes the temporary directories of killed processes, which are not locked.
+void remove_left_over_directories();
+
 /// A new private directory in the first usable of $TMPDIR, /tmp, /var/tmp and /dev/shm. The
-/// destructor removes it in the process that created it; the constructor removes directories of
-/// killed processes.
+/// destructor removes it in the process that created it.
 class TemporaryDirectory {
  public:
   explicit TemporaryDirectory(std::uintmax_t least_free_bytes);

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "io/calibration_format.h"
-#include "io/file_kind.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/links.h"
@@ -132,7 +131,6 @@ std::vector<CalibrationStep> read_history(const hdf5::File& file) {
 bool is_calibration_file(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
   try {
-    if (kind_of(path) != FileKind::hdf5) return false;
     const hdf5::File file = open_probed(path, options);
     return hdf5::read_text(file, file.id.get(), "format") == calibration_format::kName;
   } catch (const Error&) {

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/input_file.h"
+
 namespace pillarfield {
 
 struct SourceFormat;  // io/frame_source.h
@@ -20,10 +22,10 @@ struct DetectedFormat {
   const SourceFormat* frames = nullptr;  ///< set for FileKind::frames
 };
 
-/// Throws Error if `path` is not a regular file, is empty or cannot be read.
-[[nodiscard]] DetectedFormat detect_format(const std::filesystem::path& path);
+/// Throws Error if the file is empty or cannot be read.
+[[nodiscard]] DetectedFormat detect_format(const InputFile& file);
 [[nodiscard]] inline FileKind kind_of(const std::filesystem::path& path) {
-  return detect_format(path).kind;
+  return detect_format(InputFile(path)).kind;
 }
 
 /// State in which the last writer of an HDF5 file left it.
@@ -34,6 +36,6 @@ enum class WriterState : std::uint8_t {
 };
 
 /// Reads the consistency flags of an HDF5 file's superblock (HDF5 file format, section II.A).
-[[nodiscard]] WriterState writer_state(const std::filesystem::path& path);
+[[nodiscard]] WriterState writer_state(const InputFile& file);
 
 }  // namespace pillarfield

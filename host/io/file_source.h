@@ -68,7 +68,10 @@ class FileSource : public FrameSource {
 /// Checks that the times of all frames are finite and rise.
 class RisingTimes {
  public:
-  explicit RisingTimes(std::string place) : place_(std::move(place)) {}
+  /// `before_s`: the time before the first frame.
+  explicit RisingTimes(std::string place,
+                       double before_s = -std::numeric_limits<double>::infinity())
+      : place_(std::move(place)), before_s_(before_s) {}
 
   /// Adds the times of the next frames. Throws Error, naming the frame, if one does not rise.
   void add(std::span<const double> times_s);
@@ -76,7 +79,7 @@ class RisingTimes {
  private:
   std::string place_;
   std::uint64_t frames_ = 0;
-  double before_s_ = -std::numeric_limits<double>::infinity();
+  double before_s_;
 };
 
 }  // namespace pillarfield

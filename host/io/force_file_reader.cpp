@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"
@@ -264,7 +263,6 @@ FrameContacts ForceFileReader::read_contacts(std::uint64_t index) const {
 bool is_force_file(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
   try {
-    if (kind_of(path) != FileKind::hdf5) return false;
     const hdf5::File file = open_probed(path, options);
     return hdf5::read_text(file, file.id.get(), "format") == force_format::kName;
   } catch (const Error&) {

@@ -19,10 +19,11 @@ namespace {
 
 std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
                                         const ReadOptions& options) {
-  const DetectedFormat detected = detect_format(path);
+  const InputFile file(path);
+  const DetectedFormat detected = detect_format(file);
   if (detected.kind == FileKind::hdf5) {
-    if (!options.trust) probe_frames(path, options);
-    return read_hdf5_frames(hdf5::open_to_read(path), options);
+    if (!options.trust) probe_frames(file, options);
+    return read_hdf5_frames(hdf5::open_to_read(file), options);
   }
   if (detected.frames != nullptr) return detected.frames->open(path, options);
   std::string known = "an HDF5 recording";

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <functional>
 #include <new>
 #include <utility>
-#include <vector>
 
 #include "base/child_process.h"
 #include "io/calibration_format.h"
@@ -30,8 +30,8 @@ constexpr char kReadable = 'k';
 constexpr char kRefused = 'e';
 constexpr char kNoMemory = 'm';
 
-void try_as_it_says(const std::filesystem::path& path) {
-  hdf5::File file = hdf5::open_to_read(path, true);
+void try_as_it_says(const InputFile& input) {
+  hdf5::File file = hdf5::open_to_read(input, true);
   const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
   if (format == recording_format::kName) {
     (void)read_recording(std::move(file), {.untimed = true});
@@ -54,25 +54,6 @@ std::string answer_of(const std::function<void()>& attempt) {
   }
 }
 
-/// HDF5 shares its state of an open file with a second opener, so a probe tests nothing; a child
-/// would also share that state.
-bool is_open_already(const std::filesystem::path& path) {
-  struct stat wanted = {};
-  if (stat(path.c_str(), &wanted) != 0) return false;
-  const ssize_t files = H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_FILE);
-  if (files <= 0) return false;
-  std::vector<hid_t> ids(static_cast<std::size_t>(files));
-  const ssize_t found = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_FILE, ids.size(), ids.data());
-  for (ssize_t i = 0; i < found; ++i) {
-    char name[4096] = "";
-    struct stat open_file = {};
-    if (H5Fget_name(ids[static_cast<std::size_t>(i)], name, sizeof name) < 0) continue;
-    if (stat(name, &open_file) != 0) continue;
-    if (open_file.st_dev == wanted.st_dev && open_file.st_ino == wanted.st_ino) return true;
-  }
-  return false;
-}
-
 /// Forks from an HDF5 callback, during which HDF5 holds its lock: no other thread is in HDF5, and
 /// the child does not inherit a lock held by another thread.
 int fork_within_hdf5() {
@@ -87,19 +68,21 @@ int fork_within_hdf5() {
   return child;
 }
 
-/// Runs `attempt`, which opens the file, in a child process.
-void probe(const std::filesystem::path& path, const std::function<void()>& attempt) {
-  const hdf5::QuietErrors quiet;
-  if (kind_of(path) != FileKind::hdf5 || is_open_already(path)) return;
-  const ChildEnd end =
-      run_in_child(path.string(), {}, fork_within_hdf5, [&] { return answer_of(attempt); });
-  if (end.returned && end.text[0] == kReadable) return;
-  // The text already names the place.
-  if (end.returned && end.text[0] == kRefused) throw Error({}, end.text.substr(1));
-  if (end.returned) {
+[[noreturn]] void fail_for(const ChildEnd& end, const std::filesystem::path& path) {
+  if (end.reason == ChildEnd::Reason::interrupted) {
+    throw Error(path.string(), "interrupted while it was examined", "start again");
+  }
+  // A sound file takes some milliseconds of processor time.
+  const bool is_idle = end.processor_time < std::chrono::milliseconds(500);
+  if (end.reason == ChildEnd::Reason::late && is_idle) {
+    throw Error(
+        path.string(), "could not be examined within its time limit",
+        "its disk or network is slow, or the computer is busy; try again, or copy the file");
+  }
+  if (end.reason == ChildEnd::Reason::returned) {
     throw Error(path.string(), "opening it needs more than 1 GB of memory", kDamagedOrTrusted);
   }
-  if (!end.in_time) {
+  if (end.reason == ChildEnd::Reason::late || end.signal == SIGXCPU) {
     throw Error(path.string(), "opening it does not finish within its time limit",
                 kDamagedOrTrusted);
   }
@@ -109,19 +92,35 @@ void probe(const std::filesystem::path& path, const std::function<void()>& attem
               kDamagedOrTrusted);
 }
 
+/// Runs `attempt`, which opens the file, in a child process.
+void probe(const InputFile& file, const std::function<void()>& attempt) {
+  const hdf5::QuietErrors quiet;
+  if (detect_format(file).kind != FileKind::hdf5) return;
+  const ChildEnd end = run_in_child(file.path().string(), {}, file.descriptor(), fork_within_hdf5,
+                                    [&] { return answer_of(attempt); });
+  const bool returned = end.reason == ChildEnd::Reason::returned;
+  if (returned && end.text[0] == kReadable) return;
+  // The text already names the place.
+  if (returned && end.text[0] == kRefused) throw Error({}, end.text.substr(1));
+  fail_for(end, file.path());
+}
+
+void probe_contents(const InputFile& file) {
+  probe(file, [&] { try_as_it_says(file); });
+}
+
 }  // namespace
 
 hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options) {
-  if (!options.trust) probe_file(path);
-  return hdf5::open_to_read(path);
+  const InputFile file(path);
+  if (!options.trust) probe_contents(file);
+  return hdf5::open_to_read(file);
 }
 
-void probe_file(const std::filesystem::path& path) {
-  probe(path, [&] { try_as_it_says(path); });
-}
+void probe_file(const std::filesystem::path& path) { probe_contents(InputFile(path)); }
 
-void probe_frames(const std::filesystem::path& path, const ReadOptions& options) {
-  probe(path, [&] { (void)read_hdf5_frames(hdf5::open_to_read(path, true), options); });
+void probe_frames(const InputFile& file, const ReadOptions& options) {
+  probe(file, [&] { (void)read_hdf5_frames(hdf5::open_to_read(file, true), options); });
 }
 
 }  // namespace pillarfield

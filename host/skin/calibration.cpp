@@ -11,7 +11,8 @@
 namespace pillarfield {
 namespace {
 
-/// Throws Error unless a plane is empty or has one value in [low, high] per sensel.
+/// Throws Error unless a plane is empty or has one value in [low, high] per sensel. The limits are
+/// rounded like the values: 0.01 is below itself as a float.
 template <class Value>
 void check_plane(const std::vector<Value>& plane, const char* name, const Skin& skin,
                  std::string_view where, double low, double high) {
@@ -21,10 +22,9 @@ void check_plane(const std::vector<Value>& plane, const char* name, const Skin& 
                 fmt::format("the skin has {} x {} sensels", skin.rows, skin.cols));
   }
   for (std::size_t i = 0; i < plane.size(); ++i) {
-    const auto value = static_cast<double>(plane[i]);
-    if (value >= low && value <= high) continue;
+    if (plane[i] >= static_cast<Value>(low) && plane[i] <= static_cast<Value>(high)) continue;
     throw Error(where,
-                fmt::format("calibration plane '{}' is {} at row {}, column {}", name, value,
+                fmt::format("calibration plane '{}' is {} at row {}, column {}", name, plane[i],
                             i / skin.cols, i % skin.cols),
                 fmt::format("it must lie in [{}, {}]", low, high));
   }

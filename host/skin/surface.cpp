@@ -95,6 +95,7 @@ void require_range(std::string_view where, const char* name, double value, doubl
 }
 
 void check_heights(const Surface& surface, const PillarLayout& pillars, std::string_view where) {
+  if (surface.heights_mm.empty()) throw Error(where, "the surface has no heights", "give some");
   if (surface.heights_mm.size() != std::size_t{pillars.rows} * pillars.cols) {
     throw Error(where, fmt::format("the surface has {} heights", surface.heights_mm.size()),
                 fmt::format("give one for each of {} x {} pillars", pillars.rows, pillars.cols));

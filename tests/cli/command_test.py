@@ -1,5 +1,6 @@
 """The commands simulate, solve, compare and info."""
 
+import pathlib
 import unittest
 
 import h5py
@@ -279,6 +280,13 @@ class BadInput(CommandTest):
                 if content is not None:
                     path.unlink()
                 self.assert_folder_holds()
+
+    @unittest.skipUnless(pathlib.Path("/proc/kmsg").exists(), "Linux has it")
+    def test_files_that_wait_for_data_are_not_waited_for(self):
+        out = self.folder / "out.h5"
+        for arguments in (("simulate", "/proc/kmsg", "-o", out), ("body", "plan", "/proc/kmsg"),
+                          ("solve", "/proc/kmsg", "-o", out)):
+            self.assert_fails(*arguments, names=["/proc/kmsg"])
 
     def test_wrong_scene_names_its_line(self):
         scene = self.folder / "wrong.toml"

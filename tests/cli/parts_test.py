@@ -148,6 +148,20 @@ class PartsTest(PartsFolder):
             file["force/magnitude"] = numpy.ones((frames, 600, 600), "f4")
         self.assert_fails("join", self.output, "--copy", names=["00002.h5", "magnitude", "differs in size"])
 
+    def test_planes_longer_than_their_part_and_times_that_fall_are_refused(self):
+        self.solve("--parts", 3)
+        with h5py.File(self.parts / "00002.h5", "r+", libver="latest") as file:
+            normal, times = file["force/normal"][()], file["force/time"][()]
+            del file["force/normal"]
+            file["force/normal"] = numpy.concatenate([normal, normal[:3]])
+        self.assert_fails("join", self.output, names=["00002.h5", "/force/normal", "differs in size"])
+        with h5py.File(self.parts / "00002.h5", "r+", libver="latest") as file:
+            del file["force/normal"]
+            file["force/normal"] = normal
+            file["force/time"][:] = times - times[0]
+        self.assert_fails("join", self.output, names=["00002.h5", "rise from frame to frame"])
+        self.assertFalse(self.output.exists())
+
     def test_lost_parts_are_named(self):
         self.solve("--parts", 3)
         run("join", self.output)

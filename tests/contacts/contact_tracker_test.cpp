@@ -86,6 +86,15 @@ TEST(ContactTracker, ASlidingContactKeepsItsId) {
   }
 }
 
+TEST(ContactTracker, AFrameWithContactsNeedsATime) {
+  constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+  ContactTracker tracker(kPillarPitchMm);
+  EXPECT_TRUE(tracker.update(Patch(9, 9).view(), kNoTime).contacts.empty());
+  EXPECT_EQ(
+      core_test::message_of([&] { tracker.update(Patch(9, 9).disc(4, 4, 2).view(), kNoTime); }),
+      "ContactTracker: a frame with contacts has the time nan; give finite seconds");
+}
+
 TEST(ContactTracker, AContactThatJumpsWithinReachKeepsItsId) {
   ContactTracker tracker(kPillarPitchMm, {.reach_mm = 8});
   for (int i = 0; i < 6; ++i) {

@@ -9,10 +9,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "pillarfield/error.h"
 
@@ -207,15 +209,39 @@ TEST_F(KernelCacheTest, TemporaryDirectoriesOfKilledProcessesAreRemoved) {
   const auto entries = [&] {
     return std::distance(fs::directory_iterator(parent), fs::directory_iterator());
   };
-  { const TemporaryDirectory mine(0); }
+  set("HOME", directory("home", 0700));  // The next process needs none itself.
+  static_cast<void>(choose());
   EXPECT_EQ(entries(), 1);  // It is in use.
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_EQ(entries(), 1);
-  { const TemporaryDirectory mine(0); }
+  static_cast<void>(choose());
   EXPECT_EQ(entries(), 0);
   close(ready[0]);
   close(ready[1]);
+}
+
+TEST_F(KernelCacheTest, WhatPoclLeavesIsRemoved) {
+  const auto make = [&](const std::string& name, const char* text, std::chrono::hours age) {
+    const fs::path path = folder_ / "kernels" / name;
+    fs::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+    fs::last_write_time(path, fs::file_time_type::clock::now() - age);
+    return path;
+  };
+  using std::chrono::hours;
+  const fs::path left = make("tempfile_aB3x9z", "", hours(2));
+  const fs::path unused = make("AB/CDEFGHIJKLMNOP/last_accessed", "", hours(24 * 40));
+  make("AB/CDEFGHIJKLMNOP/solve_frame/1-1-1/solve_frame.so", "code", hours(24 * 40));
+  const std::vector<fs::path> kept = {make("tempfile_aB3x9y", "", hours(0)),
+                                      make("notes.txt", "text", hours(24 * 40)),
+                                      make("AB/CDEFGHIJKLMNOO/last_accessed", "", hours(24 * 20)),
+                                      make("notes/CDEF/last_accessed", "", hours(24 * 40))};
+  set("POCL_CACHE_DIR", folder_ / "kernels");
+  static_cast<void>(choose());
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_FALSE(fs::exists(unused.parent_path()));
+  for (const fs::path& path : kept) EXPECT_TRUE(fs::exists(path)) << path;
 }
 
 TEST_F(KernelCacheTest, AForkedProcessLeavesTheDirectoryAlone) {

@@ -148,6 +148,15 @@ TEST(CalibrationFile, MayHoldLittle) {
   expect_equal(read_calibration_file(path), bare);
 }
 
+TEST(CalibrationFile, HoldsTheLimitsOfAPlane) {
+  const TemporaryDirectory directory;
+  SkinCalibration calibration = full_calibration();
+  calibration.planes.gain[0] = 0.01F;  // below 0.01
+  calibration.planes.gain[1] = 100;
+  write_calibration_file(directory / "cal.h5", calibration);
+  expect_equal(read_calibration_file(directory / "cal.h5"), calibration);
+}
+
 TEST(CalibrationFile, AFailureLeavesTheOldOne) {
   const TemporaryDirectory directory;
   const auto path = directory / "cal.h5";

@@ -3,11 +3,13 @@
 #include "io/file_kind.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <stop_token>
 #include <string>
 #include <thread>
 
+#include "pillarfield/recording.h"
 #include "tests/io/sample_files.h"
 
 namespace pillarfield {
@@ -64,12 +66,45 @@ TEST(FileKind, ARenamedFileGivesOnlyOurErrors) {
   for (int i = 0; i < 20000; ++i) {
     try {
       found += kind_of(here) == FileKind::hdf5 ? 1 : 0;
-      static_cast<void>(writer_state(here));
+      static_cast<void>(writer_state(InputFile(here)));
     } catch (const Error& error) {
       EXPECT_TRUE(has_all(error.what(), {"here"}));
     }
   }
   EXPECT_GT(found, 0);
+}
+
+/// A pipe without a writer would block who opens it.
+TEST(FileKind, AFileThatBecomesAPipeIsRefusedAtOnce) {
+  const TemporaryDirectory directory;
+  const auto here = directory / "here";
+  const auto file = directory / "file";
+  const auto pipe = directory / "pipe";
+  Skin skin;
+  skin.rows = skin.cols = 4;
+  RecordingWriter(file, skin, SenselType::u8, {}, {}).finish();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_hard_link(file, here);
+  const std::jthread swapping([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      for (const auto& next : {pipe, file}) {
+        std::filesystem::create_hard_link(next, directory / "next");
+        std::filesystem::rename(directory / "next", here);
+        // rename() leaves both names of one file.
+        std::filesystem::remove(directory / "next");
+      }
+    }
+  });
+  int opened = 0;
+  for (int i = 0; i < 20000; ++i) {
+    try {
+      opened += kind_of(here) == FileKind::hdf5 ? 1 : 0;
+      if (i % 1000 == 0) static_cast<void>(open_frames(here));
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {"here: is not a regular file"}));
+    }
+  }
+  EXPECT_GT(opened, 0);
 }
 
 }  // namespace

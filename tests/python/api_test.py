@@ -74,6 +74,16 @@ class Stub(unittest.TestCase):
         stubbed = {node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
         self.assertEqual(stubbed, set(public(pf._core)))
 
+    def test_an_object_without_a_value_raises(self):
+        for cls in vars(pf._core).values():
+            if not inspect.isclass(cls) or type(cls).__name__ != "pybind11_type":
+                continue
+            empty = cls.__new__(cls)
+            for name, member in public(cls).items():
+                if isinstance(member, property):
+                    with self.assertRaises(TypeError, msg=f"{cls.__name__}.{name}"):
+                        getattr(empty, name)
+
     def test_exports(self):
         for name in pf.__all__:
             self.assertTrue(hasattr(pf, name), name)

@@ -181,6 +181,21 @@ class Scenes(unittest.TestCase):
             with self.assertRaises(pf.Error):
                 pf.scene(wrong)
 
+    def test_a_resized_array_is_not_read(self):
+        frames = np.zeros((40, 200, 200), np.uint8)
+        source = pf._core.FrameSource.of_array(frames, np.arange(40.0), pf.Skin(200, 200), None)
+        frames.resize((1, 2, 2), refcheck=False)
+        with self.assertRaisesRegex(pf.Error, "resized"):
+            source.read(0, 1, 40)
+
+    def test_heights_and_times_are_finite_numbers(self):
+        for heights in (np.full((4, 6), np.inf), np.full((4, 6), 2e4), np.zeros((0, 0))):
+            with self.assertRaises(pf.Error):
+                pf.Surface.height_map(heights)
+        timeless = pf.ForceField(*np.ones((3, 4, 6)), status=15 * np.ones((4, 6)), times=np.nan)
+        with self.assertRaisesRegex(pf.Error, "time nan"):
+            pf.Contacts(pf.Plan(pf.Skin(8, 12))).update(timeless)
+
     def test_comparison_with_the_truth(self):
         simulation = pf.simulate(skins.scene())
         exact = pf.compare(simulation.truth, simulation.truth)

@@ -279,14 +279,12 @@ TEST(HeightMap, OnlyRegularFilesWithAKnownEndingAreOpened) {
   const auto refused = [](const std::filesystem::path& path) {
     return message_of([&] { static_cast<void>(read_height_map(path)); });
   };
-  EXPECT_EQ(refused("/nowhere/a.npy"),
-            "/nowhere/a.npy: the height map cannot be read; name a .npy or .png file");
+  EXPECT_EQ(refused("/nowhere/a.npy"), "/nowhere/a.npy: No such file or directory; check its name");
   EXPECT_EQ(refused("/dev/zero"),
             "/dev/zero: is no height map; name a file that ends in .npy or .png");
   const auto folder = scratch("folder.png");
   std::filesystem::create_directory(folder);
-  EXPECT_EQ(refused(folder),
-            folder.string() + ": the height map cannot be read; name a .npy or .png file");
+  EXPECT_EQ(refused(folder), folder.string() + ": is a directory; name a file in it");
   std::filesystem::remove(folder);
 }
 

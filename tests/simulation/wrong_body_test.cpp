@@ -63,7 +63,7 @@ TEST(BodyOfAScene, HeightMapsAreOpenedBySimulatorsAlone) {
       "height_map_depth_mm = 1\nfriction = 1\nposition_mm = [0, 0]\nload_n = 1"));
   EXPECT_EQ(scene.bodies[0].height_map, "/nowhere/key.npy");
   EXPECT_EQ(core_test::message_of([&] { static_cast<void>(Simulator(scene)); }),
-            "/nowhere/key.npy: the height map cannot be read; name a .npy or .png file");
+            "/nowhere/key.npy: No such file or directory; check its name");
 }
 
 struct WrongBody {

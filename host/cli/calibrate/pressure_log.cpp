@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string_view>
 
+#include "base/input_file.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::cli {
 namespace {
+
+constexpr std::uint64_t kMostBytes = 256 << 20;
 
 /// The finite number that is all of `text` but blanks around it; NaN otherwise.
 double number_of(std::string_view text) {
@@ -26,8 +29,7 @@ double number_of(std::string_view text) {
 }  // namespace
 
 PressureLog::PressureLog(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Error(file, "cannot be opened", "check the path");
+  std::istringstream stream(InputFile(file, kMostBytes).text());
   std::string text;
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
     if (!text.empty() && text.back() == '\r') text.pop_back();

@@ -93,7 +93,8 @@ class ContactTracker {
   /// as `found` to save finding the contacts again; it is copied. Cost: linear in the pillars of
   /// the patch for finding, in loaded pillars for measuring, n log n in contacts. Throws Error if
   /// planes differ from the field's size, the field from the previous frame's, a run of `found`
-  /// lies outside the field, or `found` has frictions but not one per contact.
+  /// lies outside the field, `found` has frictions but not one per contact, or the time of a frame
+  /// with contacts is not finite.
   const FrameContacts& update(const ForceFieldView& forces, double time_s,
                               const FoundContacts& found = {});
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #if __has_include(<H5FDdevelop.h>)
 #include <H5FDdevelop.h>
@@ -10,23 +11,26 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <string>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "pillarfield/error.h"
+#include "io/output/part_bytes.h"
 
 namespace pillarfield::hdf5 {
 namespace {
 
 /// Options that the file access list passes to the driver.
 struct DriverOptions {
-  int descriptor = -1;  ///< of an empty file; the driver uses a duplicate
-  std::shared_ptr<WriteStatus> write_status;
+  int descriptor = -1;                        ///< the driver uses a duplicate
+  std::shared_ptr<WriteStatus> write_status;  ///< not set for reading
 };
 
 struct DriverFile : H5FD_t {
-  int descriptor = -1;
+  explicit DriverFile(int file) : descriptor(file), bytes(file) {}
+
+  int descriptor;
+  PartBytes bytes;  ///< for writing
   haddr_t allocated_end = 0;
   haddr_t file_end = 0;
   std::vector<char> waiting;  ///< adjacent small blocks, which one call writes
@@ -50,25 +54,25 @@ H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
   const auto* options = static_cast<const DriverOptions*>(H5Pget_driver_info(access));
   if (options == nullptr) return nullptr;
   const int descriptor = fcntl(options->descriptor, F_DUPFD_CLOEXEC, 0);
-  if (descriptor < 0) {
-    options->write_status->error_number = errno;
+  struct stat found = {};
+  if (descriptor < 0 || fstat(descriptor, &found) != 0) {
+    if (options->write_status) options->write_status->error_number = errno;
     return nullptr;
   }
-  auto file = std::make_unique<DriverFile>();
-  file->descriptor = descriptor;
+  auto file = std::make_unique<DriverFile>(descriptor);
+  file->file_end = static_cast<haddr_t>(found.st_size);
   file->write_status = options->write_status;
   return file.release();
 }
 
+/// Keeps the reason of the first failed write.
+void note_result(DriverFile& target, int reason) {
+  if (target.write_status->error_number == 0) target.write_status->error_number = reason;
+}
+
 void write_through(DriverFile& target, haddr_t address, const char* next, std::size_t size) {
-  while (size > 0 && target.write_status->error_number == 0) {
-    const ssize_t put = pwrite(target.descriptor, next, size, static_cast<off_t>(address));
-    if (put < 0 && errno != EINTR) target.write_status->error_number = errno;
-    if (put < 0) continue;
-    next += put;
-    address += static_cast<haddr_t>(put);
-    size -= static_cast<size_t>(put);
-  }
+  if (size == 0 || target.write_status->error_number != 0) return;
+  note_result(target, target.bytes.write(std::as_bytes(std::span(next, size)), address));
 }
 
 void write_waiting(DriverFile& target) {
@@ -79,9 +83,8 @@ void write_waiting(DriverFile& target) {
 herr_t close_file(H5FD_t* file) {
   const std::unique_ptr<DriverFile> owned(&ours(file));
   write_waiting(*owned);
-  if (::close(owned->descriptor) != 0 && owned->write_status->error_number == 0) {
-    owned->write_status->error_number = errno;
-  }
+  if (owned->write_status) note_result(*owned, owned->bytes.check());
+  if (::close(owned->descriptor) != 0 && owned->write_status) note_result(*owned, errno);
   return 0;
 }
 
@@ -150,9 +153,7 @@ herr_t truncate_file(H5FD_t* file, hid_t, hbool_t) {
   DriverFile& target = ours(file);
   write_waiting(target);
   if (target.file_end == target.allocated_end || target.write_status->error_number != 0) return 0;
-  if (ftruncate(target.descriptor, static_cast<off_t>(target.allocated_end)) != 0) {
-    target.write_status->error_number = errno;
-  }
+  note_result(target, target.bytes.resize(target.allocated_end));
   target.file_end = target.allocated_end;
   return 0;
 }
@@ -208,23 +209,26 @@ hid_t registered_driver() {
   return registered;
 }
 
+Handle driver_access(const DriverOptions& options, const std::filesystem::path& file) {
+  constexpr const char* kFailure = "HDF5 does not accept a file driver";
+  Handle access = own(H5Pcreate(H5P_FILE_ACCESS), file, kFailure);
+  require(H5Pset_driver(access.get(), registered_driver(), &options), file, kFailure);
+  return access;
+}
+
 }  // namespace
 
 void require_written(const WriteStatus& write_status, const std::filesystem::path& file) {
-  if (write_status.error_number == 0) return;
-  throw Error(file.string(),
-              std::string("cannot be written: ") + std::strerror(write_status.error_number),
-              "check its directory and the space left on its disk");
+  if (write_status.error_number != 0) fail_to_write(file, write_status.error_number);
 }
 
 Handle fault_tolerant_access(const std::shared_ptr<WriteStatus>& write_status,
                              const OutputFile& output) {
-  const std::filesystem::path& file = output.part_path();
-  constexpr const char* kFailure = "HDF5 does not accept a file driver";
-  Handle access = own(H5Pcreate(H5P_FILE_ACCESS), file, kFailure);
-  const DriverOptions options = {output.descriptor(), write_status};
-  require(H5Pset_driver(access.get(), registered_driver(), &options), file, kFailure);
-  return access;
+  return driver_access({output.descriptor(), write_status}, output.part_path());
+}
+
+Handle reading_access(const InputFile& input) {
+  return driver_access({input.descriptor(), nullptr}, input.path());
 }
 
 }  // namespace pillarfield::hdf5

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/input_file.h"
 #include "io/hdf5/handle.h"
 #include "pillarfield/output_file.h"
 
@@ -25,5 +26,9 @@ void require_written(const WriteStatus& write_status, const std::filesystem::pat
 /// so a SWMR reader finds all flushed frames.
 [[nodiscard]] Handle fault_tolerant_access(const std::shared_ptr<WriteStatus>& write_status,
                                            const OutputFile& output);
+
+/// Returns a file access list that reads `input`, wherever its name leads by then, and shares no
+/// state with other readers of the same file, as HDF5's own drivers do.
+[[nodiscard]] Handle reading_access(const InputFile& input);
 
 }  // namespace pillarfield::hdf5

@@ -36,9 +36,9 @@ std::string advice_for(std::string_view found, std::string_view wanted) {
 
 /// Limits retries to 25, which take 33 ms. By default HDF5 retries metadata that a writer may be
 /// changing 100 times and doubles each wait, which never ends in a damaged file.
-Handle reading_access(const std::filesystem::path& path, bool unclosed) {
+Handle patient_access(const InputFile& input, bool unclosed) {
   constexpr unsigned kReadAttempts = 25;
-  Handle access = own(H5Pcreate(H5P_FILE_ACCESS), path, "cannot be opened as HDF5");
+  Handle access = reading_access(input);
   if (unclosed) H5Pset_metadata_read_attempts(access.get(), kReadAttempts);
   return access;
 }
@@ -91,9 +91,12 @@ void require_whole(const File& file) {
 
 }  // namespace
 
-File open_to_read(const std::filesystem::path& path, bool probing) {
-  if (kind_of(path) != FileKind::hdf5) throw Error(path.string(), "is not an HDF5 file", kLayout);
-  const WriterState state = writer_state(path);
+File open_to_read(const InputFile& input, bool probing) {
+  const std::filesystem::path& path = input.path();
+  if (detect_format(input).kind != FileKind::hdf5) {
+    throw Error(path.string(), "is not an HDF5 file", kLayout);
+  }
+  const WriterState state = writer_state(input);
   if (state == WriterState::abandoned) {
     throw Error(path.string(), "was not closed by its writer and holds no flushed data",
                 "wait for the writer, or write it again");
@@ -103,7 +106,7 @@ File open_to_read(const std::filesystem::path& path, bool probing) {
   file.probing = probing;
   file.unclosed = state == WriterState::swmr;
   const unsigned mode = H5F_ACC_RDONLY | (file.unclosed ? H5F_ACC_SWMR_READ : 0u);
-  const Handle access = reading_access(path, file.unclosed);
+  const Handle access = patient_access(input, file.unclosed);
   file.id =
       own(H5Fopen(path.c_str(), mode, access.get()), path, "cannot be opened as HDF5", kDamaged);
   if (!file.unclosed) return file;

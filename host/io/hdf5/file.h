@@ -21,15 +21,15 @@ struct File {
   bool probing = false;                       ///< see open_to_read
   Handle flushed_bytes;                       ///< set after start_appending(): see flush()
   Handle flushed_frames;                      ///< likewise
-  /// Frames that the writer of an unclosed file has flushed. Datasets may be longer: HDF5 would read
-  /// those of their chunks that are not in the file as zeros.
+  /// Frames that the writer of an unclosed file has flushed. Datasets may be longer: HDF5 would
+  /// read those of their chunks that are not in the file as zeros.
   std::uint64_t readable_frames = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Opens a file for reading, as a SWMR reader if its writer has not closed it. With `probing`, for
-/// the child process of probe_file(), datasets refuse frames above kMaxProbedValues and read their
-/// first and last values on opening.
-[[nodiscard]] File open_to_read(const std::filesystem::path& path, bool probing = false);
+/// Opens a file for reading, as a SWMR reader if its writer has not closed it; `input` may be
+/// closed afterwards. With `probing`, for the child process of probe_file(), datasets refuse frames
+/// above kMaxProbedValues and read their first and last values on opening.
+[[nodiscard]] File open_to_read(const InputFile& input, bool probing = false);
 
 /// Returns the root attribute `version`. Throws Error unless it is 1 to `newest`, and `format` as
 /// given.

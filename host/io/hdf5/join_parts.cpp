@@ -6,10 +6,12 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "io/extension.h"
+#include "io/file_source.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"
@@ -174,6 +176,10 @@ FoundParts find_parts(const std::filesystem::path& output, const JoinOptions& op
               "solve them, or join the others with --allow-missing");
 }
 
+std::string path_of(const ResultPlane& plane) {
+  return fmt::format("/{}/{}", plane.group(), plane.name);
+}
+
 /// A joined file while it is written.
 class Joined {
  public:
@@ -203,7 +209,7 @@ class Joined {
   void write() {
     write_times();
     for (const ResultPlane& plane : planes_of(info_)) {
-      const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
+      const std::string name = path_of(plane);
       copy_ ? copy_plane(name.c_str(), H5T_IEEE_F32LE, kNoForce)
             : map_plane(name.c_str(), H5T_IEEE_F32LE, &kNoForce);
     }
@@ -215,6 +221,7 @@ class Joined {
   }
 
  private:
+  [[nodiscard]] std::vector<double> times_of_parts();
   void write_times();
   void map_plane(const char* name, hid_t stored_type, const void* fill);
   [[nodiscard]] hdf5::StoredFrames open_plane(const hdf5::File& file, const char* name,
@@ -244,16 +251,32 @@ std::optional<hdf5::File> Joined::open(std::uint64_t index) {
   if (found == found_.files.end()) return std::nullopt;
   report();
   ++done_;
-  return hdf5::open_to_read(found->second);
+  return hdf5::open_to_read(InputFile(found->second));
+}
+
+/// The times of the parts found, NaN in lost ones. Checks all planes: the reader of a part opens
+/// those that it reads, and takes the frames that they share.
+std::vector<double> Joined::times_of_parts() {
+  std::vector<double> times(found_.joined.frames, std::numeric_limits<double>::quiet_NaN());
+  double before_s = -std::numeric_limits<double>::infinity();
+  for (const auto& [index, path] : found_.files) {
+    const FrameRange range = found_.frames(index);
+    const hdf5::File file = *open(index);
+    static_cast<void>(open_plane(file, force_format::kStatus, range));
+    for (const ResultPlane& plane : planes_of(info_)) {
+      static_cast<void>(open_plane(file, path_of(plane).c_str(), range));
+    }
+    const std::span part(times.data() + range.first, range.frames());
+    hdf5::StoredFrames(file, force_format::kTime, 0)
+        .get_all(0, part.size(), H5T_NATIVE_DOUBLE, part.data());
+    RisingTimes(path.string(), before_s).add(part);
+    if (!part.empty()) before_s = part.back();
+  }
+  return times;
 }
 
 void Joined::write_times() {
-  std::vector<double> times(found_.joined.frames, std::numeric_limits<double>::quiet_NaN());
-  for (const auto& [index, file] : found_.files) {
-    const FrameRange range = found_.frames(index);
-    hdf5::StoredFrames(*open(index), force_format::kTime, 0)
-        .get_all(0, range.frames(), H5T_NATIVE_DOUBLE, times.data() + range.first);
-  }
+  const std::vector<double> times = times_of_parts();
   if (!copy_) return hdf5::write_numbers(file_, force_format::kTime, times);
   hdf5::ExtendibleDataset target(file_, force_format::kTime, H5T_IEEE_F64LE, {});
   target.append(H5T_NATIVE_DOUBLE, times.data(), times.size());
@@ -299,7 +322,7 @@ hdf5::StoredFrames Joined::open_plane(const hdf5::File& file, const char* name,
                                       const FrameRange& range) const {
   hdf5::StoredFrames plane(file, name, 2, true);
   const bool fits = plane.shape() == std::vector<hsize_t>{info_.rows, info_.cols} &&
-                    plane.frames() >= range.frames();
+                    plane.frames() == range.frames();
   if (fits) return plane;
   throw Error(file.path.string(), fmt::format("{} differs in size from its status", name),
               "solve this part again");
@@ -307,8 +330,8 @@ hdf5::StoredFrames Joined::open_plane(const hdf5::File& file, const char* name,
 
 template <class Value>
 void Joined::copy_plane(const char* name, hid_t type, Value lost) {
-  const auto layout =
-      layout_of<Value>(hdf5::open_to_read(found_.files.begin()->second), name, type, info_.cols);
+  const auto layout = layout_of<Value>(hdf5::open_to_read(InputFile(found_.files.begin()->second)),
+                                       name, type, info_.cols);
   hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &layout.idle, layout.tiling,
                            found_.joined.frames);
   std::vector<Value> values(std::size_t{info_.rows} * info_.cols);

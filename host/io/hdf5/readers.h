@@ -25,7 +25,7 @@ namespace pillarfield {
                                                            const ReadOptions& options);
 
 /// As probe_file(), for read_hdf5_frames().
-void probe_frames(const std::filesystem::path& path, const ReadOptions& options);
+void probe_frames(const InputFile& file, const ReadOptions& options);
 
 /// Opens everything that a ForceFileReader reads.
 void try_forces(hdf5::File file);

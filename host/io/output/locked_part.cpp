@@ -62,6 +62,7 @@ LockedPart::LockedPart(OutputPlace place) : place_(std::move(place)) {
       if (tries == kMaxTries) fail_as_locked(place_);
     }
     require_unused();
+    bytes_.emplace(descriptor_);
   } catch (...) {
     if (descriptor_ >= 0) close(descriptor_);
     throw;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "io/output/output_place.h"
+#include "io/output/part_bytes.h"
 
 namespace pillarfield {
 
@@ -20,6 +22,7 @@ class LockedPart {
   LockedPart& operator=(const LockedPart&) = delete;
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] PartBytes& bytes() { return *bytes_; }
   [[nodiscard]] bool was_there() const { return was_there_; }
 
   /// Whether the part's name still refers to this file.
@@ -32,6 +35,7 @@ class LockedPart {
 
   OutputPlace place_;
   int descriptor_ = -1;
+  std::optional<PartBytes> bytes_;
   bool was_there_ = false;
 };
 

@@ -21,11 +21,6 @@
 namespace pillarfield {
 namespace {
 
-[[noreturn]] void fail_to_write(const std::filesystem::path& path, int error_number) {
-  throw Error(path.string(), std::string("cannot be written: ") + std::strerror(error_number),
-              "check its directory and the space left on its disk");
-}
-
 /// Returns 0 or errno of fsync(), which some file systems do not support.
 int reason_of_sync(int result) {
   return result == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
@@ -91,13 +86,8 @@ int OutputFile::descriptor() const { return part_ == nullptr ? -1 : part_->descr
 
 void OutputFile::put(std::span<const std::byte> bytes, std::uint64_t offset) {
   if (!is_open()) throw Error(path_.string(), "is finished", "start another file");
-  while (!bytes.empty()) {
-    const ssize_t written =
-        pwrite(descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_to_write(part_path_, errno);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
+  if (const int reason = part_->bytes().write(bytes, offset); reason != 0) {
+    fail_to_write(part_path_, reason);
   }
 }
 
@@ -149,7 +139,9 @@ void OutputFile::take_name() {
 void OutputFile::commit() {
   if (!is_open()) throw Error(path_.string(), "is finished", "start another file");
   take_sync_result();
-  const int reason = reason_of_sync(fsync(descriptor()));
+  int reason = reason_of_sync(fsync(descriptor()));
+  // Other outputs are written by HDF5 or another program.
+  if (reason == 0 && part_->bytes().end() > 0) reason = part_->bytes().check();
   if (reason != 0) fail_to_write(part_path_, reason);
   if (!part_->has_its_name()) {
     throw Error(part_path_.string(), "was renamed or removed while it was written",

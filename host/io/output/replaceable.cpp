@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,9 +29,9 @@ struct FoundContent {
   const SinkFormat* format = nullptr;  ///< for forces and contacts
 };
 
-FoundContent hdf5_content(const std::filesystem::path& path) {
+FoundContent hdf5_content(const InputFile& input) {
   const hdf5::QuietErrors quiet;
-  const hdf5::File file = hdf5::open_to_read(path);
+  const hdf5::File file = hdf5::open_to_read(input);
   const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
   if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
   if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};
@@ -59,11 +58,8 @@ constexpr std::array<Beginning, 5> kBeginnings = {{
     {OutputKind::svg, "is a drawing", 0, "<svg"},
 }};
 
-FoundContent content_by_beginning(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string head(1024, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
+FoundContent content_by_beginning(const InputFile& file) {
+  const std::string head = file.text_at(0, 1024);
   for (const Beginning& beginning : kBeginnings) {
     if (head.size() < beginning.offset) continue;
     if (head.compare(beginning.offset, beginning.bytes.size(), beginning.bytes) == 0) {
@@ -76,14 +72,16 @@ FoundContent content_by_beginning(const std::filesystem::path& path) {
   if (head.starts_with("<?xml") && head.find("<svg") != std::string::npos) {
     return {OutputKind::svg, "is a drawing"};
   }
-  return {std::nullopt, path.extension() == ".toml" ? "is a scene or another TOML file"
-                                                    : "is not an earlier output of this kind"};
+  return {std::nullopt, file.path().extension() == ".toml"
+                            ? "is a scene or another TOML file"
+                            : "is not an earlier output of this kind"};
 }
 
 FoundContent content_of(const std::filesystem::path& path) {
-  const DetectedFormat detected = detect_format(path);
-  if (detected.kind == FileKind::hdf5) return hdf5_content(path);
-  FoundContent found = content_by_beginning(path);
+  const InputFile file(path);
+  const DetectedFormat detected = detect_format(file);
+  if (detected.kind == FileKind::hdf5) return hdf5_content(file);
+  FoundContent found = content_by_beginning(file);
   if (found.kind || detected.frames == nullptr) return found;
   return {std::nullopt, fmt::format("is a {}", detected.frames->name)};
 }

@@ -166,7 +166,7 @@ NpyHeader parse_dictionary(std::string_view text, const std::string& place) {
 
 class NpyInFile final : public NumberArray {
  public:
-  NpyInFile(RandomFile file, std::uint64_t data, const NpyHeader& header, std::string place)
+  NpyInFile(InputFile file, std::uint64_t data, const NpyHeader& header, std::string place)
       : NumberArray(std::move(place), header.type, header.shape),
         file_(std::move(file)),
         data_(data),
@@ -179,7 +179,7 @@ class NpyInFile final : public NumberArray {
   }
 
  private:
-  RandomFile file_;
+  InputFile file_;
   std::uint64_t data_;
   bool is_swapped_;
 };
@@ -223,7 +223,7 @@ void swap_bytes(std::byte* numbers, std::size_t count, std::size_t number_bytes)
   }
 }
 
-std::unique_ptr<NumberArray> npy_in_file(RandomFile file, std::uint64_t offset,
+std::unique_ptr<NumberArray> npy_in_file(InputFile file, std::uint64_t offset,
                                          std::uint64_t available, std::string place) {
   const NpyHeader header = parse_npy_header(
       file.text_at(offset, std::min<std::uint64_t>(available, kLongestNpyHeader)), place);

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/input_file.h"
 #include "io/plain/number_array.h"
-#include "io/plain/random_file.h"
 
 namespace pillarfield {
 
@@ -36,7 +36,7 @@ void swap_bytes(std::byte* numbers, std::size_t count, std::size_t number_bytes)
 
 /// The array at `offset` of a file, whose data are read when they are asked for. Throws Error if
 /// the file is shorter than the header says; `available` is the largest size, header included.
-[[nodiscard]] std::unique_ptr<NumberArray> npy_in_file(RandomFile file, std::uint64_t offset,
+[[nodiscard]] std::unique_ptr<NumberArray> npy_in_file(InputFile file, std::uint64_t offset,
                                                        std::uint64_t available, std::string place);
 
 }  // namespace pillarfield

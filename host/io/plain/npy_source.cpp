@@ -77,8 +77,7 @@ class NpzArchive {
   [[nodiscard]] std::unique_ptr<NumberArray> open(const NpzArray& array) const {
     std::string place = fmt::format("{}: {}", path_.string(), array.name);
     if (!array.member.is_deflated) {
-      return npy_in_file(RandomFile(path_), array.member.data, array.member.bytes,
-                         std::move(place));
+      return npy_in_file(InputFile(path_), array.member.data, array.member.bytes, std::move(place));
     }
     std::vector<std::byte> bytes = inflate(file_, array.member);
     const NpyHeader& header = array.header;
@@ -107,7 +106,7 @@ class NpzArchive {
   }
 
   std::filesystem::path path_;
-  RandomFile file_;
+  InputFile file_;
   std::vector<NpzArray> arrays_;
   std::map<std::string, std::string> refused_;  ///< name, and why
 };
@@ -115,7 +114,7 @@ class NpzArchive {
 std::unique_ptr<FileSource> open_npy(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   refuse_dataset(path, options);
-  RandomFile file(path);
+  InputFile file(path);
   const std::uint64_t size = file.size();
   return array_source(path, "NumPy array", npy_in_file(std::move(file), 0, size, path.string()), {},
                       options);

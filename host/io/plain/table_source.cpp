@@ -10,9 +10,9 @@
 #include <string_view>
 #include <utility>
 
+#include "base/input_file.h"
 #include "io/force_sink.h"
 #include "io/frame_source.h"
-#include "io/plain/random_file.h"
 #include "io/plain/source.h"
 #include "io/tekscan/line_reader.h"
 #include "pillarfield/error.h"
@@ -248,7 +248,7 @@ std::vector<std::uint64_t> shape_of(const Table& table, std::uint64_t rows,
 
 /// Throws Error for a table of forces or contacts.
 void refuse_output(const std::filesystem::path& path) {
-  const SinkFormat* const format = format_by_beginning(RandomFile(path).text_at(0, 1024));
+  const SinkFormat* const format = format_by_beginning(InputFile(path).text_at(0, 1024));
   if (format == nullptr) return;
   throw Error(path.string(), format->content, "give the readings that it was solved from");
 }

@@ -16,14 +16,14 @@ constexpr const char* kDamagedArchive = "the archive is damaged or truncated; us
 constexpr std::uint64_t kMostDirectoryBytes = 16U << 20U;
 constexpr std::uint32_t kIn64Bits = 0xffffffff;
 
-[[noreturn]] void fail_archive(const RandomFile& archive, std::string_view failure) {
+[[noreturn]] void fail_archive(const InputFile& archive, std::string_view failure) {
   throw Error(archive.path().string(), failure, kDamagedArchive);
 }
 
 /// Little-endian numbers of a record of the archive.
 class ZipRecord {
  public:
-  ZipRecord(const RandomFile& archive, std::string_view bytes) : archive_(archive), bytes_(bytes) {}
+  ZipRecord(const InputFile& archive, std::string_view bytes) : archive_(archive), bytes_(bytes) {}
 
   [[nodiscard]] std::uint64_t number(std::size_t at, std::size_t size) const {
     if (at + size > bytes_.size()) fail_archive(archive_, "a record of the archive is cut off");
@@ -39,7 +39,7 @@ class ZipRecord {
   }
 
  private:
-  const RandomFile& archive_;
+  const InputFile& archive_;
   std::string_view bytes_;
 };
 
@@ -49,7 +49,7 @@ struct Directory {
 };
 
 /// Reads the end of central directory record, and that of 64 bits where it is needed.
-Directory find_directory(const RandomFile& archive) {
+Directory find_directory(const InputFile& archive) {
   constexpr std::uint64_t kEndBytes = 22;
   constexpr std::uint64_t kLongestComment = 65535;
   constexpr std::uint64_t kLocatorBytes = 20;
@@ -102,7 +102,7 @@ void take_64_bits(const ZipRecord& extra, std::size_t extra_bytes,
 }
 
 /// Sets the offset of a member's data, which follow its local header.
-void find_data(const RandomFile& archive, std::uint64_t header_at, ZipMember& member) {
+void find_data(const InputFile& archive, std::uint64_t header_at, ZipMember& member) {
   constexpr std::uint64_t kHeaderBytes = 30;
   const std::string text = archive.text_at(header_at, kHeaderBytes);
   const ZipRecord header(archive, text);
@@ -115,7 +115,7 @@ void find_data(const RandomFile& archive, std::uint64_t header_at, ZipMember& me
   }
 }
 
-void check_member(const RandomFile& archive, const ZipMember& member, std::uint64_t flags,
+void check_member(const InputFile& archive, const ZipMember& member, std::uint64_t flags,
                   std::uint64_t method) {
   constexpr std::uint64_t kEncrypted = 1;
   const std::string place = fmt::format("{}: {:.60}", archive.path().string(), member.name);
@@ -132,8 +132,7 @@ void check_member(const RandomFile& archive, const ZipMember& member, std::uint6
 /// Runs zlib on a member's data.
 class Inflater {
  public:
-  Inflater(const RandomFile& archive, const ZipMember& member)
-      : archive_(archive), member_(member) {
+  Inflater(const InputFile& archive, const ZipMember& member) : archive_(archive), member_(member) {
     constexpr int kWithoutHeader = -15;
     if (inflateInit2(&stream_, kWithoutHeader) != Z_OK) throw std::bad_alloc();
   }
@@ -174,7 +173,7 @@ class Inflater {
     stream_.avail_in = static_cast<uInt>(count);
   }
 
-  const RandomFile& archive_;
+  const InputFile& archive_;
   const ZipMember& member_;
   z_stream stream_ = {};
   std::vector<std::byte> input_ = std::vector<std::byte>(64U << 10U);
@@ -184,7 +183,7 @@ class Inflater {
 
 }  // namespace
 
-std::vector<ZipMember> list_zip(const RandomFile& archive) {
+std::vector<ZipMember> list_zip(const InputFile& archive) {
   constexpr std::size_t kEntryBytes = 46;
   const Directory directory = find_directory(archive);
   const std::string text = archive.text_at(directory.offset, directory.bytes);
@@ -212,7 +211,7 @@ std::vector<ZipMember> list_zip(const RandomFile& archive) {
   return members;
 }
 
-std::string head_of(const RandomFile& archive, const ZipMember& member, std::size_t count) {
+std::string head_of(const InputFile& archive, const ZipMember& member, std::size_t count) {
   if (!member.is_deflated) {
     return archive.text_at(member.data, std::min<std::uint64_t>(count, member.bytes));
   }
@@ -221,7 +220,7 @@ std::string head_of(const RandomFile& archive, const ZipMember& member, std::siz
   return head;
 }
 
-std::vector<std::byte> inflate(const RandomFile& archive, const ZipMember& member) {
+std::vector<std::byte> inflate(const InputFile& archive, const ZipMember& member) {
   constexpr std::uint64_t kMostRatio = 1032;  // of deflate
   const std::string place = fmt::format("{}: {:.60}", archive.path().string(), member.name);
   if (member.bytes > kMostInflatedBytes) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/plain/random_file.h"
+#include "base/input_file.h"
 
 namespace pillarfield {
 
@@ -24,14 +24,14 @@ inline constexpr std::uint64_t kMostInflatedBytes = std::uint64_t{1} << 30;
 
 /// Lists the stored and deflated members of a ZIP archive (APPNOTE.TXT of PKWARE, version 6.3), in
 /// 64-bit form too. Throws Error if it is damaged, encrypted, or a member lies outside the file.
-[[nodiscard]] std::vector<ZipMember> list_zip(const RandomFile& archive);
+[[nodiscard]] std::vector<ZipMember> list_zip(const InputFile& archive);
 
 /// The first bytes of a member, at most `count`.
-[[nodiscard]] std::string head_of(const RandomFile& archive, const ZipMember& member,
+[[nodiscard]] std::string head_of(const InputFile& archive, const ZipMember& member,
                                   std::size_t count);
 
 /// Inflates a deflated member. Throws Error if it exceeds kMostInflatedBytes, has another size than
 /// the archive says, or another checksum.
-[[nodiscard]] std::vector<std::byte> inflate(const RandomFile& archive, const ZipMember& member);
+[[nodiscard]] std::vector<std::byte> inflate(const InputFile& archive, const ZipMember& member);
 
 }  // namespace pillarfield

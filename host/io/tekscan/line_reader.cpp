@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include <span>
 #include <utility>
 
 #include "pillarfield/error.h"
@@ -17,12 +16,7 @@ constexpr std::size_t kLongestLine = 1 << 20;
 }  // namespace
 
 LineReader::LineReader(std::filesystem::path path, const char* mend_long)
-    : path_(std::move(path)),
-      mend_long_(mend_long),
-      file_(std::fopen(path_.c_str(), "rb")),
-      buffer_(2 * kLongestLine) {
-  if (!file_) throw Error(path_.string(), std::strerror(errno), "check its permissions");
-}
+    : file_(std::move(path)), mend_long_(mend_long), buffer_(2 * kLongestLine) {}
 
 bool LineReader::next() {
   std::string_view rest(&buffer_[begin_], end_ - begin_);
@@ -40,16 +34,20 @@ bool LineReader::next() {
   return true;
 }
 
-std::string LineReader::place() const { return fmt::format("{}:{}", path_.string(), number_); }
+std::string LineReader::place() const {
+  return fmt::format("{}:{}", file_.path().string(), number_);
+}
 
 /// Moves the unread bytes to the front and fills the rest of the buffer.
 void LineReader::fill() {
   std::move(&buffer_[begin_], &buffer_[end_], buffer_.data());
   end_ -= begin_;
   begin_ = 0;
-  end_ += std::fread(&buffer_[end_], 1, buffer_.size() - 1 - end_, file_.get());
-  if (std::ferror(file_.get()) == 0) return;
-  throw Error(path_.string(), "cannot be read to its end", "use another copy");
+  const std::uint64_t count =
+      std::min<std::uint64_t>(buffer_.size() - 1 - end_, file_.size() - offset_);
+  file_.read(offset_, std::as_writable_bytes(std::span(&buffer_[end_], count)));
+  offset_ += count;
+  end_ += count;
 }
 
 }  // namespace pillarfield

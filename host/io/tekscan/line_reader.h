@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/input_file.h"
 
 namespace pillarfield {
 
@@ -27,14 +27,11 @@ class LineReader {
   [[nodiscard]] std::string place() const;
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   void fill();
 
-  std::filesystem::path path_;
+  InputFile file_;
+  std::uint64_t offset_ = 0;  // of the next bytes for the buffer
   const char* mend_long_;
-  std::unique_ptr<std::FILE, Close> file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  // of the unread bytes
   std::size_t end_ = 0;

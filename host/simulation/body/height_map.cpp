@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <system_error>
 
+#include "base/input_file.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -14,21 +13,9 @@ namespace {
 
 std::vector<std::byte> bytes_of_height_map(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{160} << 20U;
-  const Error unreadable(path.string(), "the height map cannot be read",
-                         "name a .npy or .png file");
-  // Never opens a pipe or device: reading it may block.
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed) || failed) throw unreadable;
-  const std::uintmax_t size = std::filesystem::file_size(path, failed);
-  if (failed) throw unreadable;
-  if (size > kMostBytes) {
-    throw Error(path.string(), fmt::format("the height map has {} bytes", size),
-                fmt::format("it may have {}", kMostBytes));
-  }
-  std::vector<std::byte> bytes(size);
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!file) throw unreadable;
+  const InputFile file(path, kMostBytes);
+  std::vector<std::byte> bytes(file.size());
+  file.read(0, bytes);
   return bytes;
 }
 

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <numbers>
-#include <system_error>
 
+#include "base/input_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
 #include "simulation/closed_form/direction_sweep.h"
@@ -467,18 +465,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
 
 Scene load_scene(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMaxBytes = 16 << 20;
-  const Error unreadable(path.string(), "cannot be read", "name a scene file (.toml)");
-  // Check the size first: only regular files have one, and opening a pipe may block.
-  std::error_code failed;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
-  if (failed) throw unreadable;
-  if (bytes > kMaxBytes) {
-    throw Error(path.string(), fmt::format("has {} bytes", bytes), "a scene has 16 MiB at most");
-  }
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.is_open() || file.bad()) throw unreadable;
-  return parse_scene(text, path.string());
+  return parse_scene(InputFile(path, kMaxBytes).text(), path.string());
 }
 
 }  // namespace pillarfield
