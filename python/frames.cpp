@@ -9,9 +9,11 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
@@ -30,7 +32,8 @@ constexpr const char* kArray = R"(Frames of an array, without a copy.
 readings: uint8, uint16 or float32 [frames, rows, cols], dense
 times: float64 [frames], s
 skin: Skin with constants; its rows and columns are replaced by those of the array
-calibration: Calibration, or None)";
+calibration: Calibration, or None
+axes_are_known: else raises Error if the frames seem to lie along another axis)";
 
 using TimeArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
@@ -53,6 +56,7 @@ class ArraySource final : public FrameSource {
       first_ = static_cast<const std::byte*>(frame.data);
     }
     check(skin_, "frames");
+    warnings_ = size_warnings(skin_.rows, skin_.cols);
     if (!calibration) return;
     require_fitting(*calibration, skin_, "frames");
     apply(*calibration, skin_, calibration_);
@@ -155,7 +159,7 @@ SkinCalibration calibration_of(const Frames& frames) {
 std::unique_ptr<Frames> open(
     const std::filesystem::path& path, bool trust, std::string dataset, std::string times,
     const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
-    std::optional<double> rate_hz, std::uint64_t tare_frames) {
+    std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes) {
   const py::gil_scoped_release unlocked;
   ReadOptions options;
   options.trust = trust;
@@ -164,14 +168,26 @@ std::unique_ptr<Frames> open(
   if (frame_size) options.frame_size = {frame_size->first, frame_size->second};
   options.rate_hz = rate_hz;
   options.tare_frames = tare_frames;
+  if (!axes.empty()) options.axes = parse_axes(axes);
   return std::make_unique<Frames>(open_frames(path, options));
 }
 
 std::unique_ptr<Frames> of_array(const py::array& readings, const TimeArray& times,
                                  const Skin& skin,
-                                 const std::optional<SkinCalibration>& calibration) {
-  return std::make_unique<Frames>(
-      std::make_unique<ArraySource>(readings, times, skin, calibration));
+                                 const std::optional<SkinCalibration>& calibration,
+                                 bool axes_are_known) {
+  auto source = std::make_unique<ArraySource>(readings, times, skin, calibration);
+  if (!axes_are_known) require_likely_axes(*source, "frames");
+  return std::make_unique<Frames>(std::move(source));
+}
+
+/// Positions of the axes frames, rows and columns in an array whose axes `words` names in order.
+std::vector<std::size_t> axis_positions(const std::string& words) {
+  const std::vector<ArrayAxis> axes = parse_axes(words);
+  std::vector<std::size_t> positions(axes.size());
+  std::iota(positions.begin(), positions.end(), 0);
+  std::ranges::sort(positions, {}, [&](std::size_t position) { return axes[position]; });
+  return positions;
 }
 
 void write(Frames& frames, const std::filesystem::path& path, bool overwrite) {
@@ -198,9 +214,9 @@ void bind_frames(py::module_& module) {
       .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("trust") = false,
                   py::arg("dataset") = "", py::arg("times") = "",
                   py::arg("frame_size") = py::none(), py::arg("rate_hz") = py::none(),
-                  py::arg("tare_frames") = 0, kOpen)
+                  py::arg("tare_frames") = 0, py::arg("axes") = "", kOpen)
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
-                  py::arg("calibration"), kArray)
+                  py::arg("calibration"), py::arg("axes_are_known") = false, kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),
            "Writes all frames as a recording.")
       .def_property_readonly(
@@ -234,6 +250,12 @@ void bind_frames(py::module_& module) {
           py::arg("first"), py::arg("step"), py::arg("count"),
           "Planes of the true forces of `count` frames.")
       .def("__len__", [](const Frames& self) { return self.source->frames(); });
+  module.def("axis_positions", &axis_positions, py::arg("words"),
+             "Positions of the axes frames, rows and columns in an array with axes of this order.");
+  module.def("size_warnings", &size_warnings, py::arg("rows"), py::arg("cols"),
+             "Sentences about an odd last row or column, which has no pillars.");
+  module.def("require_likely_frame", &require_likely_frame, py::arg("rows"), py::arg("cols"),
+             py::arg("place"), "Raises Error if an array is too elongated for one frame.");
 }
 
 }  // namespace pillarfield::python

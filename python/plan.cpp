@@ -82,12 +82,7 @@ void set_outputs(SolverPlan& plan, const std::vector<std::string>& outputs) {
 
 /// Applies a scene and returns its time constant of the baseline.
 std::optional<double> apply(const Scene& scene, SolverPlan& plan) {
-  const std::uint32_t rows = plan.skin.rows;
-  const std::uint32_t cols = plan.skin.cols;
-  plan.skin = scene.skin;
-  plan.skin.rows = rows;
-  plan.skin.cols = cols;
-  if (const auto surface = surface_of(scene)) plan.skin.surface = surface;
+  set_skin(plan.skin, scene);
   set_solver(plan, scene);
   return scene.baseline_time_s;
 }

@@ -10,6 +10,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/pipeline.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/reading_check.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
 #include "python/frames.h"
@@ -62,7 +63,8 @@ class IteratorStream final : public FrameStream {
 /// Collects planes, times and contacts.
 class Collector final : public ForceSink {
  public:
-  explicit Collector(const Skin& skin) : planes_(skin.pillar_rows(), skin.pillar_cols()) {}
+  explicit Collector(const SolverPlan& plan)
+      : planes_(plan.skin.pillar_rows(), plan.skin.pillar_cols()), check_(plan) {}
 
   void reserve(std::size_t frames) {
     planes_.reserve(frames);
@@ -70,6 +72,7 @@ class Collector final : public ForceSink {
   }
   void append(const SolvedFrame& frame) override {
     planes_.append(frame.forces);
+    check_.append(frame);
     times_.push_back(frame.time_s);
     if (frame.contacts != nullptr) {
       contacts_.push_back(std::make_shared<FrameContacts>(*frame.contacts));
@@ -78,6 +81,7 @@ class Collector final : public ForceSink {
   [[nodiscard]] py::dict release(bool with_contacts) {
     py::dict result = planes_.release();
     const auto size = static_cast<py::ssize_t>(times_.size());
+    result["warnings"] = py::cast(check_.warnings());
     result["times"] = array_of(std::move(times_), {size});
     if (with_contacts) result["contacts"] = py::cast(std::move(contacts_));
     return result;
@@ -85,6 +89,7 @@ class Collector final : public ForceSink {
 
  private:
   ForceStack planes_;
+  ReadingCheck check_;
   std::vector<double> times_;
   std::vector<std::shared_ptr<FrameContacts>> contacts_;
 };
@@ -109,7 +114,7 @@ void run(FrameStream& stream, const SolverPlan& plan, bool contacts, const Devic
 
 py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
                       const std::string& device) {
-  Collector collector(plan.skin);
+  Collector collector(plan);
   {
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(frames.alone);
@@ -122,7 +127,7 @@ py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
 
 py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool contacts,
                         const std::string& device) {
-  Collector collector(plan.skin);
+  Collector collector(plan);
   IteratorStream stream(frames, plan);
   {
     const py::gil_scoped_release unlocked;
@@ -135,7 +140,8 @@ py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool
 
 void bind_solve(py::module_& module) {
   constexpr const char* kText =
-      "Solves all frames: planes of forces, 'times' and, if wanted, 'contacts' of each frame.";
+      "Solves all frames: planes of forces, 'times' and, if wanted, 'contacts' of each frame; and "
+      "'warnings' about their readings.";
   module.def("solve_source", &solve_source, py::arg("source"), py::arg("plan"), py::arg("contacts"),
              py::arg("device"), kText);
   module.def("solve_iterator", &solve_iterator, py::arg("frames"), py::arg("plan"),

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pillarfield/error.h"
 #include "pillarfield/live.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/tare.h"
@@ -175,6 +176,14 @@ void take_shape(Options& options, const std::string& text) {
       FrameSize{static_cast<std::uint32_t>(shape[0]), static_cast<std::uint32_t>(shape[1])};
 }
 
+void take_axes(Options& options, const std::string& text) {
+  try {
+    options.plain.axes = parse_axes(text);
+  } catch (const Error& error) {
+    throw CLI::ValidationError(error.what());
+  }
+}
+
 /// Adds what files of plain numbers leave open.
 void add_plain_data(CLI::App& app, Options& options) {
   ReadOptions& plain = options.plain;
@@ -185,6 +194,9 @@ void add_plain_data(CLI::App& app, Options& options) {
   group(app.add_option_function<std::string>(
       "--shape", [&](const std::string& text) { take_shape(options, text); },
       "Sensels of a frame whose readings lie in one line, ROWSxCOLS"));
+  group(app.add_option_function<std::string>(
+      "--axes", [&](const std::string& text) { take_axes(options, text); },
+      "Order of the array's axes [frames,rows,columns]"));
   group(app.add_option("--rate", plain.rate_hz, "Frames per second, if the file has no times")
             ->check(above(1e-6, 1e9)));
   group(app.add_option("--pitch-mm", plain.sensel_pitch_mm, "Distance of neighbouring sensels")

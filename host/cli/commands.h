@@ -100,6 +100,12 @@ struct StreamOptions : PrintOptions {
   DeviceOptions device;
 };
 
+/// A line of control for a running stream.
+struct ControlOptions {
+  std::string socket;
+  std::vector<std::string> words;
+};
+
 struct CompareOptions : PrintOptions {
   std::string forces;
   std::string recording;
@@ -183,6 +189,7 @@ void solve(const SolveOptions& given);
 void join(const JoinCommand& command);
 void pace(const PaceOptions& options);
 void stream(const StreamOptions& options);
+void control(const ControlOptions& options);
 void compare(const CompareOptions& options);
 void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);

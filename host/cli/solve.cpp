@@ -23,6 +23,7 @@
 #include "pillarfield/force_file.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/reading_check.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/solve_range.h"
 #include "pillarfield/tuning.h"
@@ -205,24 +206,6 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// Warns of a recording that seems to lack its tare: nearly all pillars of a real skin in contact.
-void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
-                  const SolveSummary& summary) {
-  constexpr double kNearlyAll = 0.95;
-  const RegionCount& regions = summary.regions;
-  const auto present =
-      static_cast<double>(regions.all() - summary.done.frames * count_pillars_without_sensels(
-                                                                    plan.calibration, plan.skin));
-  if (source.has_truth() || !plan.calibration.tare.empty() || !(present > 0) ||
-      static_cast<double>(regions.in_contact()) < kNearlyAll * present) {
-    return;
-  }
-  fmt::print(stderr,
-             "{}: {} of all pillars are in contact and there is no tare; measure one with "
-             "'pillarfield calibrate tare', or in frames without load with --tare-frames\n",
-             printable(options.input), percent(regions.in_contact(), regions.all()));
-}
-
 /// What a solve of all frames or of some parts needs.
 struct Job {
   const SolveOptions& options;
@@ -231,6 +214,7 @@ struct Job {
   const SolverPlan& plan;
   RangeOptions range;
   Counter& counter;
+  ReadingCheck& check;
 };
 
 /// Solves all frames into the outputs of the options.
@@ -244,7 +228,7 @@ void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveS
     files.push_back(create_contact_sink(
         table->path, {info.pillar_pitch_mm, info.source, options.contacts}, options.replace));
   }
-  std::vector<ForceSink*> sinks = {&job.counter};
+  std::vector<ForceSink*> sinks = {&job.counter, &job.check};
   for (const auto& file : files) sinks.push_back(file.get());
   summary.done =
       solve_range(job.source, job.device, job.plan, {0, job.source.frames()}, job.range, sinks);
@@ -260,8 +244,8 @@ void solve_parts(const Job& job, SolveSummary& summary) {
     ForcePart part;
     part.index = index;
     part.count = summary.parts->count;
-    const auto done =
-        solve_part(job.source, job.device, job.plan, job.range, output, info, part, {&job.counter});
+    const auto done = solve_part(job.source, job.device, job.plan, job.range, output, info, part,
+                                 {&job.counter, &job.check});
     if (!done) {
       summary.skipped.push_back(index);
       continue;
@@ -302,8 +286,7 @@ void solve(const SolveOptions& given) {
   check_outputs({options.input, options.plan.scene, options.plan.calibration},
                 outputs_of(options, table), options.replace);
   const std::unique_ptr<FrameSource> source =
-      open_frames(options.input, frame_options(options.plan));
-  print_file_warnings(options.input, source->warnings());
+      open_frames_with_warnings(options.input, frame_options(options.plan), options.quiet);
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device.name);
@@ -314,6 +297,7 @@ void solve(const SolveOptions& given) {
                      .on_compiling = terminal_line(options.quiet)};
   if (!options.contacts_file.empty()) range.contacts = options.contacts;
   SolveSummary summary;
+  ReadingCheck check(plan);
   range.stop = [&, started = false]() mutable {
     // Called first when all is compiled.
     if (!std::exchange(started, true)) summary.startup_seconds = watch.seconds();
@@ -322,7 +306,7 @@ void solve(const SolveOptions& given) {
   summary.parts = share_of(options.parts);
   {
     Counter counter(source->frames(), options.quiet);
-    const Job job = {options, *source, device, plan, range, counter};
+    const Job job = {options, *source, device, plan, range, counter, check};
     if (summary.parts) {
       solve_parts(job, summary);
     } else {
@@ -331,7 +315,7 @@ void solve(const SolveOptions& given) {
     summary.regions = counter.regions();
   }
   summary.seconds = watch.seconds() - summary.startup_seconds;
-  warn_of_tare(options, *source, plan, summary);
+  if (!source->has_truth()) print_file_warnings(options.input, check.warnings());
   if (options.json) {
     print_json(options, plan, device, summary, source->warnings());
   } else if (!options.quiet) {

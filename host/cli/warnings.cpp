@@ -12,6 +12,15 @@ void print_file_warnings(const std::string& file, const std::vector<std::string>
   }
 }
 
+std::unique_ptr<FrameSource> open_frames_with_warnings(const std::string& file,
+                                                       const ReadOptions& options, bool quiet) {
+  std::unique_ptr<FrameSource> source = open_frames(file, options);
+  print_file_warnings(file, source->warnings());
+  const std::string read_as = source->read_as();
+  if (!quiet && !read_as.empty()) print_file_warnings(file, {fmt::format("Read {}", read_as)});
+  return source;
+}
+
 Scene load_scene_with_warnings(const std::string& file) {
   Scene scene = load_scene(file);
   print_file_warnings(file, scene.warnings);

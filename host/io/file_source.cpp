@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "calibration/wire_correction.h"
+#include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tare.h"
 
@@ -130,15 +133,8 @@ void RisingTimes::add(std::span<const double> times_s) {
 }
 
 void FileSource::warn_of_size() {
-  if (skin_.rows % 2 != 0) {
-    warnings_.push_back(
-        fmt::format("The last of the {} sensel rows has no pillars; it is ignored.", skin_.rows));
-  }
-  if (skin_.cols % 2 != 0) {
-    warnings_.push_back(fmt::format(
-        "The last of the {} sensel columns has no pillars; it is ignored.", skin_.cols));
-  }
-  if (frames_ == 0) warnings_.push_back("The file holds no frames.");
+  std::ranges::move(size_warnings(skin_.rows, skin_.cols), std::back_inserter(warnings_));
+  if (frames_ == 0) warnings_.emplace_back("The file holds no frames.");
 }
 
 }  // namespace pillarfield

@@ -50,7 +50,7 @@ class FileSource : public FrameSource {
   void take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
                      FrameBuffer& frame) const;
 
-  /// Warns of an odd last row or column, which has no pillars, and of a file without frames.
+  /// Adds the size_warnings(), and one of a file without frames.
   void warn_of_size();
 
   std::filesystem::path path_;

@@ -51,9 +51,10 @@ void refuse_dataset(const std::filesystem::path& path, const ReadOptions& option
               options.dataset.empty() ? "leave out --times" : "leave out --dataset");
 }
 
-void refuse_size(const std::filesystem::path& path, const ReadOptions& options) {
-  if (!options.frame_size) return;
-  throw Error(path.string(), "has the size of its frames", "leave out --shape");
+void refuse_layout(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.frame_size && options.axes.empty()) return;
+  throw Error(path.string(), "states the size and the axes of its frames",
+              options.frame_size ? "leave out --shape" : "leave out --axes");
 }
 
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,

@@ -27,7 +27,7 @@ struct SourceFormat {
 /// Throws Error if the options name an array, for a file that has only one.
 void refuse_dataset(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Throws Error if the options give the size of a frame, for a file that has it.
-void refuse_size(const std::filesystem::path& path, const ReadOptions& options);
+/// Throws Error if the options give size or axes of the frames, for a file that states them.
+void refuse_layout(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace pillarfield

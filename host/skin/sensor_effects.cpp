@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "pillarfield/error.h"
+#include "skin/limits.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr std::size_t kLeastKnots = 2;
 constexpr std::size_t kMostKnots = 64;
-constexpr double kMaxKnotCounts = 1e9;
 constexpr double kMaxPerCount = 0.1;
 
 void require(std::string_view where, std::string_view name, double value, double low, double high) {
@@ -21,10 +21,14 @@ void require(std::string_view where, std::string_view name, double value, double
               fmt::format("it must lie in [{}, {}]", low, high));
 }
 
+void require(std::string_view where, std::string_view name, double value, const Range& range) {
+  require(where, name, value, range.low, range.high);
+}
+
 void check_knots(const std::vector<double>& knots, const char* name, std::string_view where) {
   double before = 0;
   for (const double knot : knots) {
-    if (!(knot > before && knot <= kMaxKnotCounts)) {
+    if (!(knot > before && knot <= kCurveCounts.high)) {
       throw Error(where, fmt::format("the response curve has {} {} after {}", name, knot, before),
                   "its knots must increase from above zero to at most 1e9 counts");
     }
@@ -55,7 +59,7 @@ void check(const SenselMemory& memory, std::string_view where) {
   double width = 0;
   double slope = 1;
   for (const Play& play : memory.plays) {
-    require(where, "a play's width", play.width_counts, width, kMaxKnotCounts);
+    require(where, "a play's width", play.width_counts, width, kCurveCounts.high);
     require(where, "a play's weight", play.weight, -1, 1);
     slope += play.weight;
     require(where, "the slope of the loading curve beyond a play", slope, 1e-3, 1e3);
@@ -151,14 +155,12 @@ std::size_t piece_of(const std::vector<double>& knots, double value) {
 void check(const SensorEffects& effects, std::string_view where) {
   check(effects.curve, where);
   if (effects.shear_coefficient) {
-    require(where, "the shear coefficient x", effects.shear_coefficient->x, 0.1, 10);
-    require(where, "the shear coefficient y", effects.shear_coefficient->y, 0.1, 10);
+    require(where, "the shear coefficient x", effects.shear_coefficient->x, kShearCoefficient);
+    require(where, "the shear coefficient y", effects.shear_coefficient->y, kShearCoefficient);
   }
   if (effects.sensel_leak) {
-    require(where, "the leak inside a pillar", effects.sensel_leak->inside, -kMostSenselLeak,
-            kMostSenselLeak);
-    require(where, "the leak across pillars", effects.sensel_leak->across, -kMostSenselLeak,
-            kMostSenselLeak);
+    require(where, "the leak inside a pillar", effects.sensel_leak->inside, kSenselLeak);
+    require(where, "the leak across pillars", effects.sensel_leak->across, kSenselLeak);
   }
   if (effects.pillar_leak) {
     const auto& [edge, corner] = *effects.pillar_leak;
@@ -167,17 +169,17 @@ void check(const SensorEffects& effects, std::string_view where) {
             4 * (std::abs(edge) + std::abs(corner)), 0, kMostPillarLeak);
   }
   if (const auto& wires = effects.wires) {
-    require(where, "tile_rows", wires->tile_rows, 2, 1024);
-    require(where, "tile_cols", wires->tile_cols, 2, 1024);
+    require(where, "tile_rows", wires->tile_rows, kTileSensels);
+    require(where, "tile_cols", wires->tile_cols, kTileSensels);
     require(where, "row_per_count", wires->row_per_count, 0, kMaxPerCount);
     require(where, "column_per_count", wires->column_per_count, 0, kMaxPerCount);
     require(where, "idle_per_count", wires->idle_per_count, 0, kMaxPerCount);
   }
   if (effects.memory) check(*effects.memory, where);
-  if (effects.arm_mm) require(where, "the arm of a pillar", *effects.arm_mm, 1e-3, 1e3);
+  if (effects.arm_mm) require(where, "the arm of a pillar", *effects.arm_mm, kPillarArmMm);
   if (effects.residual) {
     require(where, "the relative residual", effects.residual->relative, 0, 1);
-    require(where, "the residual offset", effects.residual->offset_counts, 0, kMaxKnotCounts);
+    require(where, "the residual offset", effects.residual->offset_counts, 0, kCurveCounts.high);
   }
 }
 

@@ -8,7 +8,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
-#include "solve/friction_limits.h"
+#include "skin/limits.h"
 #include "solve/sensor_corrections.h"
 
 namespace pillarfield {

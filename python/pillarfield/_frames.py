@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sys
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import Any, Optional, Union
 
@@ -14,9 +16,19 @@ from ._error import Error
 
 Readings = npt.NDArray[Any]
 Path = Union[str, os.PathLike[str]]
+Axes = Union[str, Iterable[str]]
 Blocks = list[tuple[int, int, int, int]]
 
 _TYPES = (np.uint8, np.uint16, np.float32)
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Warns by each sentence, in the name of the line that called the package."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    for sentence in sentences:
+        warnings.warn(sentence, stacklevel=level)
 
 
 def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
@@ -58,6 +70,22 @@ def array_of(frames: npt.ArrayLike) -> Readings:
         return np.asarray(frames)
     except ValueError as error:
         raise Error("frames", "they differ in size", "give frames of one size") from error
+
+
+def axis_words(axes: Axes) -> str:
+    """The words of axes=, separated by commas."""
+    return axes if isinstance(axes, str) else ",".join(axes)
+
+
+def frames_first(frames: npt.ArrayLike, axes: Axes) -> npt.ArrayLike:
+    """An array, whose axes `axes` names in order, as [frames, rows, columns] or [rows, columns]."""
+    positions = _core.axis_positions(axis_words(axes))
+    array: Any = frames if isinstance(frames, np.ma.MaskedArray) else array_of(frames)
+    if array.ndim != len(positions):
+        raise Error("frames", f"the array has {array.ndim} axes, and {len(positions)} are named",
+                    "name each axis of the array, or leave out axes=")
+    transposed: npt.ArrayLike = array.transpose(positions)
+    return transposed
 
 
 def _lies_within(array: Readings, most: int) -> bool:

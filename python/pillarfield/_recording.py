@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._field import ForceField
-from ._frames import Path, Readings
+from ._frames import Axes, Path, Readings, axis_words
 
 
 def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
@@ -32,16 +32,17 @@ class Recording:
     frame_size: (R, C) of frames that lie in one line of a table or array
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
+    axes: order of the axes of an array, such as 'rows,columns,frames'; by default frames first
 
     Raises Error if it holds no frames, is damaged, or an option does not fit it.
     """
 
     def __init__(self, path: Path, *, trust: bool = False, dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
-                 tare_frames: int = 0) -> None:
+                 tare_frames: int = 0, axes: Axes = "") -> None:
         self._source = _core.FrameSource.open(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
-            rate_hz=rate_hz, tare_frames=tare_frames)
+            rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes))
 
     @property
     def skin(self) -> _core.Skin:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Path, Readings
+from ._frames import Path, Readings, warn
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -41,15 +41,18 @@ class Simulation:
 def scene(source: Union[Path, Mapping[str, Any], _core.Scene]) -> _core.Scene:
     """A scene from the path of a TOML file or from a dict of the same keys (docs/scenes.md).
 
+    Raises Error for keys that no scene has; warns of former names.
+
     >>> import pillarfield as pf
     >>> pf.scene({"skin": {"pillars": [8, 12]}, "time": {"frames": 3}})
     <Scene '': 3 frames of 16 x 24 sensels>
     """
     if isinstance(source, _core.Scene):
         return source
-    if isinstance(source, Mapping):
-        return _core.Scene.parse(_toml_table(source, ()), "scene")
-    return _core.Scene.load(source)
+    made = (_core.Scene.parse(_toml_table(source, ()), "scene") if isinstance(source, Mapping)
+            else _core.Scene.load(source))
+    warn(made.warnings)
+    return made
 
 
 def simulate(source: Union[Path, Mapping[str, Any], _core.Scene], *, frames: Optional[int] = None,
@@ -68,14 +71,14 @@ def simulate(source: Union[Path, Mapping[str, Any], _core.Scene], *, frames: Opt
 
 
 def _toml_table(table: Mapping[str, Any], path: tuple[str, ...]) -> str:
-    """TOML text of a table: its values, then its tables; an empty list is left out."""
+    """TOML text of a table: its values, then its tables."""
     values, tables = [], []
     for key, value in table.items():
         where = (*path, key)
         name = ".".join(json.dumps(part) for part in where)
         if isinstance(value, Mapping):
             tables.append(f"[{name}]\n{_toml_table(value, where)}")
-        elif isinstance(value, (list, tuple)) and all(isinstance(one, Mapping) for one in value):
+        elif isinstance(value, (list, tuple)) and value and all(isinstance(one, Mapping) for one in value):
             tables += [f"[[{name}]]\n{_toml_table(entry, where)}" for entry in value]
         else:
             values.append(f"{json.dumps(key)} = {_toml_value(value, name)}\n")

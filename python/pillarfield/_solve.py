@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import os
-import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Optional, TypeGuard, Union
 
@@ -14,7 +13,8 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Path, array_of, readings_of, timed, times_of
+from ._frames import (Axes, Path, array_of, axis_words, frames_first, readings_of, timed,
+                      times_of, warn)
 from ._recording import Recording
 from ._scene import Simulation
 
@@ -29,7 +29,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           skin: Optional[_core.Skin] = None,
           calibration: Union[_core.Calibration, Step, Path, None] = None, tare_frames: int = 0,
           times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-          contacts: bool = False, device: str = "", **options: Any) -> ForceField:
+          axes: Axes = "", contacts: bool = False, device: str = "", **options: Any) -> ForceField:
     """Solves frames of readings into forces.
 
     frames: path of a recording or Tekscan export; readings, counts, [T, R, C] or [R, C]; an iterator
@@ -40,14 +40,16 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         measured in them
     times: of the frames of an array, s; by default from rate_hz
     rate_hz: frames per second of arrays and iterators, 100 by default, and of files without times
+    axes: order of the axes of an array, such as 'rows,columns,frames' or ('rows', 'columns'); by
+        default frames, rows, columns, and an array that more likely has another order is refused
     contacts: find and track the contacts too
     device: OpenCL device, by its index or a part of its name; '': the best one
     options: those of Plan: estimator, outputs, noise_counts, threshold_counts, ...
 
     Returns the forces of all frames, planes [T, R // 2, C // 2], or of the frame [R, C]. Arrays of
-    uint8, uint16 and float32 are read in place; others are converted (docs/python.md). Python's lock
+    uint8, uint16 and float32 with frames first are read in place; others are converted (docs/python.md). Python's lock
     is released meanwhile; Ctrl+C ends it. Raises Error if a file or an option is wrong; warns of constants
-    that nothing gives and are assumed, counts_per_newton above all.
+    that nothing gives and are assumed, counts_per_newton above all, and of an odd row or column.
 
     >>> import numpy as np, pillarfield as pf
     >>> forces = pf.solve(np.full((5, 8, 12), 32, np.uint8), counts_per_newton=320)
@@ -66,14 +68,23 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
         frames = array_of(frames)
-    source = source_of(frames, skin, times, rate_hz)
+    if axes and not isinstance(frames, (str, os.PathLike)):
+        frames = _with_axes(frames, axes)
+    source = source_of(frames, skin, times, rate_hz, axes=axes)
     if tare_frames:
-        calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz)
-    _warn([_SCALE_ASSUMED] if source.format == "array" else source.warnings,
+        calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz, axes)
+    _warn(([_SCALE_ASSUMED] if source.format == "array" else []) + source.warnings,
           _constants_given(skin, calibration, options))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+
+
+def _with_axes(frames: Any, axes: Axes) -> npt.ArrayLike:
+    if isinstance(frames, (Recording, Simulation)):
+        raise Error("axes", f"a {type(frames).__name__} has the axes frames, rows, columns",
+                    "give axes to pf.Recording()")
+    return frames_first(frames, axes)
 
 
 def _calibration_of(given: Any) -> Optional[_core.Calibration]:
@@ -98,16 +109,14 @@ def _constants_given(skin: Optional[_core.Skin], calibration: Optional[_core.Cal
 
 def _warn(sentences: Iterable[str], given: set[str]) -> None:
     """Warns by each sentence but those about constants that are given."""
-    for sentence in sentences:
-        if not any(name in sentence for name in given):
-            warnings.warn(sentence, stacklevel=3)
+    warn(sentence for sentence in sentences if not any(name in sentence for name in given))
 
 
 def _tare_of(frames: Any, count: int, before: Any, skin: _core.Skin,
-             rate_hz: Optional[float]) -> _core.Calibration:
+             rate_hz: Optional[float], axes: Axes) -> _core.Calibration:
     from .calibrate import tare  # which imports this module
     if isinstance(frames, (str, os.PathLike)):
-        frames = Recording(frames, rate_hz=rate_hz)
+        frames = Recording(frames, rate_hz=rate_hz, axes=axes)
     if isinstance(frames, Recording):
         before = before or frames.calibration
     frames = getattr(frames, "frames", frames)
@@ -140,16 +149,21 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
 
 def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
               rate_hz: Optional[float] = None,
-              calibration: Optional[_core.Calibration] = None) -> _core.FrameSource:
-    """Frames with random access from a path, an array, a Recording or a Simulation."""
+              calibration: Optional[_core.Calibration] = None,
+              axes: Axes = "") -> _core.FrameSource:
+    """Frames with random access from a path, an array, a Recording or a Simulation.
+
+    axes: of a path's array; an array has frames first, and `axes` says that they are known.
+    """
     if isinstance(frames, (str, os.PathLike, Recording)) and times is not None:
         raise Error("times", "files have times of their own", "give times with an array")
     if isinstance(frames, (str, os.PathLike)):
-        return _core.FrameSource.open(frames, rate_hz=rate_hz)
+        return _core.FrameSource.open(frames, rate_hz=rate_hz, axes=axis_words(axes))
     if isinstance(frames, Recording):
         if rate_hz is not None:
             raise Error("rate_hz", "this Recording was opened without it", "give it to pf.Recording()")
         return frames._source
+    axes_are_known = bool(axes) or skin is not None or isinstance(frames, Simulation)
     if isinstance(frames, Simulation):
         skin, calibration = skin or frames.skin, calibration or frames.calibration
         times = frames.times if times is None else times
@@ -158,9 +172,13 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
     if readings.ndim not in (2, 3):
         raise Error("frames", f"the array has {readings.ndim} axes",
                     "give [rows, cols] for a frame, [frames, rows, cols] for several")
-    readings = readings.reshape(-1, *readings.shape[-2:]) if readings.ndim == 2 else readings
+    if readings.ndim == 2:
+        if not axes_are_known:
+            _core.require_likely_frame(*readings.shape, "frames")
+        readings = readings.reshape(1, *readings.shape)
     return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
-                                      skin_of(skin, readings.shape[-2:]), calibration)
+                                      skin_of(skin, readings.shape[-2:]), calibration,
+                                      axes_are_known)
 
 
 def _is_iterator(frames: Any) -> TypeGuard[Iterable[Any]]:
@@ -201,7 +219,8 @@ def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any,
     if _needs_interval(options, calibration):
         options = {"frame_interval_s": _interval_of(source), **options}
     plan = _core.Plan(skin, sensel_type=source.sensel_type, calibration=calibration, **options)
-    return _field_of(_core.solve_source(source, plan, contacts, device), plan)
+    planes = _core.solve_source(source, plan, contacts, device)
+    return _field_of(planes, plan, source.has_truth or "scene" in options)
 
 
 def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibration: Any,
@@ -216,13 +235,17 @@ def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibrati
     if readings.ndim != 2:
         raise Error("frames", f"the iterator's array has {readings.ndim} axes",
                     "give frames [rows, cols]")
+    warn(_core.size_warnings(*readings.shape))
     options = {"frame_interval_s": 1 / rate_hz, **options}
     plan = _core.Plan(skin_of(skin, readings.shape), sensel_type=str(readings.dtype),
                       calibration=calibration, **options)
     stream = timed(itertools.chain([first], iterator), str(readings.dtype), rate_hz)
-    return _field_of(_core.solve_iterator(stream, plan, contacts, device), plan)
+    return _field_of(_core.solve_iterator(stream, plan, contacts, device), plan, False)
 
 
-def _field_of(planes: dict[str, Any], plan: _core.Plan) -> ForceField:
+def _field_of(planes: dict[str, Any], plan: _core.Plan, simulated: bool) -> ForceField:
+    sentences = planes.pop("warnings")
+    if not simulated:
+        warn(sentences)
     return ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), plan.skin,
                           _core.SolvedBy(plan))

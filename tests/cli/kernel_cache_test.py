@@ -4,7 +4,9 @@ import os
 import pathlib
 import resource
 import shutil
+import signal
 import subprocess
+import time
 import unittest
 
 from command import BALL, PROGRAM, CommandTest, on_terminal, run
@@ -102,6 +104,19 @@ class KernelCache(CommandTest):
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertEqual(pathlib.Path("/tmp/pocl").exists(), shared)
         self.assertNotIn("Compiling", self.messages("--quiet", HOME=self.directory("other")))
+
+    def test_an_interrupt_does_not_disturb_the_compiler(self):
+        cache = self.directory("interrupted")
+        process = subprocess.Popen([PROGRAM, "solve", self.recording, "-o", self.output()], text=True,
+                                   stderr=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   env=environment(POCL_CACHE_DIR=cache))
+        # Handlers of the compiler would remove the file that it is writing.
+        while process.poll() is None and not list(cache.rglob("*.tmp")):
+            time.sleep(0.0005)
+        process.send_signal(signal.SIGINT)
+        messages = process.communicate(timeout=120)[1]
+        if process.returncode != 0:  # else it ended before
+            self.assertRegex(messages, r"\Apillarfield: .*: interrupted .*\n\Z")
 
     def messages(self, *more, **changes):
         """Messages of solving on a terminal."""

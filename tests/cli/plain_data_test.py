@@ -1,5 +1,6 @@
 """Plain data: .npy, .npz, tables of numbers and HDF5 datasets give the forces of the same recording."""
 
+import itertools
 import unittest
 
 import h5py
@@ -57,6 +58,49 @@ class PlainData(CommandTest):
         self.assert_solved(self.path("a.npy"), frames=slice(2, 3), times=[0])
         np.save(self.path("a.npy"), readings().reshape(5, -1))
         self.assert_solved(self.path("a.npy"), "--rate", 100, "--shape", "6x8")
+
+    def test_axes_of_every_order(self):
+        names, path = ("frames", "rows", "columns"), self.path("a.npy")
+        for order in itertools.permutations(range(3)):
+            words = ",".join(names[axis] for axis in order)
+            np.save(path, np.ascontiguousarray(readings().transpose(order)))
+            with self.subTest(axes=words):
+                self.assert_solved(path, "--rate", 100, "--axes", words)
+        with h5py.File(self.path("a.h5"), "w") as file:
+            file.create_dataset("raw", data=readings().transpose(1, 2, 0), chunks=(6, 8, 1))
+        self.assert_solved(self.path("a.h5"), "--dataset", "raw", "--rate", 100, "--axes",
+                           "rows,columns,frames")
+        np.save(path, np.ascontiguousarray(readings()[2].T))
+        self.assert_solved(path, "--axes", "columns,rows", frames=slice(2, 3), times=[0])
+        solve = ("solve", path, "-o", self.path("f.h5"))
+        self.assert_fails(*solve, "--axes", "frames,rows,columns", names=["8 x 6", "3 axes"])
+        for words in ("rows,rows", "frames,row,columns", "rows"):
+            self.assert_fails(*solve, "--axes", words, status=2, names=["--axes"])
+        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), "--axes", "rows,columns",
+                          names=["leave out --axes"])
+
+    def test_what_was_read_is_printed_and_a_doubtful_guess_refused(self):
+        def spot(frames, rows, cols):
+            """A spot that presses and leaves again."""
+            time, row, col = np.ogrid[-1:1:frames * 1j, -1:1:rows * 1j, -1:1:cols * 1j]
+            return (200 * (1 - time**2) * np.exp(-4 * (row**2 + col**2))).astype("u1")
+
+        solve = ("solve", self.path("a.npy"), "-o", self.path("f.h5"), "--rate", 100)
+        for shape in ((280, 63, 33), (30, 40, 60), (5, 40, 60)):
+            np.save(self.path("a.npy"), spot(*shape))
+            read = f"Read {shape[0]} frames of {shape[1]} x {shape[2]}, uint8"
+            self.assertIn(read, run(*solve, "--overwrite").stderr)
+            self.assertNotIn("Read", run(*solve, "--overwrite", "-q").stderr)
+        for shape in ((280, 63, 33), (100, 13, 6), (120, 64, 27)):
+            for axes in ((1, 2, 0), (1, 0, 2)):
+                np.save(self.path("a.npy"), np.ascontiguousarray(spot(*shape).transpose(axes)))
+                words = ",".join(("frames", "rows", "columns")[axis] for axis in axes)
+                self.assert_fails(*solve, names=["doubtful", f"--axes {words}"])
+                run(*solve, "--overwrite", "-q", "--axes", words)
+        np.save(self.path("a.npy"), spot(70, 64, 32).reshape(70, -1))
+        self.assert_fails(*solve, names=["70 lines of 2048 numbers", "--shape"])
+        run(*solve, "--overwrite", "-q", "--shape", "64x32")
+        run(*solve, "--overwrite", "-q", "--axes", "rows,columns")
 
     def test_signed_and_missing_readings(self):
         frames = readings("i2")
@@ -156,6 +200,23 @@ class PlainData(CommandTest):
         np.testing.assert_allclose(force[20:][both], self.expected[0][both], atol=2 / 200)
         self.assert_fails("solve", *options, "--tare-frames", 26, "-o", self.path("g.h5"),
                           names=["25 frames"])
+
+    def test_readings_that_give_no_contact_get_a_reason(self):
+        random = np.random.default_rng(5)
+        frames = random.normal(100, 1, (60, 20, 30))
+        press = np.zeros_like(frames)
+        press[40:, 5:12, 8:20] = 50
+        solve = ("solve", self.path("a.npy"), "-o", self.path("f.h5"), "--rate", 100, "-q",
+                 "--overwrite", "--tare-frames", 30)
+        for added, words in ((press, ()), (-press, ("Readings fall", "84 sensels")),
+                             (press / 25, ("No pillar is in contact", "--threshold"))):
+            np.save(self.path("a.npy"), frames + added)
+            warned = run(*solve).stderr
+            self.assertEqual([word in warned for word in words], [True] * len(words), warned)
+            self.assertEqual("in contact" in warned or "fall" in warned, bool(words), warned)
+        frames[50:53] = np.nan
+        np.save(self.path("a.npy"), frames + press)
+        self.assertIn("In 3 of 60 frames no sensel has a reading", run(*solve).stderr)
 
     def test_every_command_reads_plain_data(self):
         array = self.path("idle.npy")

@@ -177,9 +177,13 @@ class Scenes(unittest.TestCase):
 
     def test_wrong_scenes(self):
         for wrong in ({}, {"skin": {}}, {"skin": {"pillars": [8, {}]}}, {"skin": {"pillars": None}},
-                      {"a\nb": 1}, {"skin": {"pillars": [8, 8], "colour": "red"}}):
+                      {"a\nb": 1}, {"skin": {"pillars": [8, 8], "colour": "red"}},
+                      {"skin": {"pillars": [8, 8]}, "contct": []}):
             with self.assertRaises(pf.Error):
                 pf.scene(wrong)
+        self.assertEqual(pf.scene({"skin": {"pillars": [8, 8]}, "contact": []}).skin.rows, 16)
+        with self.assertWarnsRegex(UserWarning, "estimator"):
+            pf.scene({"skin": {"pillars": [8, 8]}, "solver": {"estimator": "field"}})
 
     def test_a_resized_array_is_not_read(self):
         frames = np.zeros((40, 200, 200), np.uint8)

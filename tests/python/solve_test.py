@@ -55,6 +55,16 @@ class Oracle(unittest.TestCase):
             self.assertTrue(same(forces, pf.open(solved)[:]))
 
 
+    def test_a_scene_gives_command_and_python_the_same_skin(self):
+        scene, frames, solved = WORK / "pitch.toml", WORK / "pitch.npy", WORK / "pitch.h5"
+        scene.write_text("[skin]\npillars = [8, 12]\nsensel_pitch_mm = 0.5\ncounts_per_newton = 200\n")
+        np.save(frames, RANDOM.integers(100, 120, (16, 24)).astype(np.uint8))
+        subprocess.run([os.environ["PILLARFIELD"], "solve", frames, "-o", solved, "--overwrite", "-q",
+                        "--scene", scene], check=True)
+        self.assertEqual(pf.Plan(pf.Skin(16, 24), scene=scene).skin.sensel_pitch_mm, 0.5)
+        self.assertAlmostEqual(pf.open(solved).skin.sensel_pitch_mm, 0.5)
+
+
 class Frames(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -259,8 +269,9 @@ class Errors(unittest.TestCase):
         self.assertEqual((done.stdout, done.returncode), ("ended\n", 0), done.stderr)
 
 
-class AssumedConstants(unittest.TestCase):
+class Warnings(unittest.TestCase):
     FRAMES = np.zeros((3, 8, 12), np.uint8)
+    FRAMES[:, :4] = 32
 
     def warnings_of(self, *arguments, **options):
         with warnings.catch_warnings(record=True) as caught:
@@ -291,6 +302,38 @@ class AssumedConstants(unittest.TestCase):
             self.assertIn("no sensel_pitch_mm", rest)
             self.assertNotIn("counts", rest)
             self.assertEqual(self.warnings_of(frames, skin=pf.Skin(8, 12), **rate), "")
+
+    def test_warns_of_odd_sizes_and_of_readings_that_give_no_force(self):
+        odd = np.pad(self.FRAMES, ((0, 0), (0, 1), (0, 1)))
+        for frames in (odd, iter(odd)):
+            warned = self.warnings_of(frames, counts_per_newton=320)
+            self.assertIn("last of the 9 sensel rows", warned)
+            self.assertIn("last of the 13 sensel columns", warned)
+        gone = self.FRAMES.astype(np.float32)
+        gone[1] = np.nan
+        for frames in (gone, iter(gone)):
+            self.assertIn("In 1 of 3 frames no sensel has a reading",
+                          self.warnings_of(frames, counts_per_newton=320))
+        for value, words in ((0, "No pillar is in contact"), (32, "there is no tare")):
+            self.assertIn(words, self.warnings_of(np.full_like(self.FRAMES, value), counts_per_newton=320))
+
+    def test_axes_are_given_or_refused_where_doubtful(self):
+        time, row, col = np.ogrid[-1:1:80j, -1:1:12j, -1:1:8j]
+        frames = (200 * (1 - time**2) * np.exp(-4 * (row**2 + col**2))).astype(np.uint8)
+        options = {"counts_per_newton": 320, "tare_frames": 0}
+        last = np.moveaxis(frames, 0, -1)
+        for axes in ("rows,columns,frames", ("rows", "columns", "frames")):
+            self.assertTrue(same(pf.solve(last, axes=axes, **options), pf.solve(frames, **options)))
+        np.save(WORK / "last.npy", last)
+        lines = frames[:20].reshape(20, -1)
+        for doubtful in (last, WORK / "last.npy", lines):
+            with self.assertRaisesRegex(pf.Error, "doubtful.*axes="):
+                pf.solve(doubtful, rate_hz=100)
+        recording = pf.Recording(WORK / "last.npy", rate_hz=100, axes="rows,columns,frames")
+        self.assertTrue(np.array_equal(recording[:], frames))
+        self.assertEqual(pf.solve(lines, axes="rows,columns").normal.shape, (10, 48))
+        with self.assertRaisesRegex(pf.Error, "3 axes"):
+            pf.solve(last, axes="rows,columns")
 
 
 if __name__ == "__main__":

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/reading_check.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
-#include "pillarfield/status.h"
 #include "viewer/source/force_file_producer.h"
 #include "viewer/source/frame_provider.h"
 #include "viewer/source/frame_rate.h"
@@ -123,17 +124,19 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   return producer;
 }
 
-/// Whether a recording seems to lack its tare: every pillar of its first frame is in contact.
-bool lacks_tare(FrameSource& source, const SolverPlan& plan, Processor& processor) {
-  if (source.has_truth() || !plan.calibration.tare.empty()) return false;
+/// Warnings about the readings of a few frames, solved by `processor`.
+std::vector<std::string> reading_warnings(FrameSource& source, const SolverPlan& plan,
+                                          Processor& processor) {
+  constexpr std::uint64_t kMostFrames = 8;
+  const std::uint64_t frames = std::min(kMostFrames, source.frames());
+  ReadingCheck check(plan);
   FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  source.read(0, frame);
-  processor.submit(frame.view());
-  const auto status = processor.receive().status;
-  const auto idle =
-      std::ranges::count(status, Region::none, [](std::uint8_t byte) { return region_of(byte); });
-  const std::size_t absent = count_pillars_without_sensels(plan.calibration, plan.skin);
-  return static_cast<std::size_t>(idle) == absent && absent < status.size();
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    source.read(i * source.frames() / frames, frame);
+    processor.submit(frame.view());
+    check.append({.forces = processor.receive(), .readings = frame.view()});
+  }
+  return check.warnings();
 }
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
@@ -157,10 +160,10 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);
   describe(info, plan, processor);
-  if (lacks_tare(*source, plan, processor)) {
-    info.warnings.emplace_back(
-        "In the first frame every pillar is in contact, and there is no tare; measure one with "
-        "'pillarfield calibrate tare', or give --tare-frames.");
+  // Other frames would leave a state in the processor of a calibrated skin.
+  if (!source->has_truth() && plan.calibration.empty()) {
+    std::ranges::move(reading_warnings(*source, plan, processor),
+                      std::back_inserter(info.warnings));
   }
   info.frames = source->frames();
   ReadOptions read = options.read;

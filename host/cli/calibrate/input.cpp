@@ -33,9 +33,7 @@ void check_step_output(const std::vector<std::string>& files, const StepOptions&
 }
 
 std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
-  std::unique_ptr<FrameSource> source = open_frames(file, options.read);
-  print_file_warnings(file, source->warnings());
-  return source;
+  return open_frames_with_warnings(file, options.read, options.quiet);
 }
 
 SkinCalibration initial_calibration(const StepOptions& options, const FrameSource& source,

@@ -242,6 +242,7 @@ Work parse_arguments(int argc, char** argv) {
   add_solve(app, work);
   add_join(app, work);
   add_stream(app, work);
+  add_control(app, work);
   add_pace(app, work);
   add_compare(app, work);
   add_calibrate(app, work);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cli/options/shared_arguments.h"
+#include "skin/limits.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -247,9 +248,12 @@ void add_wires(CLI::App& parent, Work& work) {
       .file("RESTING", options->files,
             "Frames of a body alone, then files with another one in its rows and in its columns");
   Group step(command, "Wires");
-  step.whole("--tile-rows", options->tile.rows, "N", "Sensel rows that share wires [64]", 2, 1024);
-  step.whole("--tile-cols", options->tile.cols, "N", "Sensel columns that share wires [64]", 2,
-             1024);
+  constexpr auto kLeast = static_cast<std::uint64_t>(kTileSensels.low);
+  constexpr auto kMost = static_cast<std::uint64_t>(kTileSensels.high);
+  step.whole("--tile-rows", options->tile.rows, "N", "Sensel rows that share wires [64]", kLeast,
+             kMost);
+  step.whole("--tile-cols", options->tile.cols, "N", "Sensel columns that share wires [64]", kLeast,
+             kMost);
   step.choice<TareOrigin>(
       "--tares", options->tares,
       {{"conduct", TareOrigin::conductance}, {"offset", TareOrigin::offset}},

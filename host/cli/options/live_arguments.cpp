@@ -31,9 +31,10 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
   run.number("--tare", options.tare_s, "SECONDS",
              "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
   command
-      ->add_option("--control", options.control,
-                   "Take lines of control from a socket that the program makes, or from standard "
-                   "input (-): tare, pause, resume, record FILE, record stop, health, quit")
+      ->add_option(
+          "--control", options.control,
+          "Take lines of 'pillarfield control' from a socket, a name in $XDG_RUNTIME_DIR or "
+          "a path, or from standard input (-)")
       ->type_name("SOCKET|-")
       ->group("Run");
   run.number("--health-interval", options.health_interval_s, "SECONDS",
@@ -108,6 +109,26 @@ void add_stream(CLI::App& parent, Work& work) {
              "Number of frames in the solver at once [2]", 1, 64);
   add_general(command, *options, "Print reports of health and the summary as lines of JSON",
               kQuietWriter);
+}
+
+void add_control(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<ControlOptions>(
+      parent, work, control, "control",
+      "Send a line of control to a running stream and print its answer.",
+      "  pillarfield control skin tare\n"
+      "  pillarfield control skin record session.h5\n"
+      "  pillarfield control skin record stop\n");
+  Group input(command, "Input");
+  input.text("SOCKET", options->socket, "SOCKET", "Socket of stream --control, by the same name")
+      ->required();
+  command
+      ->add_option("LINE", options->words,
+                   "tare [SECONDS] [preloaded], pause, resume, record FILE, record stop, health or "
+                   "quit (docs/streams.md)")
+      ->required()
+      ->type_name("LINE")
+      ->group("Input");
+  add_help(command);
 }
 
 }  // namespace pillarfield::cli

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "cli/options/shared_arguments.h"
+#include "skin/limits.h"
 
 namespace pillarfield::cli {
 
@@ -56,12 +57,15 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
               "All outputs, the parity test and --follow-baseline; needs the noise");
   Group friction(command, "Friction");
   friction.number("--friction", plan.friction, "RATIO",
-                  "Friction coefficient of all contacts, known to 3 % [estimated]", 0.1, 9.9);
+                  "Friction coefficient of all contacts, known to 3 % [estimated]", kFrictions.low,
+                  kFrictions.high);
   friction.number("--friction-bound", plan.friction_bound, "RATIO",
-                  "Upper bound of friction coefficients [none]", 0.1, 100);
+                  "Upper bound of friction coefficients [none]", kFrictionBound.low,
+                  kFrictionBound.high);
   friction
       .number("--friction-prior", plan.friction_prior, "MEDIAN,SPREAD",
-              "Log-normal prior of friction coefficients [1,0.5]", 0.01, 9.9)
+              "Log-normal prior of friction coefficients [1,0.5]", kPriorSpread.low,
+              kFrictions.high)
       ->expected(2)
       ->delimiter(',');
   friction.flag("--unrelated-frames", plan.unrelated_frames,

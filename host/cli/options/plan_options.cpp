@@ -31,11 +31,7 @@ bool has_output(const PlanOptions& options, const char* output) {
 /// Applies the scene and returns its time constant of the baseline.
 std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
   const Scene scene = load_scene_with_warnings(file);
-  plan.skin.counts_per_newton = scene.skin.counts_per_newton;
-  plan.skin.threshold_counts = scene.skin.threshold_counts;
-  plan.skin.full_scale_counts = scene.skin.full_scale_counts;
-  plan.skin.power_law = scene.skin.power_law;
-  if (const auto surface = surface_of(scene)) plan.skin.surface = surface;
+  set_skin(plan.skin, scene);
   set_solver(plan, scene);
   return scene.baseline_time_s;
 }
@@ -60,6 +56,7 @@ void apply_calibration(const PlanOptions& options, const std::string& source, So
 }
 
 void apply_numbers(const PlanOptions& options, SolverPlan& plan) {
+  if (options.read.sensel_pitch_mm) plan.skin.sensel_pitch_mm = *options.read.sensel_pitch_mm;
   if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
   if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
   if (options.full_scale_counts) plan.skin.full_scale_counts = options.full_scale_counts;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <system_error>
 
+#include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/tare.h"
 
@@ -24,6 +25,14 @@ FrameSize frame_size_of(const std::string& text) {
   throw CLI::ValidationError(
       "--shape",
       fmt::format("'{}' is not ROWSxCOLS of 2 to {} each, such as 40x60", text, kMaxSensels));
+}
+
+std::vector<ArrayAxis> axes_of(const std::string& text) {
+  try {
+    return parse_axes(text);
+  } catch (const Error& error) {
+    throw CLI::ValidationError("--axes", fmt::format("{}; {}", error.failure(), error.mend()));
+  }
 }
 
 }  // namespace
@@ -70,6 +79,13 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
           "--shape", [&](const std::string& text) { options.frame_size = frame_size_of(text); },
           "Sensels of a frame whose readings lie in one line")
       ->type_name("ROWSxCOLS")
+      ->group("Plain data");
+  command
+      ->add_option_function<std::string>(
+          "--axes", [&](const std::string& text) { options.axes = axes_of(text); },
+          "Order of the array's axes: frames, rows and columns, separated by commas "
+          "[frames,rows,columns]")
+      ->type_name("WORDS")
       ->group("Plain data");
   if (uses_times) {
     plain.number("--rate", options.rate_hz, "HZ", "Frames per second, if the file has no times",

@@ -47,8 +47,7 @@ PaceFrames simulated(const std::string& file) {
 }
 
 PaceFrames recorded(const std::string& file, const ReadOptions& options) {
-  const std::shared_ptr<FrameSource> source = open_frames(file, options);
-  print_file_warnings(file, source->warnings());
+  const std::shared_ptr<FrameSource> source = open_frames_with_warnings(file, options, false);
   if (source->frames() == 0) {
     throw Error(file, "it has no frames", "give a recording with at least one");
   }

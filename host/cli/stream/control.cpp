@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <system_error>
 
+#include "cli/stream/control_place.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::cli {
@@ -24,40 +24,36 @@ constexpr std::size_t kMostLineBytes = 4096;
 
 std::string reason() { return std::generic_category().message(errno); }
 
-sockaddr_un address_of(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) {
-    throw Error(path, "the name of the control socket is too long",
-                fmt::format("give at most {} bytes", sizeof address.sun_path - 1));
-  }
-  std::memcpy(address.sun_path, path.data(), path.size());
-  return address;
-}
-
-bool someone_listens(const sockaddr_un& address) {
-  const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const bool listens =
+/// The errno of connecting to a socket without waiting; 0 where a program accepts connections.
+int connection_failure(const sockaddr_un& address) {
+  const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const bool is_connected =
       connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const int failure = is_connected ? 0 : errno;
   close(probe);
-  return listens;
+  return failure;
 }
 
-/// Removes the socket of a program that was killed; any other file stays.
+/// Removes the socket of a program that was killed, which refuses connections; any other stays.
 void remove_left_socket(const std::string& path, const sockaddr_un& address) {
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) return;
   if (!S_ISSOCK(status.st_mode)) {
-    throw Error(path, "it exists and is no socket", "name another control socket");
+    throw Error(path, "it exists and is not a socket", "name another control socket");
   }
-  if (someone_listens(address)) {
-    throw Error(path, "another program listens on this socket", "name another control socket");
-  }
-  unlink(path.c_str());
+  const int failure = connection_failure(address);
+  if (failure == ECONNREFUSED) unlink(path.c_str());
+  if (failure == ECONNREFUSED || failure == ENOENT) return;
+  const bool is_used = failure == 0 || failure == EAGAIN;  // EAGAIN: too busy to accept
+  throw Error(path,
+              is_used
+                  ? "another program listens on this socket"
+                  : fmt::format("cannot be tried: {}", std::generic_category().message(failure)),
+              "name another control socket");
 }
 
 int listen_on(const std::string& path) {
-  const sockaddr_un address = address_of(path);
+  const sockaddr_un address = control_address(path);
   remove_left_socket(path, address);
   const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   const mode_t mask = umask(S_IRWXG | S_IRWXO);
@@ -74,9 +70,9 @@ int listen_on(const std::string& path) {
 
 }  // namespace
 
-ControlChannel::ControlChannel(std::string path) : path_(std::move(path)) {
+ControlChannel::ControlChannel(const std::string& path) : path_(control_place(path)) {
   if (path_.empty()) return;
-  if (path_ == "-") {
+  if (path == "-") {
     clients_.push_back({.id = next_id_++, .input = STDIN_FILENO, .output = STDOUT_FILENO});
     return;
   }
@@ -101,7 +97,7 @@ void ControlChannel::poll(
   next_poll_ = now + std::chrono::milliseconds(20);
   accept_clients();
   std::erase_if(clients_, [&](Client& client) {
-    if (read_from(client, handle)) return false;
+    if (client.has_ended ? awaits_answer(client) : read_from(client, handle)) return false;
     close_client(client);
     return true;
   });
@@ -129,22 +125,42 @@ bool ControlChannel::read_from(
   std::array<char, kMostLineBytes> bytes{};
   const ssize_t count = read(client.input, bytes.data(), bytes.size());
   if (count < 0) return errno == EAGAIN || errno == EINTR;
-  if (count == 0) return false;
+  if (count == 0) {
+    client.has_ended = true;
+    return awaits_answer(client);
+  }
   client.begun.append(bytes.data(), static_cast<std::size_t>(count));
   for (std::size_t end = client.begun.find('\n'); end != std::string::npos;
        end = client.begun.find('\n')) {
     std::string line = client.begun.substr(0, end);
     client.begun.erase(0, end + 1);
     if (line.ends_with('\r')) line.pop_back();
-    if (line.empty()) continue;
+    if (line.find_first_not_of(" \t") == std::string::npos) continue;
+    ++client.awaited;
     if (const std::string said = handle(client.id, line); !said.empty()) answer(client.id, said);
   }
   return client.begun.size() <= kMostLineBytes;
 }
 
+/// Whether a client that has sent its last line still waits for an answer. socat leaves half a
+/// second after its last line or byte from here, so blanks precede an answer that takes longer.
+bool ControlChannel::awaits_answer(Client& client) {
+  if (client.awaited == 0) return false;
+  if (client.output == STDOUT_FILENO) return true;
+  pollfd state = {.fd = client.output, .events = 0, .revents = 0};
+  if (::poll(&state, 1, 0) == 1 && (state.revents & (POLLHUP | POLLERR)) != 0) return false;
+  const auto now = std::chrono::steady_clock::now();
+  if (now >= client.next_blank) {
+    client.next_blank = now + std::chrono::milliseconds(200);
+    static_cast<void>(send(client.output, " ", 1, MSG_NOSIGNAL | MSG_DONTWAIT));
+  }
+  return true;
+}
+
 void ControlChannel::answer(std::uint64_t client, const std::string& line) {
   const auto found = std::ranges::find(clients_, client, &Client::id);
   if (found == clients_.end()) return;
+  --found->awaited;
   const std::string text = line + '\n';
   if (found->output == STDOUT_FILENO) {
     fmt::print("{}", text);

@@ -13,15 +13,16 @@ namespace pillarfield::cli {
 /// open, or standard input and output. At most 8 clients; a line has at most 4096 bytes.
 class ControlChannel {
  public:
-  /// `path`: of the socket; "-": standard input and output; empty: no channel. Throws Error if
-  /// another program listens there, or the socket cannot be made.
-  explicit ControlChannel(std::string path);
+  /// `path`: of the socket, as control_place() takes it; "-": standard input and output; empty: no
+  /// channel. Throws Error if another program listens there, or the socket cannot be made.
+  explicit ControlChannel(const std::string& path);
   ~ControlChannel();  ///< removes the socket
   ControlChannel(const ControlChannel&) = delete;
   ControlChannel& operator=(const ControlChannel&) = delete;
 
-  /// Handles what has arrived, without waiting: calls `handle` for each line and sends its answer,
-  /// if any, as a line. Does nothing within 20 ms of the last call that did.
+  /// Handles what has arrived, without waiting: calls `handle` for each line and sends its answer
+  /// as a line. Where `handle` returns nothing, answer() must follow, for which a client that has
+  /// ended its lines is kept. Does nothing within 20 ms of the last call that did.
   void poll(const std::function<std::string(std::uint64_t client, std::string_view line)>& handle);
 
   /// Sends a later answer; does nothing if the client is gone.
@@ -32,13 +33,17 @@ class ControlChannel {
     std::uint64_t id = 0;
     int input = -1;
     int output = -1;
-    std::string begun = {};  ///< of a line
+    std::string begun = {};     ///< of a line
+    bool has_ended = false;     ///< sends no more lines
+    std::uint64_t awaited = 0;  ///< answers that it has not got
+    std::chrono::steady_clock::time_point next_blank = {};
   };
 
   void accept_clients();
   [[nodiscard]] bool read_from(
       Client& client,
       const std::function<std::string(std::uint64_t client, std::string_view line)>& handle);
+  [[nodiscard]] static bool awaits_answer(Client& client);
   static void close_client(const Client& client);
 
   std::string path_;

@@ -108,8 +108,7 @@ std::unique_ptr<FrameStream> replayed_file(const std::string& file, const ReadOp
     ReadOptions read = options;
     read.rate_hz = rate_hz;
     read.untimed = rate_hz.has_value();
-    auto source = open_frames(file, read);
-    print_file_warnings(file, source->warnings());
+    auto source = open_frames_with_warnings(file, read, quiet);
     if (source->frames() == 0) {
       throw Error(file, "it has no frames", "give a recording with at least one");
     }

@@ -38,6 +38,13 @@ std::vector<std::string> words_of(std::string_view line) {
   return words;
 }
 
+/// What follows a word of a line, without blanks around it.
+std::string rest_of(std::string_view line, const std::string& word) {
+  line.remove_prefix(line.find(word) + word.size());
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  return std::string(line.substr(0, line.find_last_not_of(" \t") + 1));
+}
+
 std::string done_line(const std::string& what) { return json_text({{"ok", true}, {"done", what}}); }
 
 std::string failed_line(const std::string& why) {
@@ -368,7 +375,7 @@ std::string StreamSession::obey(std::uint64_t client, std::string_view line) {
   if (words.empty()) return "";
   const std::string& verb = words.front();
   if (verb == "tare") return start_tare(client, words);
-  if (verb == "record") return record(client, words);
+  if (verb == "record") return record(client, rest_of(line, verb));
   if (words.size() == 1) {
     if (verb == "pause" || verb == "resume") {
       paused_ = verb == "pause";
@@ -408,10 +415,10 @@ std::string StreamSession::start_tare(std::uint64_t client, const std::vector<st
   return "";  // take_tare() answers.
 }
 
-std::string StreamSession::record(std::uint64_t client, const std::vector<std::string>& words) {
-  if (words.size() != 2) return failed_line("record: give a file, or stop");
+std::string StreamSession::record(std::uint64_t client, const std::string& file) {
+  if (file.empty()) return failed_line("record: give a file, or stop");
   try {
-    if (words[1] == "stop") {
+    if (file == "stop") {
       if (recording_.empty()) return failed_line("record: nothing is being recorded");
       sinks_->finish_later(std::exchange(recording_, ""), client);
       return "";  // answer_finished() answers.
@@ -420,9 +427,9 @@ std::string StreamSession::record(std::uint64_t client, const std::vector<std::s
       return failed_line(fmt::format("record: {} is being recorded; give 'record stop' first",
                                      printable(recording_)));
     }
-    check_outputs(files_read(options_), {{words[1], OutputKind::recording}}, options_.replace);
-    sinks_->add(create_live_recording(words[1], info_));
-    recording_ = words[1];
+    check_outputs(files_read(options_), {{file, OutputKind::recording}}, options_.replace);
+    sinks_->add(create_live_recording(file, info_));
+    recording_ = file;
     recording_awaits_tare_ = tare_.is_running() || !has_tare(info_);
     return done_line("record");
   } catch (const Error& error) {

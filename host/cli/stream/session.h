@@ -59,7 +59,7 @@ class StreamSession {
 
   std::string obey(std::uint64_t client, std::string_view line);
   std::string start_tare(std::uint64_t client, const std::vector<std::string>& words);
-  std::string record(std::uint64_t client, const std::vector<std::string>& words);
+  std::string record(std::uint64_t client, const std::string& file);
 
   const StreamOptions& options_;
   SolverPlan plan_;

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "pillarfield/array_axes.h"
 
 namespace pillarfield {
 
@@ -26,6 +29,9 @@ struct ReadOptions {
   std::string times = {};
   /// Size of a frame whose readings lie in one line of a table or array.
   std::optional<FrameSize> frame_size = {};
+  /// Order of the axes of an array of plain data. Empty: frames, rows, columns; an array that more
+  /// likely has another order is refused (require_likely_axes()).
+  std::vector<ArrayAxis> axes = {};
 
   /// Frames per second, for a file without times: frame i has the time i / rate_hz. Throws Error
   /// for a file with times, unless `untimed`.

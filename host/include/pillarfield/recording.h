@@ -40,6 +40,10 @@ class FrameSource {
   /// if has_truth().
   virtual void read_truth(std::uint64_t index, ForceField& truth) = 0;
 
+  /// Of plain data, which states neither axes nor type, what it was read as: "280 frames of 63 x
+  /// 33, uint8". Empty for other formats.
+  [[nodiscard]] virtual std::string read_as() const { return {}; }
+
   /// Warnings about the file, one sentence each: a row or column without pillars, a file that was
   /// not closed, a constant that is assumed.
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;

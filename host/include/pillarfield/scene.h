@@ -121,6 +121,9 @@ struct Scene {
 /// the calibration of the plan stay.
 void set_solver(SolverPlan& plan, const Scene& scene);
 
+/// Gives `skin` the constants of the scene's skin, and its surface if it has one; the size stays.
+void set_skin(Skin& skin, const Scene& scene);
+
 /// The surface under the skin; reads its height map and samples it at the pillars. Throws Error if
 /// the map is unreadable or does not cover the skin.
 [[nodiscard]] std::optional<Surface> surface_of(const Scene& scene);

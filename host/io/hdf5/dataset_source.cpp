@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/frame_source.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/dataset.h"
 #include "io/hdf5/readers.h"
@@ -38,9 +39,7 @@ std::unique_ptr<FileSource> read_hdf5_frames(hdf5::File file, const ReadOptions&
                   fmt::format("is a {:.60}, whose readings have their place", *format),
                   "leave out --dataset and --times");
     }
-    if (options.frame_size) {
-      throw Error(file.path.string(), "has the size of its frames", "leave out --shape");
-    }
+    refuse_layout(file.path, options);
     return read_recording(std::move(file), options);
   }
   if (options.dataset.empty()) ask_for_dataset(file, format);

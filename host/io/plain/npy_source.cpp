@@ -7,8 +7,9 @@
 #include <map>
 #include <utility>
 
+#include "base/npy.h"
 #include "io/frame_source.h"
-#include "io/plain/npy.h"
+#include "io/plain/random_file.h"
 #include "io/plain/source.h"
 #include "io/plain/zip.h"
 #include "pillarfield/error.h"
@@ -17,6 +18,56 @@ namespace pillarfield {
 namespace {
 
 constexpr std::size_t kMostMembers = 1000;
+
+/// The header of an array of readings. Throws Error if it is damaged, or the array has booleans or
+/// Fortran order.
+NpyHeader header_of_readings(std::string_view head, const std::string& place) {
+  const NpyHeader header = parse_npy_header(head, place);
+  if (header.is_boolean) {
+    throw Error(place, "holds bool, which is not a type of readings",
+                "store integers, float32 or float64");
+  }
+  if (header.by_columns) {
+    throw Error(place, "is stored in Fortran order", "save numpy.ascontiguousarray(array)");
+  }
+  return header;
+}
+
+class NpyInFile final : public NumberArray {
+ public:
+  NpyInFile(RandomFile file, std::uint64_t data, const NpyHeader& header, std::string place)
+      : NumberArray(std::move(place), header.type, header.shape),
+        file_(std::move(file)),
+        data_(data),
+        is_swapped_(header.is_swapped) {}
+
+  void read(std::uint64_t first, std::uint64_t count, std::byte* numbers) override {
+    const std::size_t bytes = count * slice_bytes();
+    file_.read(data_ + first * slice_bytes(), {numbers, bytes});
+    if (is_swapped_) swap_bytes(numbers, bytes / type().bytes, type().bytes);
+  }
+
+ private:
+  RandomFile file_;
+  std::uint64_t data_;
+  bool is_swapped_;
+};
+
+/// The array at `offset` of a file, whose data are read when they are asked for. Throws Error if
+/// the file is shorter than the header says; `available` is the largest size, header included.
+std::unique_ptr<NumberArray> npy_in_file(RandomFile file, std::uint64_t offset,
+                                         std::uint64_t available, std::string place) {
+  const NpyHeader header = header_of_readings(
+      file.text_at(offset, std::min<std::uint64_t>(available, kLongestNpyHeader)), place);
+  if (header.data_bytes > available - header.bytes) {
+    throw Error(place,
+                fmt::format("claims {} {}, more than its {} bytes hold",
+                            text_of_shape(header.shape), name_of(header.type), available),
+                "the file is damaged or truncated; use another copy");
+  }
+  return std::make_unique<NpyInFile>(std::move(file), offset + header.bytes, header,
+                                     std::move(place));
+}
 
 /// An array of an archive.
 struct NpzArray {
@@ -99,7 +150,7 @@ class NpzArchive {
     const std::string head = head_of(file_, member, kLongestNpyHeader);
     if (!head.starts_with(kNpyMagic)) return;
     try {
-      arrays_.push_back({name, member, parse_npy_header(head, name)});
+      arrays_.push_back({name, member, header_of_readings(head, name)});
     } catch (const Error& error) {
       refused_.emplace(name, error.what());
     }

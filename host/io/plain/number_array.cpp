@@ -1,7 +1,6 @@
 #include "io/plain/number_array.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstring>
@@ -11,31 +10,6 @@
 
 namespace pillarfield {
 namespace {
-
-/// Calls `action` with a value of the C++ type.
-template <class Action>
-auto with_number(NumberType type, Action action) {
-  using Kind = NumberType::Kind;
-  if (type.kind == Kind::real) return type.bytes == 4 ? action(float{}) : action(double{});
-  const bool is_signed = type.kind == Kind::signed_integer;
-  switch (type.bytes) {
-    case 1:
-      return is_signed ? action(std::int8_t{}) : action(std::uint8_t{});
-    case 2:
-      return is_signed ? action(std::int16_t{}) : action(std::uint16_t{});
-    case 4:
-      return is_signed ? action(std::int32_t{}) : action(std::uint32_t{});
-    default:
-      return is_signed ? action(std::int64_t{}) : action(std::uint64_t{});
-  }
-}
-
-template <class Number>
-Number number_at(const std::byte* numbers, std::size_t index) {
-  Number number;
-  std::memcpy(&number, numbers + index * sizeof number, sizeof number);
-  return number;
-}
 
 template <class Number>
 bool is_exact(Number number) {
@@ -73,14 +47,6 @@ class ArrayInMemory final : public NumberArray {
 
 }  // namespace
 
-std::string name_of(NumberType type) {
-  using Kind = NumberType::Kind;
-  const char* const kind = type.kind == Kind::real             ? "float"
-                           : type.kind == Kind::signed_integer ? "int"
-                                                               : "uint";
-  return fmt::format("{}{}", kind, 8 * type.bytes);
-}
-
 SenselType sensel_type_for(NumberType type) {
   if (type.kind != NumberType::Kind::unsigned_integer || type.bytes > 2) return SenselType::f32;
   return type.bytes == 1 ? SenselType::u8 : SenselType::u16;
@@ -109,10 +75,6 @@ std::size_t NumberArray::slice_bytes() const {
   return bytes;
 }
 
-std::string text_of_shape(const std::vector<std::uint64_t>& shape) {
-  return fmt::format("{}", fmt::join(shape, " x "));
-}
-
 std::vector<double> read_numbers(NumberArray& array) {
   if (array.shape().size() != 1) {
     throw Error(array.place(), fmt::format("has the shape {}", text_of_shape(array.shape())),
@@ -121,13 +83,7 @@ std::vector<double> read_numbers(NumberArray& array) {
   const std::size_t count = array.shape()[0];
   std::vector<std::byte> numbers(count * array.type().bytes);
   array.read(0, count, numbers.data());
-  std::vector<double> values(count);
-  with_number(array.type(), [&]<class Number>(Number) {
-    for (std::size_t i = 0; i < count; ++i) {
-      values[i] = static_cast<double>(number_at<Number>(numbers.data(), i));
-    }
-  });
-  return values;
+  return doubles_of(array.type(), numbers);
 }
 
 std::unique_ptr<NumberArray> array_in_memory(std::string place, NumberType type,

@@ -8,19 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_type.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
-
-/// Type of the numbers in an array: an integer of 1, 2, 4 or 8 bytes or a float of 4 or 8.
-struct NumberType {
-  enum class Kind : std::uint8_t { unsigned_integer, signed_integer, real };
-  Kind kind = Kind::unsigned_integer;
-  std::size_t bytes = 1;
-};
-
-/// "uint8", "int16", "float64".
-[[nodiscard]] std::string name_of(NumberType type);
 
 /// The type of readings for numbers of a type: uint8, uint16 and float32 stay, others become
 /// float32.
@@ -58,9 +49,6 @@ class NumberArray {
   NumberType type_;
   std::vector<std::uint64_t> shape_;
 };
-
-/// "200 x 40 x 60".
-[[nodiscard]] std::string text_of_shape(const std::vector<std::uint64_t>& shape);
 
 /// Reads a one-dimensional array of any type. Throws Error if it has more dimensions.
 [[nodiscard]] std::vector<double> read_numbers(NumberArray& array);

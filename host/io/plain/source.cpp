@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "io/hdf5/stored_frames.h"
+#include "io/plain/ordered_array.h"
+#include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -19,9 +21,11 @@ class ArraySource final : public FileSource {
 
   double time(std::uint64_t index) override;
   double read(std::uint64_t index, FrameBuffer& frame) override;
+  [[nodiscard]] std::string read_as() const override;
 
  private:
   void take_shape(const ReadOptions& options);
+  void take_as_frame();
   void take_lines(const FrameSize& size);
   void check_size(const ReadOptions& options) const;
 
@@ -57,23 +61,23 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
 }
 
 void ArraySource::take_shape(const ReadOptions& options) {
+  if (!options.axes.empty()) array_ = in_order_of_frames(std::move(array_), options.axes);
   const std::vector<std::uint64_t>& shape = array_->shape();
   const auto& size = options.frame_size;
+  const bool is_frame =
+      !options.axes.empty() || (size && shape[0] == size->rows && shape.back() == size->cols);
   if (shape.size() == 3) {
     frames_ = shape[0];
     skin_.rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[1], kMaxSensels + 1));
     skin_.cols = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[2], kMaxSensels + 1));
-  } else if (shape.size() == 2 && size && (shape[0] != size->rows || shape[1] != size->cols)) {
+  } else if (shape.size() == 2 && size && !is_frame) {
     take_lines(*size);
   } else if (shape.size() == 2) {
     frames_ = 1;
     slices_ = shape[0];
     skin_.rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[0], kMaxSensels + 1));
     skin_.cols = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[1], kMaxSensels + 1));
-    if (size) return;
-    warnings_.push_back(fmt::format(
-        "The array of {} is read as one frame; if each line is a frame, give --shape ROWSxCOLS.",
-        text_of_shape(shape)));
+    if (!is_frame) take_as_frame();
   } else {
     throw Error(array_->place(), fmt::format("has the shape {}", text_of_shape(shape)),
                 "frames need the shape (frames, rows, columns)");
@@ -81,6 +85,15 @@ void ArraySource::take_shape(const ReadOptions& options) {
   if (!size || (skin_.rows == size->rows && skin_.cols == size->cols)) return;
   throw Error(array_->place(), fmt::format("its frames are {} x {}", skin_.rows, skin_.cols),
               fmt::format("leave out --shape {}x{}", size->rows, size->cols));
+}
+
+/// Takes a two-dimensional array as a frame, though nothing says so.
+void ArraySource::take_as_frame() {
+  const std::vector<std::uint64_t>& shape = array_->shape();
+  require_likely_frame(shape[0], shape[1], array_->place());
+  warnings_.push_back(fmt::format(
+      "The array of {} is read as one frame; if each line is a frame, give --shape ROWSxCOLS.",
+      text_of_shape(shape)));
 }
 
 /// Takes each line of a two-dimensional array as a frame.
@@ -128,13 +141,21 @@ double ArraySource::read(std::uint64_t index, FrameBuffer& frame) {
   return time(index);
 }
 
+std::string ArraySource::read_as() const {
+  return fmt::format("{} frame{} of {} x {}, {}", frames_, frames_ == 1 ? "" : "s", skin_.rows,
+                     skin_.cols, name_of(array_->type()));
+}
+
 }  // namespace
 
 std::unique_ptr<FileSource> array_source(const std::filesystem::path& path, std::string format,
                                          std::unique_ptr<NumberArray> readings,
                                          std::vector<double> times_s, const ReadOptions& options) {
-  return std::make_unique<ArraySource>(path, std::move(format), std::move(readings),
-                                       std::move(times_s), options);
+  const std::string place = readings->place();
+  auto source = std::make_unique<ArraySource>(path, std::move(format), std::move(readings),
+                                              std::move(times_s), options);
+  if (options.axes.empty() && !options.frame_size) require_likely_axes(*source, place);
+  return source;
 }
 
 }  // namespace pillarfield

@@ -9,9 +9,9 @@
 
 namespace pillarfield {
 
-/// Frames in an array of numbers: [frames, rows, cols], [rows, cols] as one frame, or
-/// [frames, rows · cols] with ReadOptions::frame_size. `times_s` is empty if the file has none.
-/// Throws Error if the array is of another shape or the times do not fit.
+/// Frames in an array of numbers: [frames, rows, cols] or as ReadOptions::axes say, [rows, cols] as
+/// one frame, or [frames, rows · cols] with ReadOptions::frame_size. `times_s` is empty if the file
+/// has none. Throws Error if the array is of another shape or the times do not fit.
 [[nodiscard]] std::unique_ptr<FileSource> array_source(const std::filesystem::path& path,
                                                        std::string format,
                                                        std::unique_ptr<NumberArray> readings,

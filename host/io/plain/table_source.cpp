@@ -265,10 +265,13 @@ std::unique_ptr<FileSource> open_table(const std::filesystem::path& path,
                                     : NumberType{NumberType::Kind::real, 4};
   std::vector<std::byte> numbers = is_counts ? bytes_of_readings<std::uint16_t>(table.readings)
                                              : bytes_of_readings<float>(table.readings);
+  ReadOptions known = options;
+  using enum ArrayAxis;  // Blank lines separate frames.
+  if (known.axes.empty() && shape.size() == 3) known.axes = {frames, rows, columns};
   auto source =
       array_source(path, "table of numbers",
                    array_in_memory(path.string(), type, std::move(shape), std::move(numbers)),
-                   std::move(table.times_s), options);
+                   std::move(table.times_s), known);
   if (table.begins_with_column_numbers) {
     source->warn(
         "The first line counts 0, 1, 2, ... and is read as readings. If it names columns, save the "

@@ -39,7 +39,7 @@ class Tekscan final : public FileSource {
 Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
     : FileSource(path, "Tekscan ASCII") {
   refuse_dataset(path, options);
-  refuse_size(path, options);
+  refuse_layout(path, options);
   TekscanExport data = parse_tekscan(path);
   readings_ = std::move(data.readings);
   type_ = readings_.type();

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/npy.h"
 #include "io/force_planes.h"
 #include "io/force_sink.h"
-#include "io/plain/npy.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {

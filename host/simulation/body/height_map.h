@@ -17,9 +17,9 @@ struct HeightMap {
 /// Largest number of rows or columns of a height map.
 inline constexpr std::size_t kMaxHeightMapSide = 4096;
 
-/// Reads a relief from a file of NumPy (.npy, two dimensions, whole numbers of up to 32 bits or
-/// floats, little-endian) or a picture (.png, grey, 8 or 16 bits). Files are untrusted: opens
-/// only regular files of at most 160 MiB and checks the header strictly. Throws Error.
+/// Reads a relief from a file of NumPy (.npy, two dimensions, whole numbers or floats) or a picture
+/// (.png, grey, 8 or 16 bits). Files are untrusted: opens only regular files of at most 160 MiB and
+/// checks the header strictly. Throws Error.
 [[nodiscard]] HeightMap read_height_map(const std::filesystem::path& path);
 
 /// As above, from the bytes of a .npy or .png file; `name` is its name in messages.

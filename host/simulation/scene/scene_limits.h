@@ -6,7 +6,7 @@
 
 #include "base/range.h"
 #include "pillarfield/scene.h"
-#include "solve/friction_limits.h"
+#include "skin/limits.h"
 
 namespace pillarfield {
 
@@ -27,13 +27,11 @@ inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
 }};
 inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
 
-inline constexpr Range kSenselLeaks = {-kMostSenselLeak, kMostSenselLeak};
-inline constexpr Range kPillarLeaks = {-kMostPillarLeak / 4, kMostPillarLeak / 4};
 inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{
-    {"pillar_leak_edge", &SensorModel::pillar_leak_edge, kPillarLeaks},
-    {"pillar_leak_corner", &SensorModel::pillar_leak_corner, kPillarLeaks},
-    {"leak_inside", &SensorModel::leak_inside, kSenselLeaks},
-    {"leak_across", &SensorModel::leak_across, kSenselLeaks},
+    {"pillar_leak_edge", &SensorModel::pillar_leak_edge, kPillarLeak},
+    {"pillar_leak_corner", &SensorModel::pillar_leak_corner, kPillarLeak},
+    {"leak_inside", &SensorModel::leak_inside, kSenselLeak},
+    {"leak_across", &SensorModel::leak_across, kSenselLeak},
     {"hysteresis", &SensorModel::hysteresis, {0, 0.3}},
     {"creep_per_decade", &SensorModel::creep_per_decade, {0, 0.3}},
     {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},
@@ -45,11 +43,7 @@ inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{
     {"dead_share", &SensorModel::dead_share, {0, 1}},
 }};
 inline constexpr int kMaxAdcBits = 16;
-inline constexpr Range kPillarArmMm = {1e-3, 1e3};
-inline constexpr Range kShearCoefficient = {0.1, 10};
 inline constexpr Range kHysteresisRangeCounts = {1e-3, 1e9};
-inline constexpr Range kCurveCounts = {0, 1e9, true};
-inline constexpr Range kTileSensels = {2, 1024};
 inline constexpr std::array<Quantity<Wires>, 3> kWireQuantities = {{
     {"row_ohm", &Wires::row_ohm, {0, 1e9}},
     {"column_ohm", &Wires::column_ohm, {0, 1e9}},

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
@@ -33,6 +34,15 @@ std::optional<Surface> surface_of(const Scene& scene) {
     surface.heights_mm.push_back(static_cast<float>(map.depth_mm - depth_mm));
   }
   return surface;
+}
+
+void set_skin(Skin& skin, const Scene& scene) {
+  skin.sensel_pitch_mm = scene.skin.sensel_pitch_mm;
+  skin.counts_per_newton = scene.skin.counts_per_newton;
+  skin.threshold_counts = scene.skin.threshold_counts;
+  skin.full_scale_counts = scene.skin.full_scale_counts;
+  skin.power_law = scene.skin.power_law;
+  if (auto surface = surface_of(scene)) skin.surface = std::move(surface);
 }
 
 }  // namespace pillarfield

@@ -115,7 +115,8 @@ std::optional<std::vector<TomlSection>> TomlSection::tables(std::string_view key
   if (!node) return std::nullopt;
   const std::string allowed = fmt::format("a list of tables, {}", title);
   const toml::array* array = node->as_array();
-  if (!array || array->empty()) fail_at(node->source(), key, describe(*node), allowed);
+  if (!array) fail_at(node->source(), key, describe(*node), allowed);
+  if (array->empty()) return std::nullopt;
   std::vector<TomlSection> sections;
   for (const toml::node& element : *array) {
     if (!element.is_table()) {

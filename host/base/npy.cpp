@@ -1,4 +1,4 @@
-#include "io/plain/npy.h"
+#include "base/npy.h"
 
 #include <fmt/format.h>
 
@@ -77,8 +77,6 @@ class DictionaryText {
 
 std::string name_of_kind(char kind, std::string_view size) {
   switch (kind) {
-    case 'b':
-      return "bool";
     case 'f':
       return size == "2" ? "float16" : fmt::format("float of {:.20} bytes", size);
     case 'c':
@@ -103,9 +101,9 @@ void take_type(std::string_view descr, NpyHeader& header, const std::string& pla
   const std::string_view size = descr.substr(std::min<std::size_t>(1, descr.size()));
   const bool is_whole =
       (kind == 'u' || kind == 'i') && (size == "1" || size == "2" || size == "4" || size == "8");
-  if (!is_whole && !(kind == 'f' && (size == "4" || size == "8"))) {
-    throw Error(place,
-                fmt::format("holds {}, which is not a type of readings", name_of_kind(kind, size)),
+  header.is_boolean = kind == 'b' && size == "1";
+  if (!is_whole && !header.is_boolean && !(kind == 'f' && (size == "4" || size == "8"))) {
+    throw Error(place, fmt::format("holds {}, which is not read", name_of_kind(kind, size)),
                 "store integers, float32 or float64");
   }
   using Kind = NumberType::Kind;
@@ -145,10 +143,8 @@ NpyHeader parse_dictionary(std::string_view text, const std::string& place) {
       take_type(dictionary.quoted(), header, place);
       has_type = true;
     } else if (key == "fortran_order") {
-      if (dictionary.take("True")) {
-        throw Error(place, "is stored in Fortran order", "save numpy.ascontiguousarray(array)");
-      }
-      dictionary.require("False");
+      header.by_columns = dictionary.take("True");
+      if (!header.by_columns) dictionary.require("False");
       has_order = true;
     } else if (key == "shape") {
       header.shape = dictionary.tuple();
@@ -163,26 +159,6 @@ NpyHeader parse_dictionary(std::string_view text, const std::string& place) {
   if (!has_type || !has_order) dictionary.fail();
   return header;
 }
-
-class NpyInFile final : public NumberArray {
- public:
-  NpyInFile(InputFile file, std::uint64_t data, const NpyHeader& header, std::string place)
-      : NumberArray(std::move(place), header.type, header.shape),
-        file_(std::move(file)),
-        data_(data),
-        is_swapped_(header.is_swapped) {}
-
-  void read(std::uint64_t first, std::uint64_t count, std::byte* numbers) override {
-    const std::size_t bytes = count * slice_bytes();
-    file_.read(data_ + first * slice_bytes(), {numbers, bytes});
-    if (is_swapped_) swap_bytes(numbers, bytes / type().bytes, type().bytes);
-  }
-
- private:
-  InputFile file_;
-  std::uint64_t data_;
-  bool is_swapped_;
-};
 
 }  // namespace
 
@@ -211,7 +187,7 @@ NpyHeader parse_npy_header(std::string_view head, const std::string& place) {
   const auto data_bytes = bytes_of(header);
   if (header.shape.empty() || header.shape.size() > 32 || !data_bytes) {
     throw Error(place, fmt::format("has the shape ({})", text_of_shape(header.shape)),
-                "frames need the shape (frames, rows, columns)");
+                "save an array of at least one axis");
   }
   header.data_bytes = *data_bytes;
   return header;
@@ -221,20 +197,6 @@ void swap_bytes(std::byte* numbers, std::size_t count, std::size_t number_bytes)
   for (std::size_t i = 0; i < count; ++i) {
     std::reverse(numbers + i * number_bytes, numbers + (i + 1) * number_bytes);
   }
-}
-
-std::unique_ptr<NumberArray> npy_in_file(InputFile file, std::uint64_t offset,
-                                         std::uint64_t available, std::string place) {
-  const NpyHeader header = parse_npy_header(
-      file.text_at(offset, std::min<std::uint64_t>(available, kLongestNpyHeader)), place);
-  if (header.data_bytes > available - header.bytes) {
-    throw Error(place,
-                fmt::format("claims {} {}, more than its {} bytes hold",
-                            text_of_shape(header.shape), name_of(header.type), available),
-                "the file is damaged or truncated; use another copy");
-  }
-  return std::make_unique<NpyInFile>(std::move(file), offset + header.bytes, header,
-                                     std::move(place));
 }
 
 }  // namespace pillarfield

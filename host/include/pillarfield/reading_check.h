@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pillarfield/force_sink.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield {
+
+/// Notices solved frames whose readings were probably not what the plan takes them for: no tare,
+/// readings that fall under load, a threshold above all readings, frames without readings.
+class ReadingCheck final : public ForceSink {
+ public:
+  /// `plan` must outlive the check.
+  explicit ReadingCheck(const SolverPlan& plan);
+
+  /// Counts a frame. Looks at its readings only where hardly any pillar is in contact.
+  void append(const SolvedFrame& frame) override;
+
+  /// What was noticed, one sentence each. Simulated frames need none.
+  [[nodiscard]] std::vector<std::string> warnings() const;
+
+ private:
+  struct Counts {
+    std::uint64_t above = 0;  ///< sensels beyond the threshold over their tare
+    std::uint64_t below = 0;  ///< and under it
+    float highest = 0;        ///< reading over its tare, counts
+    float lowest = 0;
+  };
+  template <class Reading>
+  [[nodiscard]] Counts count(const FrameView& readings) const;
+  void look_at(const FrameView& readings);
+  void warn_of_no_contact(std::vector<std::string>& sentences) const;
+
+  const SolverPlan& plan_;
+  std::uint64_t present_ = 0;  ///< pillars of a frame that have sensels
+  std::uint64_t frames_ = 0;
+  std::uint64_t in_contact_ = 0;    ///< pillars of all frames
+  std::uint64_t blank_frames_ = 0;  ///< frames without a reading
+  std::uint64_t sensels_seen_ = 0;
+  Counts most_;
+};
+
+}  // namespace pillarfield

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "base/range.h"
+
+namespace pillarfield {
+
+// Ranges of numbers that scenes, files, plans and the command line share.
+
+// Of SensorEffects.
+inline constexpr Range kLeak = {-0.2, 0.2};  ///< relative, inside and between pillars
+inline constexpr Range kShearCoefficient = {0.1, 10};
+inline constexpr Range kPillarArmMm = {1e-3, 1e3};
+inline constexpr Range kTileSensels = {2, 1024};  ///< rows or columns that share wires
+inline constexpr Range kCurveCounts = {0, 1e9, true};
+
+// Of FrictionKnowledge.
+inline constexpr Range kFrictions = {0.1, 9.9};
+inline constexpr Range kPriorSpread = {0.01, 3};
+inline constexpr Range kFrictionBound = {0.1, 100};
+
+}  // namespace pillarfield
