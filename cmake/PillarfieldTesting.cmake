@@ -1,11 +1,13 @@
 # Functions that define tests, and the environment of the tests.
 #
 # A test program is one entry of ctest and runs all of its tests; `PROGRAM --gtest_filter=...` runs some.
-# Three keywords select when an entry runs:
+# Four keywords select when an entry runs:
 #   (none)     in the optimised build, by `./dev test`
 #   LONG       only by `./dev test --all`: it takes minutes, or tests tools of developers
 #   SANITIZED  with sanitizers too, by `./dev test`: parsers, files, the ring, calibration planes.
 #              `./dev test --all` runs all others with sanitizers.
+#   FURTHER    tests whose suite or instantiation begins with Further are an entry of their own, which is
+#              LONG: kernels that differ little from those of the others, and take long to compile
 # The target `default_tests` builds the tests of `./dev test`, `all_tests` those of `./dev test --all`.
 
 # Compiled kernels are cached in the build tree, not in the user's home (where others can write the
@@ -32,6 +34,9 @@ else()
     "MALLOC_PERTURB_=170" "GLIBC_TUNABLES=glibc.malloc.tcache_count=0")
 endif()
 
+# Seconds after which a test hangs. The slowest takes two minutes; a busy machine takes its time.
+set(PILLARFIELD_TEST_TIMEOUT 3600)
+
 add_custom_target(default_tests)
 add_custom_target(all_tests)
 add_dependencies(all_tests default_tests)
@@ -47,7 +52,7 @@ function(pillarfield_test_entry name)
     set(group all_tests)
   endif()
   set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}"
-    ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
+    TIMEOUT ${PILLARFIELD_TEST_TIMEOUT} ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
   if(arg_TARGETS)
     add_dependencies(${group} ${arg_TARGETS})
   endif()
@@ -69,20 +74,24 @@ function(pillarfield_test_options target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# pillarfield_test(<module>_<subject> [LONG] [SANITIZED] [LEAKS] LINK <modules...> SOURCES <files...>): a
-# test program and its entry. LEAKS: with sanitizers, leaks are errors.
+# pillarfield_test(<module>_<subject> [LONG] [SANITIZED] [LEAKS] [FURTHER] LINK <modules...>
+# SOURCES <files...>): a test program and its entry. LEAKS: with sanitizers, leaks are errors.
 function(pillarfield_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED;LEAKS" "" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED;LEAKS;FURTHER" "" "")
   pillarfield_test_program(${name} ${arg_UNPARSED_ARGUMENTS})
-  add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${name} --gtest_brief=1)
   set(when "")
   foreach(keyword LONG SANITIZED)
     if(arg_${keyword})
       list(APPEND when ${keyword})
     endif()
   endforeach()
-  pillarfield_test_entry(${name} ${when} TARGETS ${name})
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES TIMEOUT 900)
+  if(arg_FURTHER)
+    pillarfield_program_entry(${name}_further ${name} LONG --gtest_filter=Further*)
+    set(arg_FURTHER --gtest_filter=-Further*)
+  else()
+    set(arg_FURTHER "")
+  endif()
+  pillarfield_program_entry(${name} ${name} "${when}" ${arg_FURTHER})
   if(arg_LEAKS)
     set_property(TEST ${PILLARFIELD_TEST_PREFIX}${name} APPEND PROPERTY ENVIRONMENT
       "${PILLARFIELD_LEAKS_SOUGHT}")
@@ -112,6 +121,12 @@ function(pillarfield_thread_test name)
   set_tests_properties(${name} PROPERTIES TIMEOUT 300)
 endfunction()
 
+# An entry that runs a test program with arguments.
+function(pillarfield_program_entry entry program when)
+  add_test(NAME ${PILLARFIELD_TEST_PREFIX}${entry} COMMAND ${program} --gtest_brief=1 ${ARGN})
+  pillarfield_test_entry(${entry} ${when} TARGETS ${program})
+endfunction()
+
 # pillarfield_oclgrind_test(<name> <program> <filter> [LONG]): runs the tests of a program that match the
 # GoogleTest filter on Oclgrind's simulated device. It fails when they fail, when a kernel accesses
 # memory out of bounds, or when two work-items race; it is skipped where Oclgrind is not installed.
@@ -124,7 +139,7 @@ function(pillarfield_oclgrind_test name program filter)
     COMMAND ${PROJECT_SOURCE_DIR}/tests/oclgrind/run_under_oclgrind
       ${CMAKE_CURRENT_BINARY_DIR}/${name}.log $<TARGET_FILE:${program}> ${filter})
   pillarfield_test_entry(oclgrind.${name} ${ARGN} TARGETS ${program})
-  set_tests_properties(oclgrind.${name} PROPERTIES TIMEOUT 480 SKIP_RETURN_CODE 77)
+  set_tests_properties(oclgrind.${name} PROPERTIES SKIP_RETURN_CODE 77)
 endfunction()
 
 # pillarfield_python_test(<module>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...> TARGETS <targets...>):
@@ -155,7 +170,7 @@ function(pillarfield_python_test name)
     set(when LONG)
   endif()
   pillarfield_test_entry(${name} ${when} TARGETS pillarfield ${arg_TARGETS})
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES TIMEOUT 400
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES
     SKIP_REGULAR_EXPRESSION "^skipped:")
   set_property(TEST ${PILLARFIELD_TEST_PREFIX}${name} APPEND PROPERTY ENVIRONMENT
     "PILLARFIELD=$<TARGET_FILE:pillarfield>" "PILLARFIELD_SOURCE=${PROJECT_SOURCE_DIR}"

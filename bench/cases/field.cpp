@@ -15,7 +15,7 @@
 namespace pillarfield::bench {
 namespace {
 
-constexpr std::size_t kFrames = 16;  ///< 40 MB
+constexpr std::size_t kFieldFrames = 16;  ///< 40 MB
 
 /// Holds the frames of the last case, which are simulated on first use.
 class ContactFrameStore {
@@ -23,7 +23,7 @@ class ContactFrameStore {
   const ContactFrames& of(Indenters indenters) {
     if (!last_ || indenters != last_indenters_) {
       last_.reset();  // Before the next allocation.
-      last_.emplace(indenters, kFrames);
+      last_.emplace(indenters, kFieldFrames);
       last_indenters_ = indenters;
     }
     return *last_;

@@ -16,7 +16,7 @@ namespace pillarfield::bench {
 namespace {
 
 /// Square roots of about 10^3 to 10^7 pillars.
-constexpr std::uint32_t kSides[] = {32, 100, 316, 1000, 3162};
+constexpr std::uint32_t kIntrinsicSides[] = {32, 100, 316, 1000, 3162};
 
 /// The case's time is that of the faster of the two loops.
 Measurement time_intrinsics(const Session& session, const SolverPlan& plan) {
@@ -47,7 +47,7 @@ Measurement time_intrinsics(const Session& session, const SolverPlan& plan) {
 }  // namespace
 
 void add_intrinsics_cases(const Session& session) {
-  for (const std::uint32_t side : kSides) {
+  for (const std::uint32_t side : kIntrinsicSides) {
     const SolverPlan plan = bare_plan(side);
     add_case(fmt::format("intrinsics/{}", plan.skin.pillars()),
              [&session, plan] { return time_intrinsics(session, plan); });

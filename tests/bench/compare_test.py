@@ -92,7 +92,7 @@ class Program(unittest.TestCase):
 
     def compare(self, *arguments):
         return subprocess.run([sys.executable, BENCH / "compare.py", *map(str, arguments)],
-                              capture_output=True, text=True, timeout=60, check=False)
+                              capture_output=True, text=True, timeout=600, check=False)
 
     def test_runs_of_both_programs_are_interleaved(self):
         old = self.write("old", PROGRAM % 3)

@@ -11,7 +11,7 @@ PROGRAM = os.environ["PILLARFIELD_BENCH"]
 
 def run(*arguments, expect=0, **environment):
     """Runs the program; its exit status must be `expect`."""
-    result = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=200,
+    result = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                             check=False, env={**os.environ, **environment})
     assert result.returncode == expect, (
         f"{arguments} ended with {result.returncode}, not {expect}\n{result.stdout}{result.stderr}")

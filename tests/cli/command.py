@@ -53,7 +53,7 @@ def datasets(path):
 def run(*arguments, expect=0, **options):
     """Runs the command and returns its result; its exit status must be `expect`."""
     result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                            timeout=120, check=False, **options)
+                            timeout=600, check=False, **options)
     assert result.returncode == expect, (
         f"{arguments} ended with {result.returncode}, not {expect}\n{result.stdout}{result.stderr}")
     return result
@@ -80,7 +80,7 @@ def on_terminal(words, watch=lambda process, messages: True, **options):
         except OSError:
             pass  # The process closed the terminal.
         os.close(controller)
-        status = process.wait(timeout=120)
+        status = process.wait(timeout=600)
         out.seek(0)
         return status, out.read(), messages
 

@@ -49,7 +49,7 @@ class Outcome:
             if pid != 0:
                 process.returncode = status
                 return status, usage
-            if time.monotonic() - begin > 60:
+            if time.monotonic() - begin > 600:
                 process.kill()
             time.sleep(0.002)
 

@@ -45,7 +45,7 @@ class KernelCache(CommandTest):
     def solve(self, *more, **changes):
         """Solves in the environment `changes`."""
         command = [PROGRAM, "solve", self.recording, "-o", self.output(), *more]
-        return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False,
+        return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False,
                               env=environment(**changes))
 
     def plant(self, kernels, *places):

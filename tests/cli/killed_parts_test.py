@@ -40,12 +40,12 @@ class Killed(PartsFolder):
                 process = subprocess.Popen([*self.command, "--parts", "8"])
                 time.sleep(rng.uniform(0.05, 1.2))
                 process.send_signal(signal.SIGKILL)
-                if process.wait(60) != -signal.SIGKILL:
+                if process.wait(600) != -signal.SIGKILL:
                     break  # It was faster.
                 kills += 1
                 if kills % 4 == 0:
                     break
-            subprocess.run([*self.command, "--parts", "8"], check=True, timeout=300)
+            subprocess.run([*self.command, "--parts", "8"], check=True, timeout=600)
             self.assert_joined()
 
 

@@ -173,13 +173,13 @@ class Ends(OutputTest):
     def simulate(self, until=None, **options):
         with subprocess.Popen([PROGRAM, "simulate", self.scene, "-o", self.folder / "long.h5"],
                               stderr=subprocess.PIPE, text=True, **options) as process:
-            deadline = time.monotonic() + 60
+            deadline = time.monotonic() + 600
             while until and process.poll() is None and time.monotonic() < deadline:
                 if self.part.exists() and self.part.stat().st_size > 3_000_000:
                     until(process)
                     break
                 time.sleep(0.01)
-            _, error = process.communicate(timeout=60)
+            _, error = process.communicate(timeout=600)
         return process.returncode, error.strip().splitlines()
 
     def assert_part_is_read(self):
@@ -222,7 +222,7 @@ class Ends(OutputTest):
         def hang_up_then_stop(process):
             process.send_signal(signal.SIGHUP)
             size = self.part.stat().st_size
-            deadline = time.monotonic() + 60
+            deadline = time.monotonic() + 600
             while self.part.stat().st_size <= size and time.monotonic() < deadline:
                 time.sleep(0.01)
             self.assertIsNone(process.poll())

@@ -256,7 +256,7 @@ class PartsTest(PartsFolder):
         processes = [subprocess.Popen([PROGRAM, "solve", self.recording, "-o", self.output, "--part",
                                        "1/2", "-q"], stderr=subprocess.PIPE, text=True)
                      for _ in range(4)]
-        messages = [process.communicate(timeout=60)[1] for process in processes]
+        messages = [process.communicate(timeout=600)[1] for process in processes]
         self.assertIn(0, [process.returncode for process in processes], messages)
         self.solve("--part", "2/2")
         run("join", self.output)

@@ -19,7 +19,7 @@ ESCAPED = r"a\u001b[31mb\u001b]0;c\u0007\u009b2Jd\u007f"
 
 def output_of(*arguments, expect=0):
     """The bytes on standard output and error."""
-    result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120, check=False)
+    result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=600, check=False)
     assert result.returncode == expect, (arguments, result)
     return result.stdout, result.stderr
 
@@ -95,7 +95,7 @@ class StrangeText(CommandTest):
 
     def either(self, *arguments):
         """Output and error of the command, checked, with exit status 0 or 1."""
-        result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120,
+        result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=600,
                                 check=False)
         self.assertIn(result.returncode, (0, 1))
         return self.assert_harmless(result.stdout), self.assert_harmless(result.stderr)

@@ -1,5 +1,6 @@
 #include "random_plan.h"
 
+#include <cmath>
 #include <limits>
 
 namespace pillarfield {
@@ -32,6 +33,20 @@ std::vector<Value> random_plane(Random& random, std::size_t size, double low, do
   std::vector<Value> plane(size);
   for (Value& value : plane) value = static_cast<Value>(uniform(random, low, high));
   return plane;
+}
+
+/// Scales the noise to the same mean for all sizes and seeds. It is a constant of the program,
+/// which is thus compiled once.
+void set_mean_noise(Calibration& calibration) {
+  double squares = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < calibration.noise.size(); ++i) {
+    if (calibration.mask[i] != kGood) continue;
+    squares += double{calibration.noise[i]} * calibration.noise[i];
+    ++count;
+  }
+  const double scale = 1.8 / std::sqrt(squares / count);
+  for (float& noise : calibration.noise) noise = static_cast<float>(scale * noise);
 }
 
 }  // namespace
@@ -87,6 +102,7 @@ SolverPlan full_plan(std::uint32_t rows, std::uint32_t cols, SenselType type, st
   for (const float share : random_plane<float>(random, size, 0, 1)) {
     plan.calibration.mask.push_back(share < 0.85F ? kGood : share < 0.9F ? kAbsent : kMissing);
   }
+  set_mean_noise(plan.calibration);
   return plan;
 }
 

@@ -3,16 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <optional>
-#include <span>
 
 #include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"
+#include "same_bits.h"
+#include "test_device.h"
 
 namespace pillarfield {
 namespace {
@@ -41,9 +39,6 @@ FrameBuffer all_pillars() {
 
 class WholeNumbers : public testing::Test {
  protected:
-  static void SetUpTestSuite() { device.emplace(open_device()); }
-  static void TearDownTestSuite() { device.reset(); }
-
   static SolverPlan plan_of(double threshold_counts) {
     SolverPlan plan = bare_plan(kFrame.view().rows, kFrame.view().cols, SenselType::u8);
     plan.skin.threshold_counts = threshold_counts;
@@ -52,48 +47,55 @@ class WholeNumbers : public testing::Test {
   }
 
   static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
-    const ForceField expected = solve_on_host(plan, kFrame.view());
-    Processor processor(*device, plan, {}, {.lanes = lanes});
+    Processor processor(test_device(), plan, {}, {.lanes = lanes});
     processor.submit(kFrame.view());
-    const ForceFieldView forces = processor.receive();
-    expect_same(forces.shear_x, expected.shear_x, "shear_x");
-    expect_same(forces.shear_y, expected.shear_y, "shear_y");
-    expect_same(forces.normal, expected.normal, "normal");
-    EXPECT_TRUE(std::ranges::equal(forces.status, expected.status));
+    expect_same_bits(processor.receive(), solve_on_host(plan, kFrame.view()).view());
   }
 
  private:
-  static void expect_same(std::span<const float> actual, std::span<const float> expected,
-                          const char* plane) {
-    ASSERT_EQ(actual.size(), expected.size());
-    for (std::size_t i = 0; i < actual.size(); ++i) {
-      ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected[i]))
-          << plane << " of pillar " << i << ": " << actual[i] << " is not " << expected[i];
-    }
-  }
-
-  static inline std::optional<Device> device;
   static inline const FrameBuffer kFrame = all_pillars();
 };
 
 TEST_F(WholeNumbers, EveryThreshold) {
+  std::size_t next = 0;
   for (const double threshold :
        {0.0, 0.5, 2.0, 2.3, 2.5, 126.5, 254.0, 255.0, 300.0, 500.0, 500.5, 1000.0}) {
-    SCOPED_TRACE(threshold);
-    expect_host_bits(plan_of(threshold));
+    SolverPlan plan = plan_of(threshold);
+    plan.segment_point = std::array{0.875, 0.75, 0.5}[next++ % 3];
+    SCOPED_TRACE(testing::Message() << plan.segment_point << " behind " << threshold);
+    expect_host_bits(plan);
   }
 }
 
-/// Segment points that whole numbers represent exactly, and others.
-TEST_F(WholeNumbers, EverySegmentPoint) {
-  for (const double point : {1e-3, 0.5, 0.7, 0.75, 0.875, 0.9375, 1.0}) {
-    for (const double threshold : {0.0, 2.0, 3.5, 20.5, 253.5}) {
-      SCOPED_TRACE(testing::Message() << point << " behind " << threshold);
-      SolverPlan plan = plan_of(threshold);
-      plan.segment_point = point;
-      plan.skin.full_scale_counts = 255;
-      expect_host_bits(plan);
-    }
+/// Points that whole numbers do not represent exactly; the others are above.
+TEST_F(WholeNumbers, EveryOtherSegmentPoint) {
+  for (const double point : {1e-3, 0.7, 0.9375, 1.0}) {
+    SCOPED_TRACE(point);
+    SolverPlan plan = plan_of(2);
+    plan.segment_point = point;
+    expect_host_bits(plan);
+  }
+}
+
+/// The limits of the tests below, three at a time.
+TEST_F(WholeNumbers, LimitsTogether) {
+  struct Limits {
+    double full_scale, parity_tolerance, noise, segment_point;
+  };
+  for (const Limits& limits : {Limits{2.5, 5000, 0.1, 0.5},
+                               {3, 250.1, 0, 0.75},
+                               {20.5, 0, 0.4, 0.875},
+                               {250.1, 3.9, 0.636, 0.5},
+                               {250.5, 1, 3, 0.75},
+                               {255, 3.7, 20, 0.875},
+                               {4000, 0.25, 1e6, 0.5}}) {
+    SCOPED_TRACE(limits.full_scale);
+    SolverPlan plan = plan_of(2);
+    plan.skin.full_scale_counts = limits.full_scale;
+    plan.parity_tolerance_counts = limits.parity_tolerance;
+    plan.noise_counts = limits.noise;
+    plan.segment_point = limits.segment_point;
+    expect_host_bits(plan);
   }
 }
 
@@ -108,7 +110,22 @@ TEST_F(WholeNumbers, EveryLaneWidth) {
   }
 }
 
-TEST_F(WholeNumbers, EveryFullScale) {
+/// Each limit alone.
+class FurtherWholeNumbers : public WholeNumbers {};
+
+TEST_F(FurtherWholeNumbers, EverySegmentPointBehindThresholds) {
+  for (const double point : {1e-3, 0.5, 0.7, 0.75, 0.875, 0.9375, 1.0}) {
+    for (const double threshold : {0.0, 2.0, 3.5, 20.5, 253.5}) {
+      SCOPED_TRACE(testing::Message() << point << " behind " << threshold);
+      SolverPlan plan = plan_of(threshold);
+      plan.segment_point = point;
+      plan.skin.full_scale_counts = 255;
+      expect_host_bits(plan);
+    }
+  }
+}
+
+TEST_F(FurtherWholeNumbers, EveryFullScale) {
   for (const double full_scale : {2.5, 3.0, 20.5, 250.1, 250.5, 255.0, 4000.0}) {
     SCOPED_TRACE(full_scale);
     SolverPlan plan = plan_of(2);
@@ -117,7 +134,7 @@ TEST_F(WholeNumbers, EveryFullScale) {
   }
 }
 
-TEST_F(WholeNumbers, EveryParityTolerance) {
+TEST_F(FurtherWholeNumbers, EveryParityTolerance) {
   for (const double tolerance : {0.0, 0.25, 1.0, 3.7, 3.9, 250.1, 5000.0}) {
     SCOPED_TRACE(tolerance);
     SolverPlan plan = plan_of(0.5);
@@ -127,7 +144,7 @@ TEST_F(WholeNumbers, EveryParityTolerance) {
 }
 
 /// The margin of 0.636 is a little more than 6 counts, by which readings 7, 7 and 20 differ.
-TEST_F(WholeNumbers, EveryMargin) {
+TEST_F(FurtherWholeNumbers, EveryMargin) {
   for (const double noise : {0.0, 0.1, 0.4, 0.636, 3.0, 20.0, 1e6}) {
     SCOPED_TRACE(noise);
     SolverPlan plan = plan_of(2);

@@ -246,7 +246,7 @@ def main():
     for part in range(SHARE):
         seed = SEED + 10 * part
         done = subprocess.run([sys.executable, __file__, str(seed), str(CALLS // SHARE)], text=True,
-                              stdin=subprocess.DEVNULL, capture_output=True, timeout=300)
+                              stdin=subprocess.DEVNULL, capture_output=True, timeout=600)
         if done.returncode != 0:
             sys.exit(f"SEED={seed} ended with {done.returncode}\n{done.stdout}\n{done.stderr[-4000:]}")
         print(done.stdout, end="")

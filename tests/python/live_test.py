@@ -57,7 +57,7 @@ class Live(unittest.TestCase):
         port = free_port()
         listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         listener.bind(("127.0.0.1", 0))
-        listener.settimeout(10)
+        listener.settimeout(600)
         target = f"udp:127.0.0.1:{listener.getsockname()[1]}"
         saved = WORK / f"live_{os.getpid()}.h5"
         with Sender(port), pf.live(f"udp:127.0.0.1:{port}") as source:

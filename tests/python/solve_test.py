@@ -200,9 +200,12 @@ class Memory(unittest.TestCase):
         solving.set()
         thread = threading.Thread(target=turn)
         thread.start()
-        before = turns[0]
-        pf.solve(frames)
-        during = turns[0] - before
+        for _ in range(50):  # On a busy machine the other thread may get no turn for a while.
+            before = turns[0]
+            pf.solve(frames)
+            during = turns[0] - before
+            if during > 100:
+                break
         solving.clear()
         thread.join()
         self.assertGreater(during, 100)
@@ -265,7 +268,7 @@ class Errors(unittest.TestCase):
                 "except KeyboardInterrupt: print('ended')\n")
         code = code.replace("np.zeros((50_000_000, 64, 64), np.uint8)",
                             "itertools.repeat(np.zeros((64, 64), np.uint8))")
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=600)
         self.assertEqual((done.stdout, done.returncode), ("ended\n", 0), done.stderr)
 
 

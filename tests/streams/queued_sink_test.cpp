@@ -39,7 +39,7 @@ struct Log {
   }
   void wait_until(const std::function<bool()>& condition) {
     std::unique_lock lock(mutex);
-    ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(30), condition));
+    ASSERT_TRUE(changed.wait_for(lock, std::chrono::minutes(5), condition));
   }
 };
 

@@ -10,6 +10,15 @@ import numpy as np
 from sink_process import SinkTest
 
 
+def flushed_frames(path):
+    """Frames of a recording that is being written; 0 before the first."""
+    try:
+        with h5py.File(path, "r", swmr=True) as file:
+            return len(file["frames/time"])
+    except (OSError, KeyError):
+        return 0
+
+
 class FilesTest(SinkTest):
     def test_files_are_those_of_a_direct_sink(self):
         paths = [self.folder / name for name in ("a.h5", "reference.h5", "b.npy", "c.csv", "raw.h5")]
@@ -30,7 +39,8 @@ class FilesTest(SinkTest):
     def test_killed_recording(self):
         path, part = self.folder / "raw.h5", self.folder / "raw.h5.part"
         process = self.start("--record", path, "--rate", 200, "--frames", 100000)
-        time.sleep(2.3)
+        while flushed_frames(part) <= 50:
+            time.sleep(0.1)
         process.send_signal(signal.SIGKILL)
         process.wait()
         with h5py.File(part, swmr=True) as file:

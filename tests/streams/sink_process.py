@@ -87,7 +87,7 @@ class SinkTest(unittest.TestCase):
 
     def results(self, process):
         """Waits for the end; returns the statistics of each sink by its name."""
-        out, errors = process.communicate(timeout=120)
+        out, errors = process.communicate(timeout=600)
         self.assertEqual((process.returncode, errors), (0, ""))
         lines = [json.loads(line) for line in out.splitlines()]
         return {line["name"]: line for line in lines}

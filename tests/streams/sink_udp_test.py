@@ -28,7 +28,7 @@ class UdpTest(SinkTest):
         self.addCleanup(listener.close)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
         listener.bind((host, 0))
-        listener.settimeout(20)
+        listener.settimeout(600)
         return listener, listener.getsockname()[1]
 
     def receive(self, listener, count):
@@ -94,17 +94,17 @@ position_mm = [{10 * (i % 5) - 20}, {10 * (i // 5) - 15}]
         listener, port = self.listen()
         listener.close()
         target = f"udp:127.0.0.1:{port}"
-        process = self.start("--to", target, "--frames", 200, "--rate", 100)
+        process = self.start("--to", target, "--frames", 600, "--rate", 100)
         time.sleep(1)
         late = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.addCleanup(late.close)
         late.bind(("127.0.0.1", port))
-        late.settimeout(20)
+        late.settimeout(600)
         sequence = json.loads(late.recv(65536))["sequence"]
-        received = self.receive(late, 199 - sequence)
-        self.assertEqual([each["sequence"] for each in received], list(range(sequence + 1, 200)))
+        received = self.receive(late, 599 - sequence)
+        self.assertEqual([each["sequence"] for each in received], list(range(sequence + 1, 600)))
         result = self.results(process)[target]
-        self.assertEqual((result["frames"] + result["dropped"], result["failure"]), (200, ""))
+        self.assertEqual((result["frames"] + result["dropped"], result["failure"]), (600, ""))
         # Each refusal is known one datagram later.
         self.assertLessEqual(abs(result["dropped"] - sequence), 1)
 

@@ -25,7 +25,7 @@ class WebSocket:
     """A connection; `protocols` are the subprotocols it offers."""
 
     def __init__(self, port, protocols=("foxglove.websocket.v1",), host="127.0.0.1"):
-        self.socket = socket.create_connection((host, port), timeout=20)
+        self.socket = socket.create_connection((host, port), timeout=600)
         self.received = b""
         try:
             self.shake_hands(f"[{host}]:{port}" if ":" in host else f"{host}:{port}", protocols)

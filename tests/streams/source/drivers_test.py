@@ -32,16 +32,16 @@ class Drivers(DriverTest):
 
     def summary_of(self, stream):
         stream.send_signal(signal.SIGINT)
-        lines = stream.communicate(timeout=60)[0].splitlines()
+        lines = stream.communicate(timeout=600)[0].splitlines()
         self.assertEqual(stream.returncode, 0)
         return json.loads(lines[-1])["summary"]
 
     def test_ring_driver_to_control_loop(self):
         frames, forces = f"{NAME}-frames", f"{NAME}-forces"
         stream = self.start_stream(f"shm:{frames}", "--to", f"shm:{forces}")
-        loop = self.start(self.folder / "control_loop", forces, "--seconds", 60,
+        loop = self.start(self.folder / "control_loop", forces, "--seconds", 3600,
                           stdout=subprocess.PIPE)
-        driver = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 60,
+        driver = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 3600,
                             "--rows", 48, "--cols", 48)
         def next_frame():
             line = loop.stdout.readline()
@@ -57,7 +57,7 @@ class Drivers(DriverTest):
         # The program goes on when its driver is killed, and takes up the ring of the next one.
         driver.kill()
         driver.wait()
-        again = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 60,
+        again = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 3600,
                            "--rows", 48, "--cols", 48)
         while next_frame() >= 50:
             pass
@@ -70,7 +70,7 @@ class Drivers(DriverTest):
 
     def test_a_driver_replaces_a_ring_of_another_size(self):
         driver = self.folder / "ring_driver"
-        killed = self.start(driver, NAME, "--seconds", 60)
+        killed = self.start(driver, NAME, "--seconds", 3600)
         while not segments():
             time.sleep(0.01)
         busy = subprocess.run([driver, NAME], stderr=subprocess.PIPE, text=True, check=False)
@@ -96,7 +96,7 @@ class Drivers(DriverTest):
     def test_udp_driver(self):
         port = free_port()
         stream = self.start_stream(f"udp:127.0.0.1:{port}")
-        self.start(sys.executable, DRIVERS / "udp_driver.py", port, 60)
+        self.start(sys.executable, DRIVERS / "udp_driver.py", port, 3600)
         while json.loads(stream.stdout.readline()).get("health", {}).get("solved", 0) < 20:
             pass
         summary = self.summary_of(stream)

@@ -98,9 +98,9 @@ class Kills(DriverTest):
 
     def end_cleanly(self):
         self.processes["driver"].send_signal(signal.SIGTERM)
-        self.assertEqual(self.processes["driver"].wait(60), 0)
+        self.assertEqual(self.processes["driver"].wait(600), 0)
         self.processes["program"].send_signal(signal.SIGINT)
-        self.assertEqual(self.processes["program"].wait(60), 0)
+        self.assertEqual(self.processes["program"].wait(600), 0)
         self.kill("reader")
         self.assertEqual(segments(), [])
         self.check_recording(self.recordings[-1], 1)

@@ -64,7 +64,7 @@ TEST(RingSink, PublishesPlanesTimesAndTotal) {
     const SenselBlock missing = {0, 1, 0, 10};
     if (sequence % 2 == 1) solved.frame.missing = {&missing, 1};
     sink->append(solved.frame);
-    const std::byte* const slot = reader.read(1s);
+    const std::byte* const slot = reader.read(300s);
     ASSERT_NE(slot, nullptr);
     const PillarfieldResultSlot head = head_of(slot);
     EXPECT_EQ(head.sequence, sequence);
@@ -107,7 +107,7 @@ TEST(RingSink, KeepsTheStrongestContacts) {
   solved.frame.contacts = &contacts;
   sink->append(solved.frame);
   RingReader reader(results_name(), PILLARFIELD_RING_RESULTS);
-  const PillarfieldResultSlot head = head_of(reader.read(1s));
+  const PillarfieldResultSlot head = head_of(reader.read(300s));
   EXPECT_EQ(head.total.normal_n, 77);
   EXPECT_EQ(head.contacts_found, 100);
   ASSERT_EQ(head.contacts, PILLARFIELD_MAX_CONTACTS);

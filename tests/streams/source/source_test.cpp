@@ -61,7 +61,8 @@ TEST(StdinSource, DeliversFramesAndEnds) {
       take_frames(*stream, 10ms, [&](auto& frame) { received.push_back(bytes_of(frame)); }));
   input.send(frame_packet(kShape, 8).bytes() + row_packets(kShape, 9, 2)[1].bytes());
   input.end();
-  EXPECT_TRUE(take_frames(*stream, 1s, [&](auto& frame) { received.push_back(bytes_of(frame)); }));
+  EXPECT_TRUE(
+      take_frames(*stream, 300s, [&](auto& frame) { received.push_back(bytes_of(frame)); }));
   ASSERT_EQ(received.size(), 4);
   EXPECT_EQ(received[0], readings_of(kShape, 5));
   EXPECT_EQ(received[2], readings_of(kShape, 8));
@@ -77,7 +78,7 @@ TEST(StdinSource, DiscardsNothingSinceItsDriverWaits) {
   input.end();
   const auto stream = open_live_source("-", {});
   stream->discard_waiting();
-  EXPECT_TRUE(take_frames(*stream, 1s, [](auto&) {}));
+  EXPECT_TRUE(take_frames(*stream, 300s, [](auto&) {}));
   expect_counts(stream->health(), {.frames = 100});
 }
 
@@ -382,16 +383,16 @@ TEST(SerialSource, FindsPacketsBetweenRubbishAndReopensTheDevice) {
     terminal->send(packet.bytes());
     take_frames(*stream, 5ms, take);
   }
-  take_frames(*stream, 50ms, take);
+  take_frames(*stream, 300ms, take);
   // The noise after packet 14 belongs to the same run of rubbish.
   expect_counts(stream->health(), {.frames = 26, .lost = 4, .invalid = 9 + 4 - 1});
   terminal.reset();
   take_frames(*stream, 20ms, take);
   terminal = std::make_unique<Terminal>(device);
-  take_frames(*stream, 100ms, take);
+  take_frames(*stream, 300ms, take);
   terminal->send(checked(frame_packet(kSmall, 40)).bytes());
   terminal->send(checked(frame_packet(kSmall, 41)).bytes());
-  take_frames(*stream, 50ms, take);
+  take_frames(*stream, 300ms, take);
   ASSERT_EQ(received.size(), 28);
   EXPECT_EQ(received.front(), readings_of(kSmall, 0));
   EXPECT_EQ(received.back(), readings_of(kSmall, 41));

@@ -56,7 +56,7 @@ TEST(ShowContacts, TheNextFieldHasThem) {
   FakeAppState fake;
   const auto next_field = [&] {
     std::optional<ShownField> field;
-    for (int i = 0; i < 2000 && !field; ++i) {
+    for (int i = 0; i < 300'000 && !field; ++i) {
       field = fake.player.take();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

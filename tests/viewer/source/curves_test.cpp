@@ -115,7 +115,7 @@ class RisingProducer final : public FieldProducer {
 
 template <class Condition>
 void wait_until(Condition condition) {
-  for (int i = 0; i < 10'000 && !condition(); ++i) {
+  for (int i = 0; i < 300'000 && !condition(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_TRUE(condition());

@@ -112,7 +112,7 @@ class Display:
     def pixels(self):
         return read_xwd(self.folder / "Xvfb_screen0")
 
-    def still_pixels(self, seconds=20):
+    def still_pixels(self, seconds=600):
         """The screen after a period without changes."""
         deadline = time.monotonic() + seconds
         last = self.pixels()
@@ -127,7 +127,7 @@ class Display:
 
     def xdotool(self, *words):
         return subprocess.run(["xdotool", *map(str, words)], env=self.environment(), check=True,
-                              capture_output=True, text=True, timeout=60).stdout
+                              capture_output=True, text=True, timeout=600).stdout
 
     def environment(self):
         return {**os.environ, "DISPLAY": self.name}

@@ -28,6 +28,7 @@ PROGRAM = os.environ["PILLARFIELD"]
 SCENES = pathlib.Path(os.environ["PILLARFIELD_SOURCE"]) / "scenes"
 PICTURES = pathlib.Path(os.environ.get("PILLARFIELD_PICTURES", tempfile.gettempdir()))
 WIDTH, HEIGHT = 1280, 720
+PATIENCE_S = 600  # of a busy machine
 
 
 class Window:
@@ -46,7 +47,7 @@ class Window:
             self.wait_for_source()
 
     def wait_for_window(self):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE_S
         while time.monotonic() < deadline:
             if self.process.poll() is not None:
                 raise AssertionError("the viewer ended: " + self.error_text())
@@ -60,7 +61,7 @@ class Window:
 
     def wait_for_source(self):
         """Until it is open, as the window's title tells."""
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE_S
         while "–" not in self.screen.xdotool("getwindowname", self.id):
             assert self.process.poll() is None, "the viewer ended: " + self.error_text()
             assert time.monotonic() < deadline, "the source does not open"
@@ -93,7 +94,7 @@ class Window:
     def quit(self):
         """Closes the window by its key; returns the statistics."""
         self.key("q")
-        (output, _) = self.process.communicate(timeout=60)
+        (output, _) = self.process.communicate(timeout=PATIENCE_S)
         assert self.process.returncode == 0, self.error_text()
         return json.loads(output)
 
@@ -131,25 +132,45 @@ class WindowTest(unittest.TestCase):
         write_png(PICTURES / f"window_{name}.png", pixels)
         return pixels
 
-    def shoot_changed(self, name, before, patience_s):
-        """Waits for a picture other than `before`, up to a time limit."""
-        end = time.monotonic() + patience_s
-        pixels = self.shoot(name)
-        while numpy.array_equal(before, pixels) and time.monotonic() < end:
+    def wait_for(self, condition, what):
+        """Waits until condition() is true, and returns its value."""
+        end = time.monotonic() + PATIENCE_S
+        while not (value := condition()):
+            self.assertLess(time.monotonic(), end, what)
             time.sleep(0.1)
-            pixels = self.shoot(name)
-        return pixels
+        return value
 
-    def shoot_field(self, name, patience_s=90):
+    def shoot_changed(self, name, *before, still=True):
+        """Waits for a picture other than all those before."""
+        def changed():
+            pixels = self.shoot(name, still)
+            return None if any(numpy.array_equal(each, pixels) for each in before) else [pixels]
+        return self.wait_for(changed, name)[0]
+
+    def act(self, name, action, *before):
+        """Acts until a new picture comes: a window that draws seldom misses short actions."""
+        for _ in range(4):
+            action()
+            end = time.monotonic() + 15
+            while time.monotonic() < end:
+                pixels = self.shoot(name)
+                if not any(numpy.array_equal(each, pixels) for each in before):
+                    return pixels
+        self.fail(name)
+
+    def wait_for_motion(self, pictures=4):
+        """Waits for pictures each of which differs from the one before."""
+        last = self.screen.pixels()
+        for _ in range(pictures):
+            last = self.shoot_changed("moving", last, still=False)
+
+    def shoot_field(self, name):
         """Waits for a picture of a field: with the bright end of a colour bar."""
-        end = time.monotonic() + patience_s
-        while True:
+        def field():
             pixels = self.shoot(name, still=False).astype(int)
             bright = (pixels[..., 0] > 230) & (pixels[..., 1] > 200) & (pixels[..., 2] < 90)
-            if bright.sum() > 20:
-                return pixels
-            self.assertLess(time.monotonic(), end, "no field is shown")
-            time.sleep(0.2)
+            return [pixels] if bright.sum() > 20 else None
+        return self.wait_for(field, "no field is shown")[0]
 
     def assert_quiet(self, window):
         """Closes the window; expects no validation messages."""
@@ -191,27 +212,30 @@ class KeyTest(WindowTest):
                 "b", "b", "u", "r", "v", "e", "1", "i", "i", "w", "w", "t", "t", "g", "Tab", "Tab", "Right", "Left", "shift+Right",
                 "shift+Left", "Home", "End", "plus", "minus", "l", "l", "question", "Escape"]
         for (index, key) in enumerate(keys):
-            window.key(key)
-            time.sleep(0.1)
-            # Sectors and views need another view: see below.
-            patience_s = 0 if key in ("u", "r") else 10
-            after = self.shoot_changed(f"key_{index:02}_{key.replace('+', '_')}", before, patience_s)
-            if patience_s > 0:
-                self.assertFalse(numpy.array_equal(before, after), f"key {index}: {key}")
-            before = after
+            name = f"key_{index:02}_{key.replace('+', '_')}"
+            if key in ("u", "r", "g"):
+                # Sectors and views need another view, and the range may fit already: see below.
+                window.key(key)
+                before = self.shoot(name)
+            else:
+                before = self.act(name, lambda key=key: window.key(key), before)
+        self.assert_quiet(window)
+
+    def test_the_range_is_fitted(self):
+        window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20, "--range", "0:0.1")
+        before = self.shoot("range_given")
+        self.act("range_fitted", lambda: window.key("g"), before)
         self.assert_quiet(window)
 
     def test_space_plays_and_pauses(self):
         window = self.open(SCENES / "demo.toml", "--paused")
-        still = self.screen.still_pixels()
+        self.screen.still_pixels()
         window.key("space")
-        time.sleep(1.5)
-        moving = [self.screen.pixels() for _ in range(4) if time.sleep(0.2) is None]
-        self.assertTrue(any(not numpy.array_equal(still, each) for each in moving))
+        self.wait_for_motion()
         window.key("space")
         self.shoot("paused_again")
         statistics = self.assert_quiet(window)
-        self.assertGreater(statistics["produced"], 10)
+        self.assertGreater(statistics["produced"], 3)
         self.assertIn(statistics["produced"] - statistics["taken"] - statistics["not_shown"],
                       (0, 1))
 
@@ -221,7 +245,8 @@ class KeyTest(WindowTest):
         for key in ("p", "c", "ctrl+p"):
             window.key(key)
             self.screen.still_pixels()
-        time.sleep(4)
+        self.wait_for(lambda: [path.suffix for path in self.folder.iterdir()].count(".png") >= 2
+                      and any(self.folder.glob("*.csv")), "no exports")
         self.shoot("exported")
         statistics = self.assert_quiet(window)
         written = sorted(path.suffix for path in self.folder.iterdir())
@@ -238,15 +263,10 @@ class KeyTest(WindowTest):
 class MouseTest(WindowTest):
     def test_hover_pin_region_zoom_and_pan(self):
         window = self.open(SCENES / "spin.toml", "--paused")
-        shots = {"opened": self.shoot("mouse_0_opened")}
+        shots = [self.shoot("mouse_0_opened")]
 
         def do(name, action):
-            action()
-            time.sleep(0.2)
-            shots[name] = self.shoot("mouse_" + name)
-            self.assertFalse(
-                any(numpy.array_equal(shots[name], shot)
-                    for (other, shot) in shots.items() if other != name), name)
+            shots.append(self.act("mouse_" + name, action, *shots))
 
         # The middle of the field lies left of the panels and above the play head.
         (x, y) = (411, 216)
@@ -286,12 +306,8 @@ class WidgetTest(WindowTest):
             ("cylinder", lambda: window.click(1205, 286)),
             ("fitted", lambda: window.click(1083, 118)),
         ]
-        for (name, act) in steps:
-            act()
-            time.sleep(0.3)
-            after = self.shoot("widget_" + name)
-            self.assertFalse(numpy.array_equal(before, after), name)
-            before = after
+        for (name, action) in steps:
+            before = self.act("widget_" + name, action, before)
         self.assert_quiet(window)
 
     def test_pin_and_region_over_time(self):
@@ -313,12 +329,8 @@ class WidgetTest(WindowTest):
                  ("panned", lambda: window.drag((180, 590), (120, 590))),
                  ("sought", lambda: window.click(220, 590)),
                  ("whole", lambda: window.click(220, 590, times=2))]
-        for (name, act) in steps:
-            act()
-            time.sleep(0.3)
-            after = self.shoot("curves_" + name)
-            self.assertFalse(numpy.array_equal(before, after), name)
-            before = after
+        for (name, action) in steps:
+            before = self.act("curves_" + name, action, before)
         self.assert_quiet(window)
 
     def test_panels_move_and_are_remembered(self):
@@ -330,12 +342,8 @@ class WidgetTest(WindowTest):
                  ("left", lambda: window.drag((1003, 320), (60, 300))),
                  ("floating", lambda: window.drag((1003, 28), (620, 200))),
                  ("wider", lambda: window.drag((942, 400), (860, 400)))]
-        for (name, act) in steps:
-            act()
-            time.sleep(0.3)
-            after = self.shoot("panels_" + name)
-            self.assertFalse(numpy.array_equal(before, after), name)
-            before = after
+        for (name, action) in steps:
+            before = self.act("panels_" + name, action, before)
         self.assert_quiet(window)
         text = settings.read_text(encoding="utf-8")
         self.assertIn("panel write left 1", text)
@@ -383,17 +391,15 @@ class SourceTest(WindowTest):
         window = self.open("--paused")
         before = self.shoot("start")
         window.click(230, 191)  # The first scene.
-        after = self.shoot_field("start_opened")
-        self.assertFalse(numpy.array_equal(before, after))
+        self.shoot_field("start_opened")
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
         window = self.open()
-        recent = self.shoot("start_recent")
-        self.assertFalse(numpy.array_equal(before, recent))
+        self.shoot_changed("start_recent", before)
         self.assert_quiet(window)
 
     def test_a_missing_file_is_an_error(self):
         ended = subprocess.run([VIEWER, self.folder / "none.h5"], env=self.screen.environment(),
-                               check=False, capture_output=True, text=True, timeout=60)
+                               check=False, capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(ended.returncode, 1)
         self.assertIn("none.h5", ended.stderr)
 
@@ -418,19 +424,18 @@ class SourceTest(WindowTest):
         for key in ("k", "j", "z", "ctrl+r"):
             window.key(key)
             time.sleep(0.7)
+        self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5*")), "no recording")
         self.shoot("sensor", still=False)
         window.key("ctrl+r")
-        time.sleep(0.5)
+        self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5")), "no end of the recording")
         sensor.stop()
         time.sleep(2.5)
         stopped = self.shoot("sensor_stopped", still=False)
         sensor = Sensor(port)
-        time.sleep(1)
-        again = self.shoot("sensor_again", still=False)
-        self.assertFalse(numpy.array_equal(stopped, again))
+        self.shoot_changed("sensor_again", stopped, still=False)
         statistics = self.assert_quiet(window)
         sensor.stop()
-        self.assertGreater(statistics["produced"], 100)
+        self.assertGreater(statistics["produced"], 10)
         recordings = list(self.folder.glob("udp_*recording.h5"))
         self.assertEqual(len(recordings), 1, list(self.folder.iterdir()))
         printed = subprocess.run([PROGRAM, "info", recordings[0]], check=True, capture_output=True,
@@ -451,7 +456,8 @@ class WholeWindowTest(WindowTest):
         self.screen.xdotool("windowmap", "--sync", window.id)
         time.sleep(0.5)
         self.screen.xdotool("windowfocus", "--sync", window.id)
-        self.assertGreater(self.assert_quiet(window)["frames"], 5)
+        self.wait_for_motion()
+        self.assertGreater(self.assert_quiet(window)["frames"], 3)
 
     def test_large_letters(self):
         window = self.open(SCENES / "demo.toml", "--paused", "--scale", 1.5)
@@ -476,13 +482,13 @@ class WholeWindowTest(WindowTest):
             window = self.open(SCENES / "spin.toml", "--paused")
             self.screen.still_pixels()
             window.process.send_signal(ending)
-            window.process.communicate(timeout=30)
+            window.process.communicate(timeout=PATIENCE_S)
             self.assertEqual(window.process.returncode, 0)
 
     def test_without_a_display(self):
         environment = {name: value for (name, value) in os.environ.items() if name != "DISPLAY"}
         ended = subprocess.run([VIEWER, SCENES / "spin.toml"], env=environment, check=False,
-                               capture_output=True, text=True, timeout=60)
+                               capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(ended.returncode, 1)
         self.assertIn("--headless", ended.stderr)
         self.assertEqual(len(ended.stderr.strip().splitlines()), 1)
