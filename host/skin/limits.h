@@ -1,13 +1,15 @@
 #pragma once
 
 #include "base/range.h"
+#include "pillarfield/sensor_effects.h"
 
 namespace pillarfield {
 
 // Ranges of numbers that scenes, files, plans and the command line share.
 
 // Of SensorEffects.
-inline constexpr Range kLeak = {-0.2, 0.2};  ///< relative, inside and between pillars
+inline constexpr Range kSenselLeak = {-kMostSenselLeak, kMostSenselLeak};
+inline constexpr Range kPillarLeak = {-kMostPillarLeak / 4, kMostPillarLeak / 4};
 inline constexpr Range kShearCoefficient = {0.1, 10};
 inline constexpr Range kPillarArmMm = {1e-3, 1e3};
 inline constexpr Range kTileSensels = {2, 1024};  ///< rows or columns that share wires

@@ -25,7 +25,7 @@ class HostReference {
   [[nodiscard]] ForceField solve(const FrameView& frame) {
     ForceField forces = solve_on_host(plan_, frame, state_);
     if (contacts_) contacts_->resolve(forces);
-    if (plan_.baseline_rate) follow_baseline_on_host(plan_, frame, forces, frames_++);
+    if (plan_.baseline_rate) follow_baseline_on_host(plan_, frame, forces, state_);
     return forces;
   }
 
@@ -35,7 +35,6 @@ class HostReference {
   SolverPlan plan_;
   std::optional<ContactEstimator> contacts_;
   SensorState state_;
-  std::uint64_t frames_ = 0;
 };
 
 /// Expects the planes of the host bit for bit, and angles, which it does not compute, of the

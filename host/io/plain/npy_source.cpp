@@ -7,9 +7,9 @@
 #include <map>
 #include <utility>
 
+#include "base/input_file.h"
 #include "base/npy.h"
 #include "io/frame_source.h"
-#include "io/plain/random_file.h"
 #include "io/plain/source.h"
 #include "io/plain/zip.h"
 #include "pillarfield/error.h"
@@ -35,7 +35,7 @@ NpyHeader header_of_readings(std::string_view head, const std::string& place) {
 
 class NpyInFile final : public NumberArray {
  public:
-  NpyInFile(RandomFile file, std::uint64_t data, const NpyHeader& header, std::string place)
+  NpyInFile(InputFile file, std::uint64_t data, const NpyHeader& header, std::string place)
       : NumberArray(std::move(place), header.type, header.shape),
         file_(std::move(file)),
         data_(data),
@@ -48,14 +48,14 @@ class NpyInFile final : public NumberArray {
   }
 
  private:
-  RandomFile file_;
+  InputFile file_;
   std::uint64_t data_;
   bool is_swapped_;
 };
 
 /// The array at `offset` of a file, whose data are read when they are asked for. Throws Error if
 /// the file is shorter than the header says; `available` is the largest size, header included.
-std::unique_ptr<NumberArray> npy_in_file(RandomFile file, std::uint64_t offset,
+std::unique_ptr<NumberArray> npy_in_file(InputFile file, std::uint64_t offset,
                                          std::uint64_t available, std::string place) {
   const NpyHeader header = header_of_readings(
       file.text_at(offset, std::min<std::uint64_t>(available, kLongestNpyHeader)), place);
