@@ -86,7 +86,7 @@ PF_INLINE void clear_ring_row(Ring ring, uint row, bool whole) {
 PF_INLINE void fill_ring_row(Input* input, global uchar* idle, uint at_row) {
   const uint bit = 1u << place_in_ring(at_row);
   const bool outside = at_row >= input->rows;
-  const Row row = row_of(*input, idle, 0, outside ? 0 : at_row);
+  const Row row = row_of(*input, idle, outside ? 0 : at_row);
   const uint active = outside ? 0 : find_idle_blocks(row, idle_in_ring(input->ring, at_row));
   if (input->ring.written & bit) clear_ring_row(input->ring, at_row, active < row.blocks);
   input->ring.written &= ~bit;

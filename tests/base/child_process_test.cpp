@@ -37,7 +37,7 @@ TEST(ChildProcess, AnInterruptEndsTheWait) {
   EXPECT_EXIT(
       {
         catch_interrupts();
-        raise(SIGINT);
+        kill(getpid(), SIGINT);
         _exit(static_cast<int>(end_of(wait_forever).reason));
       },
       testing::ExitedWithCode(static_cast<int>(Reason::interrupted)), "");

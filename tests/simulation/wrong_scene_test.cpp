@@ -281,8 +281,8 @@ TEST(WrongScene, Contacts) {
        "s.toml:2: key 'position_mm' in [[contact]] is missing; allowed: a list of 2, [x, y] in "
        "millimetres"},
       {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = []",
-       "s.toml:6: key 'path' in [[contact]] is a list of 0; allowed: a list of tables, path of "
-       "[[contact]]"},
+       "s.toml:2: key 'position_mm' in [[contact]] is missing; allowed: a list of 2, [x, y] in "
+       "millimetres"},
       {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
        "{time_s = 1, position_mm = [0, 0], load_n = 1},\n"
        "{time_s = 1, position_mm = [0, 0], load_n = 1}]",

@@ -120,7 +120,7 @@ TEST(Surface, RefusesWhatDoesNotFit) {
   refuses(shaped(SurfaceShape::cylinder, 60, 1e3), "axis_deg");
   refuses(shaped(SurfaceShape::cylinder, 5), "at least 5.968");
   refuses(shaped(SurfaceShape::sphere, -13), "half a sphere");
-  refuses(shaped(SurfaceShape::height_map, 0), "0 heights");
+  refuses(shaped(SurfaceShape::height_map, 0), "no heights");
   Surface map = wavy();
   map.heights_mm[3] = NAN;
   refuses(map, "height");
