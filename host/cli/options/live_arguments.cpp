@@ -7,6 +7,17 @@
 namespace pillarfield::cli {
 namespace {
 
+/// Accepts the origin of a web page.
+CLI::Validator origin() {
+  const auto error_of = [](const std::string& text) -> std::string {
+    const bool has_scheme = text.starts_with("http://") || text.starts_with("https://");
+    return has_scheme && text.find('/', text.find("//") + 2) == std::string::npos
+               ? ""
+               : fmt::format("'{}' is not an origin, such as https://app.foxglove.dev", text);
+  };
+  return {error_of, ""};
+}
+
 void add_stream_ends(CLI::App* command, StreamOptions& options) {
   Group output(command, "Output");
   output
@@ -18,7 +29,8 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
       .text("--allow-origin", options.allowed_origins, "ORIGIN",
             "Let a web page connect to foxglove, any number of times, such as "
             "https://app.foxglove.dev")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->check(origin());
   output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
   add_overwrite(command, options.replace);
   Group run(command, "Run");
