@@ -1,5 +1,7 @@
 // The options of the commands that run in real time, their help and its examples.
 
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "cli/options/shared_arguments.h"
