@@ -340,6 +340,7 @@ class ManyPartsTest(PartsFolder):
             shutil.copy(self.parts / "00001.h5", part)
             with h5py.File(part, "r+") as file:
                 file["part"].attrs["index"] = float(index)
+                file["force/time"][...] += index
 
     def test_ctrl_c_ends_long_work_and_leaves_nothing_half_written(self):
         def interrupt(process, messages):
