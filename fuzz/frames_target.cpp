@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "fuzz/some_frames.h"
@@ -53,7 +54,8 @@ void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadO
     const double time_s = source->read(index, frame);
     if (source->has_truth()) source->read_truth(index, truth);
     if (skin.sensels() > kMaxSolved) continue;
-    tracker.update(solve_on_host(plan, frame.view()).view(), time_s);
+    const double when_s = std::isfinite(time_s) ? time_s : static_cast<double>(index);
+    tracker.update(solve_on_host(plan, frame.view()).view(), when_s);
   }
 }
 

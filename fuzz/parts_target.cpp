@@ -14,8 +14,9 @@ namespace {
 constexpr std::uint64_t kMostParts = 4;
 constexpr std::uint64_t kMostFrames = 64;
 
-/// Writes a part without contact, of the size that `info` gives.
-void write_part(const std::filesystem::path& output, ForceFileInfo info, const ForcePart& part) {
+/// Writes a part without contact, of the size that `info` gives, with times from `first_time_s` on.
+void write_part(const std::filesystem::path& output, ForceFileInfo info, const ForcePart& part,
+                double first_time_s) {
   info.part = part;
   ForceField forces(info.rows, info.cols);
   const std::vector<float> zeros(forces.pillars());
@@ -28,7 +29,7 @@ void write_part(const std::filesystem::path& output, ForceFileInfo info, const F
   for (std::uint64_t frame = frames.first; frame < frames.end; ++frame) {
     sink->append({.forces = view,
                   .contacts = info.contacts ? &contacts : nullptr,
-                  .time_s = static_cast<double>(frame),
+                  .time_s = first_time_s + 1e-9 * static_cast<double>(frame),
                   .sequence = frame});
   }
   sink->finish();
@@ -42,7 +43,8 @@ void write_parts(const std::filesystem::path& output, const ForceFileInfo& info,
     return;
   }
   for (part.index = 1; part.index <= part.count; ++part.index) {
-    if (part.index != except) write_part(output, info, part);
+    // Parts after `except` begin later than any of its times.
+    if (part.index != except) write_part(output, info, part, part.index < except ? -1e6 : 1e6);
   }
 }
 
