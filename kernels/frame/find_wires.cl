@@ -12,10 +12,11 @@
 #define PF_IN_RANGE(type, reading) ((type)(0.0f) == (type)(0.0f))
 #endif
 /* Readings less their offset for the sums; missing sensels count as zero. */
-#define PF_DEFINE_SUMMED(name, type)                                                     \
-  PF_INLINE type name(type reading, type offset, type good) {                            \
-    const type none = (type)(0.0f);                                                      \
-    return good == (type)(1.0f) && PF_IN_RANGE(type, reading) ? reading - offset : none; \
+#define PF_DEFINE_SUMMED(name, type)                                    \
+  PF_INLINE type name(type reading, type offset, type good) {           \
+    const type none = (type)(0.0f);                                     \
+    const type summed = good == (type)(1.0f) ? reading - offset : none; \
+    return PF_IN_RANGE(type, reading) ? summed : none;                  \
   }
 PF_DEFINE_SUMMED(summed_reading, float)
 #if PF_LANES > 1
