@@ -125,9 +125,9 @@ int run(const Arguments& arguments) {
   Session session{open_device(arguments.device), {}};
   session.length.seconds = arguments.seconds;
   add_context(session.device);
-  for (const auto add : {add_limit_cases, add_size_cases, add_plan_cases,
-                         add_time_cases, add_baseline_cases, add_intrinsics_cases,
-                         add_field_cases, add_choice_cases, add_render_cases}) {
+  for (const auto add :
+       {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases, add_baseline_cases,
+        add_intrinsics_cases, add_field_cases, add_choice_cases, add_render_cases}) {
     add(session);
   }
   UnsuffixedReporter reporter;

@@ -32,7 +32,6 @@ void read_calibration(const std::filesystem::path& path, const ReadOptions& opti
 /// Reads a scene; also simulates the first and the last frame of a small one.
 void read_scene(const std::filesystem::path& path, const ReadOptions& options);
 
-
 /// Reads packets of a live source as from a pipe, and assembles their frames. Throws Error unless
 /// all bytes belong to packets of one stream, and they make a frame.
 void read_packets(const std::filesystem::path& path, const ReadOptions& options);

@@ -43,7 +43,7 @@ struct SimulateOptions : WriteOptions {
 
 /// Ranges of frames that are solved apart.
 struct PartOptions {
-  std::string part;   ///< "7/64"; empty: none
+  std::string part;  ///< "7/64"; empty: none
   std::optional<std::uint64_t> parts;
   std::optional<std::uint64_t> checkpoint_every;
   std::optional<std::uint64_t> warm_up;

@@ -48,8 +48,7 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
  * drift                       added to the tares of sensels that are not untouched */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration, global uchar* restrict results,
-                            Layout layout, float rate, Drift drift, uint first_row,
-                            uint interval) {
+                            Layout layout, float rate, Drift drift, uint first_row, uint interval) {
   const Calibration planes = calibration_of(calibration, results, layout);
   global const uchar* const status = results + layout.status;
   const uint rows = (uint)layout.rows;

@@ -59,8 +59,8 @@ void add_parts(CLI::App* command, PartOptions& options) {
           ->check(part_of_all());
   group
       .whole("--parts", options.parts, "N",
-             "Solve all of N parts, one after another; those that are whole are left as they are", 1,
-             kMostParts)
+             "Solve all of N parts, one after another; those that are whole are left as they are",
+             1, kMostParts)
       ->excludes(part);
   CLI::Option* const every = group.whole(
       "--checkpoint-every", options.checkpoint_every, "FRAMES",
