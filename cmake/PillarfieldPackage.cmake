@@ -68,7 +68,7 @@ force: shear and normal force in newtons on every pillar, and each
 contact's force, torque, friction and slip. It simulates, calibrates,
 solves, streams and compares."
   DEPENDS "libpillarfield${abi} ${same}, pocl-opencl-icd | opencl-icd"
-  RECOMMENDS "pillarfield-viewer, pillarfield-doc" SUGGESTS "gnuplot-nox | gnuplot"
+  RECOMMENDS "pillarfield-viewer, pillarfield-doc"
   CONTAINS libcli11-dev nlohmann-json3-dev)
 pillarfield_package(viewer pillarfield-viewer SECTION science
   SUMMARY "forces on a tactile skin from its frames - viewer"
