@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <sstream>
+#include <thread>
 
 #include "pillarfield/recording.h"
 #include "tests/io/sample_files.h"
@@ -98,6 +100,14 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
       EXPECT_TRUE(has_all(error_of([&] { reader.read(reader.frames(), read); }), {"has no frame"}));
     }
   }
+}
+
+TEST(ForceFile, IsTheSameWhenWrittenAgainLater) {
+  const TemporaryDirectory directory;
+  write(directory / "a.h5", info_of(3, 5), 17);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  write(directory / "b.h5", info_of(3, 5), 17);
+  EXPECT_TRUE(bytes_of(directory / "a.h5") == bytes_of(directory / "b.h5"));
 }
 
 /// A field that is idle but for single pillars, which come and go; some values are −0 and NaN.

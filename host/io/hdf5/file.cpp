@@ -53,7 +53,8 @@ std::uint64_t size_of(const std::filesystem::path& path) {
 Handle create_note(const File& file, const char* name) {
   constexpr hsize_t kOne = 1;
   const Handle one = own(H5Screate_simple(1, &kOne, nullptr), file.path, kCannotWrite);
-  return own(H5Dcreate2(file.id.get(), name, H5T_STD_U64LE, one.get(), H5P_DEFAULT, H5P_DEFAULT,
+  const Handle layout = creation_properties(file, H5P_DATASET_CREATE);
+  return own(H5Dcreate2(file.id.get(), name, H5T_STD_U64LE, one.get(), H5P_DEFAULT, layout.get(),
                         H5P_DEFAULT),
              file.path, kCannotWrite);
 }
@@ -146,7 +147,8 @@ File create(const OutputFile& output) {
   const Handle access = fault_tolerant_access(file.write_status, output);
   require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path,
           kCannotWrite);
-  file.id = own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), path,
+  const Handle creation = creation_properties(file, H5P_FILE_CREATE);
+  file.id = own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), path,
                 kCannotWrite, "close it in other programs");
   return file;
 }
@@ -177,8 +179,15 @@ void close(File& file) {
   require_written(*file.write_status, file.path);
 }
 
+Handle creation_properties(const File& file, hid_t kind) {
+  Handle properties = own(H5Pcreate(kind), file.path, kCannotWrite);
+  require(H5Pset_obj_track_times(properties.get(), false), file.path, kCannotWrite);
+  return properties;
+}
+
 Handle create_group(const File& file, const char* name) {
-  return own(H5Gcreate2(file.id.get(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), file.path,
+  const Handle creation = creation_properties(file, H5P_GROUP_CREATE);
+  return own(H5Gcreate2(file.id.get(), name, H5P_DEFAULT, creation.get(), H5P_DEFAULT), file.path,
              kCannotWrite);
 }
 

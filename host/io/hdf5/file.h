@@ -51,6 +51,10 @@ void flush(const File& file, std::uint64_t frames);
 /// Closes a created file whose datasets are closed. Throws Error if a write failed.
 void close(File& file);
 
+/// Properties for creating objects of a kind, H5P_DATASET_CREATE or another, without their times of
+/// change: files with the same contents are then equal byte for byte.
+[[nodiscard]] Handle creation_properties(const File& file, hid_t kind);
+
 /// Creates a group whose parents exist.
 [[nodiscard]] Handle create_group(const File& file, const char* name);
 

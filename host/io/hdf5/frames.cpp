@@ -84,7 +84,7 @@ ExtendibleDataset::ExtendibleDataset(const File& file, const char* name, hid_t s
   longest[0] = H5S_UNLIMITED;
   const int rank = static_cast<int>(extent_.size());
   const Handle space = own(H5Screate_simple(rank, extent_.data(), longest.data()), path_, failure_);
-  const Handle layout = own(H5Pcreate(H5P_DATASET_CREATE), path_, failure_);
+  const Handle layout = creation_properties(file, H5P_DATASET_CREATE);
   require(H5Pset_chunk(layout.get(), rank, chunk.data()), path_, failure_);
   // No chunk is filled with zeros before its frames are written.
   require(H5Pset_fill_time(layout.get(), H5D_FILL_TIME_NEVER), path_, failure_);

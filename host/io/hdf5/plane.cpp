@@ -28,8 +28,9 @@ void write_plane(const File& file, const char* name, hid_t stored_type, hid_t me
   const std::string failure = fmt::format("{} cannot be written", name);
   const std::vector<hsize_t> extent = {rows, cols};
   const Handle space = own(H5Screate_simple(2, extent.data(), nullptr), file.path, failure);
+  const Handle layout = creation_properties(file, H5P_DATASET_CREATE);
   const Handle dataset = own(H5Dcreate2(file.id.get(), name, stored_type, space.get(), H5P_DEFAULT,
-                                        H5P_DEFAULT, H5P_DEFAULT),
+                                        layout.get(), H5P_DEFAULT),
                              file.path, failure);
   require(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), file.path,
           failure, "check the space left on its disk");

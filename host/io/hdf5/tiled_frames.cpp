@@ -66,7 +66,7 @@ void TiledFrames::create(const File& file, const char* name, hid_t type, const v
   const hsize_t longest[] = {H5S_UNLIMITED, rows_, cols_};
   const hsize_t chunk[] = {chunk_frames_, tile_rows_, tile_cols_};
   const Handle space = own(H5Screate_simple(3, extent, longest), path_, failure_);
-  const Handle layout = own(H5Pcreate(H5P_DATASET_CREATE), path_, failure_);
+  const Handle layout = creation_properties(file, H5P_DATASET_CREATE);
   require(H5Pset_chunk(layout.get(), 3, chunk), path_, failure_);
   require(H5Pset_fill_value(layout.get(), type, fill), path_, failure_);
   require(H5Pset_alloc_time(layout.get(), H5D_ALLOC_TIME_INCR), path_, failure_);

@@ -22,7 +22,7 @@ void create_virtual_frames(const File& file, const char* name, hid_t stored_type
   const std::string failure = fmt::format("{} cannot be written", name);
   const int rank = static_cast<int>(extent.size());
   const Handle space = own(H5Screate_simple(rank, extent.data(), nullptr), file.path, failure);
-  const Handle layout = own(H5Pcreate(H5P_DATASET_CREATE), file.path, failure);
+  const Handle layout = creation_properties(file, H5P_DATASET_CREATE);
   require(H5Pset_fill_value(layout.get(), stored_type, fill), file.path, failure);
   for (const VirtualPart& part : parts) {
     std::vector<hsize_t> count = extent;
@@ -47,8 +47,9 @@ void write_numbers(const File& file, const char* name, const std::vector<double>
   const std::string failure = fmt::format("{} cannot be written", name);
   const hsize_t size = values.size();
   const Handle space = own(H5Screate_simple(1, &size, nullptr), file.path, failure);
+  const Handle layout = creation_properties(file, H5P_DATASET_CREATE);
   const Handle dataset = own(H5Dcreate2(file.id.get(), name, H5T_IEEE_F64LE, space.get(),
-                                        H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                        H5P_DEFAULT, layout.get(), H5P_DEFAULT),
                              file.path, failure);
   require(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
           file.path, failure, "check the space left on its disk");
