@@ -225,20 +225,10 @@ def extendible(item):
     return {"maxshape": (None, *item.shape[1:]), "chunks": (2, *item.shape[1:])}
 
 
-def in_parts(name, item):
-    """A plane in two parts."""
-    layout = h5py.VirtualLayout(item.shape, item.dtype)
-    ends = (0, len(item) // 2, len(item))
-    for part, (first, end) in enumerate(zip(ends, ends[1:]), 1):
-        source = h5py.VirtualSource(f"out.h5.parts/{part:05}.h5", name, (end - first, *item.shape[1:]))
-        layout[first:end] = source
-    return layout
-
-
-def convert(source, target, variable=False, layout=None, swmr=False, joined=False, version=None, **file_options):
+def convert(source, target, variable=False, layout=None, swmr=False, version=None, **file_options):
     """Copies a file object by object: with strings of variable length if `variable`, datasets of frames
     in the h5py `layout`, and the file version of `file_options`. With `swmr`, `target` is left as by a
-    writer that was killed after a flush. With `joined`, planes lie in two parts.
+    writer that was killed after a flush.
     `version` is the format's, by default that of `source`."""
     unfinished = target.with_name("unfinished.h5") if swmr else target
     with h5py.File(source, "r") as old, h5py.File(unfinished, "w", **file_options) as new:
@@ -249,9 +239,6 @@ def convert(source, target, variable=False, layout=None, swmr=False, joined=Fals
         def visit(name, item):
             if isinstance(item, h5py.Group):
                 copy_attributes(item, new.require_group(name), variable)
-                return
-            if joined and item.ndim == 3:
-                new.create_virtual_dataset(name, in_parts(name, item))
                 return
             options = {}
             if item.ndim > 0 and item.size > 0:
@@ -509,7 +496,7 @@ def write_seeds(folder, program):
 
 
 def write_parts(folder, program):
-    """Parts of two, and files joined of them."""
+    """Parts of two."""
     folder.mkdir(parents=True, exist_ok=True)
     for old in [*folder.glob("seed_*"), *folder.glob("hostile_*")]:
         old.unlink()
@@ -521,14 +508,10 @@ def write_parts(folder, program):
         plans = {"contacts": ("--contacts", output, "--checkpoint-every", 2),
                  "uncertainty": ("--outputs", "angles,uncertainty", "--noise", 1)}
         for name, plan in plans.items():
-            run(program, "solve", recording, "-o", output, "--parts", 2, *plan)
-            run(program, "join", output)
             for part in (1, 2):
+                run(program, "solve", recording, "-o", output, "--part", f"{part}/2", *plan)
                 convert(scratch / f"out.h5.parts/{part:05}.h5", folder / f"seed_part{part}_{name}.h5",
                         libver="latest")
-            with h5py.File(output, "r+") as file:
-                file["parts"].attrs.update(fingerprint="seed", checkpoint_every=0.0, warm_up=0.0)
-            convert(output, folder / f"seed_joined_{name}.h5", joined=True, libver="latest")
         for name, (seed, change) in HOSTILE_PARTS.items():
             path = folder / f"hostile_{name}.h5"
             path.write_bytes((folder / f"seed_{seed}.h5").read_bytes())
@@ -536,8 +519,8 @@ def write_parts(folder, program):
                 change(file)
 
 
-def give_part(group="part", **members):
-    return lambda file: file[group].attrs.update({name: value if isinstance(value, str) else float(value)
+def give_part(**members):
+    return lambda file: file["part"].attrs.update({name: value if isinstance(value, str) else float(value)
                                                   for name, value in members.items()})
 
 
@@ -555,11 +538,6 @@ HOSTILE_PARTS = {
     "part_nan": ("part1_contacts", give_part(frames=numpy.nan)),
     "part_0_of_0": ("part1_contacts", give_part(index=0, count=0)),
     "part_longer_table": ("part1_contacts", longer_table),
-    "joined_of_2e46_frames": ("joined_contacts", give_part("parts", frames=2**46)),
-    "joined_of_99999": ("joined_uncertainty", give_part("parts", count=99999)),
-    "joined_above": ("joined_contacts", give_part("parts", folder="..")),
-    "joined_elsewhere": ("joined_contacts", give_part("parts", folder="../out.h5.parts")),
-    "joined_of_others": ("joined_contacts", give_part("parts", fingerprint="other")),
 }
 
 

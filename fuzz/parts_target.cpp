@@ -54,24 +54,6 @@ void place(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::filesystem::copy_file(from, to);
 }
 
-/// Reads a joined file with two parts, of the fingerprint `seed` that the corpus has.
-void read_joined(const std::filesystem::path& output, const ForceFileReader& file,
-                 const ReadOptions& options) {
-  std::filesystem::create_directory(part_file(output, 1).parent_path());
-  write_parts(output, file.info(), {1, 2, file.frames(), {}, "seed"}, 0);
-  const ForceFileReader reader(output, options);
-  for (const LostPart& lost : reader.examine_parts()) throw Error("", lost.reason);
-  read_forces(output, options);
-}
-
-/// Joins a part with the others that it names.
-void join(const std::filesystem::path& output, const ReadOptions& options) {
-  for (const bool copy : {false, true}) {
-    static_cast<void>(join_parts(output, {.copy = copy, .allow_lost = true, .read = options}));
-    read_forces(output, options);
-  }
-}
-
 }  // namespace
 
 void read_parts(const std::filesystem::path& path, const ReadOptions& options) {
@@ -80,14 +62,11 @@ void read_parts(const std::filesystem::path& path, const ReadOptions& options) {
   if (std::uint64_t{info.rows} * info.cols > kMaxRead) return;
   const ScratchFolder scratch;
   const std::filesystem::path output = scratch.path() / "out.h5";
-  if (file.parts() > 0) {
-    place(path, output);
-    return read_joined(output, file, options);
-  }
-  if (!info.part) throw Error(path.string(), "is neither a part nor joined");
+  if (!info.part) throw Error(path.string(), "is not a part");
   place(path, part_file(output, info.part->index));
   write_parts(output, info, *info.part, info.part->index);
-  join(output, options);
+  static_cast<void>(join_parts(output, {.read = options}));
+  read_forces(output, options);
 }
 
 }  // namespace pillarfield::fuzz

@@ -22,8 +22,7 @@ void read_plain(const std::filesystem::path& path, const ReadOptions& options);
 /// Reads a force file; also compares its frames with themselves.
 void read_forces(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads a part, which it joins with the others of its solve, in both ways; or a joined file, with
-/// parts beside it.
+/// Reads a part, and joins it with the others of its solve.
 void read_parts(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads a calibration; also applies it to a skin of its size.

@@ -36,16 +36,12 @@ bool solve_part_of(Frames& frames, const SolverPlan& plan, const std::string& so
       .has_value();
 }
 
-std::uint64_t join(const std::filesystem::path& output, bool copy, bool allow_missing,
-                   bool overwrite, bool trust) {
+void join(const std::filesystem::path& output, bool overwrite, bool trust) {
   const py::gil_scoped_release unlocked;
   SignalCheck check_signals;
-  return join_parts(output, {.copy = copy,
-                             .allow_lost = allow_missing,
-                             .replace = overwrite ? Replace::anything : Replace::results,
-                             .read = {.trust = trust},
-                             .progress = [&](auto...) { check_signals(); }})
-      .lost.size();
+  join_parts(output, {.replace = overwrite ? Replace::anything : Replace::results,
+                      .read = {.trust = trust},
+                      .progress = [&](auto...) { check_signals(); }});
 }
 
 }  // namespace
@@ -55,8 +51,8 @@ void bind_parts(py::module_& module) {
              py::arg("source_name"), py::arg("output"), py::arg("index"), py::arg("count"),
              py::arg("checkpoint_every"), py::arg("warm_up"), py::arg("contacts"),
              py::arg("device"), "Solves a part; whether it was not whole before.");
-  module.def("join_parts", &join, py::arg("output"), py::arg("copy"), py::arg("allow_missing"),
-             py::arg("overwrite"), py::arg("trust"), "Joins parts; the number of lost ones.");
+  module.def("join_parts", &join, py::arg("output"), py::arg("overwrite"), py::arg("trust"),
+             "Joins parts.");
   module.def(
       "most_parts",
       [](std::uint64_t frames, std::uint64_t every) {

@@ -43,8 +43,7 @@ struct SimulateOptions : WriteOptions {
 
 /// Ranges of frames that are solved apart.
 struct PartOptions {
-  std::string part;  ///< "7/64"; empty: none
-  std::optional<std::uint64_t> parts;
+  std::string part;  ///< "7/64"; empty: all frames
   std::optional<std::uint64_t> checkpoint_every;
   std::optional<std::uint64_t> warm_up;
 };
@@ -55,13 +54,11 @@ struct SolveOptions : WriteOptions {
   DeviceOptions device;
   std::string contacts_file;  ///< empty: none
   ContactOptions contacts;
-  PartOptions parts;
+  PartOptions part;
 };
 
 struct JoinCommand : WriteOptions {
   ReadOptions read;
-  bool copy = false;
-  bool allow_missing = false;
 };
 
 struct PaceOptions : PrintOptions {
@@ -110,7 +107,6 @@ struct CompareOptions : PrintOptions {
   std::string forces;
   std::string recording;
   ReadOptions read;
-  bool allow_missing = false;
 };
 
 /// Arguments of all calibration steps.

@@ -11,7 +11,6 @@
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
-#include "cli/parts/examine.h"
 #include "cli/progress.h"
 #include "cli/warnings.h"
 #include "pillarfield/comparison.h"
@@ -197,22 +196,6 @@ void print_coverage(const Coverage& coverage) {
       "deviations, since it excludes noise. Pillars with flagged sensels are left out.\n");
 }
 
-/// The parts that are absent or cannot be used, in order; names them. Throws Error unless they are
-/// allowed.
-std::vector<LostPart> lost_parts(const ForceFileReader& forces, const CompareOptions& options) {
-  std::vector<LostPart> lost = examined_parts(forces, options.forces, options.quiet);
-  if (options.allow_missing) {
-    print_file_warnings(options.forces, sentences_about(lost));
-    return lost;
-  }
-  if (lost.empty()) return lost;
-  throw Error(
-      options.forces,
-      fmt::format("it lacks {} of {} parts: {}{}: {}", lost.size(), forces.parts(),
-                  name_of(lost.front()), lost.size() > 1 ? ", ..." : "", lost.front().reason),
-      "solve them, or leave them out with --allow-missing");
-}
-
 /// Checks that the files belong to one patch and returns the number of frames in both.
 std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& recording,
                             const CompareOptions& options) {
@@ -244,25 +227,13 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   return frames;
 }
 
-/// True if a frame holds no forces, as of a lost part in a file that was joined as a copy. Throws
-/// Error unless such frames are allowed.
-bool is_missing(const ForceField& solved, std::uint64_t index, const CompareOptions& options) {
-  if (!std::ranges::all_of(solved.normal, [](float n) { return std::isnan(n); })) return false;
-  if (options.allow_missing) return true;
-  throw Error(options.forces, fmt::format("frame {} holds no forces", index),
-              "leave out such frames with --allow-missing");
-}
-
 }  // namespace
 
 void compare(const CompareOptions& options) {
   const ForceFileReader forces(options.forces, options.read);
   const std::unique_ptr<FrameSource> recording =
       open_frames(options.recording, {.trust = options.read.trust, .untimed = true});
-  const std::vector<LostPart> lost = lost_parts(forces, options);
-  auto next_lost = lost.begin();
-  const std::uint64_t all_frames = common_frames(forces, *recording, options);
-  std::uint64_t frames = 0;
+  const std::uint64_t frames = common_frames(forces, *recording, options);
   const ForceFileInfo& info = forces.info();
   const std::uint64_t first = info.part ? frames_of(*info.part).first : 0;
   ForceField solved(info.rows, info.cols);
@@ -272,23 +243,16 @@ void compare(const CompareOptions& options) {
   std::optional<Coverage> coverage;
   if (info.uncertainty) coverage.emplace();
   {
-    Progress progress("Comparing", all_frames, options.quiet);
-    for (std::uint64_t index = 0; index < all_frames; ++index) {
+    Progress progress("Comparing", frames, options.quiet);
+    for (std::uint64_t index = 0; index < frames; ++index) {
       stop_if_interrupted(index, options.forces);
-      while (next_lost != lost.end() && next_lost->frames.end <= index) ++next_lost;
-      if (next_lost != lost.end() && next_lost->frames.first <= index) continue;
       forces.read(index, solved);
-      if (is_missing(solved, index, options)) continue;
-      ++frames;
       recording->read_truth(first + index, truth);
       comparison.add(solved.view(), truth.view());
       resultants.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
-  }
-  if (frames == 0 && all_frames > 0) {
-    throw Error(options.forces, "no frame holds forces", "solve its parts again");
   }
   const std::vector<Row> rows = rows_of(comparison);
   if (options.json) {

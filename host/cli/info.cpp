@@ -9,7 +9,6 @@
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
-#include "cli/parts/examine.h"
 #include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
@@ -31,7 +30,6 @@ using Json = nlohmann::ordered_json;
 const ReadOptions kProbed = {.trust = true};
 
 /// Parts of a joined file without which it is not whole.
-constexpr const char* kLostParts = "lost_parts";
 
 /// Returns a value as text: the members of a list, and of an object with their names.
 std::string text_of(const Json& value) {
@@ -153,12 +151,6 @@ Json facts_of_forces(const std::string& file, const InfoOptions& options) {
   if (info.part) {
     facts["part"] = fmt::format("{}/{}", info.part->index, info.part->count);
     facts["first_frame"] = frames_of(*info.part).first;
-  }
-  if (reader.parts() == 0) return facts;
-  facts["parts"] = reader.parts();
-  facts[kLostParts] = Json::array();
-  for (const LostPart& part : examined_parts(reader, file, options.quiet)) {
-    facts[kLostParts].push_back(fmt::format("{}: {}", name_of(part), part.reason));
   }
   return facts;
 }
@@ -286,14 +278,7 @@ void info(const InfoOptions& options) {
   } else if (!options.kernel.empty()) {
     print_kernel(options.kernel);
   } else if (!options.file.empty()) {
-    const Json facts = facts_of(options.file, options);
-    print_facts(facts, options.json);
-    const std::size_t lost = facts.contains(kLostParts) ? facts[kLostParts].size() : 0;
-    if (lost > 0) {
-      throw Error(options.file,
-                  fmt::format("{} of its {} parts are lost", lost, facts["parts"].get<int>()),
-                  "solve them again with the same --part K/N");
-    }
+    print_facts(facts_of(options.file, options), options.json);
   } else {
     print_facts({{"version", kVersion}, {"license", "MIT"}}, options.json);
     print_devices(options.json);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,7 @@
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
-#include "cli/parts/share.h"
+#include "cli/part_share.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
@@ -52,8 +53,7 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
 
 struct SolveSummary {
   PipelineStatistics done;
-  std::optional<PartShare> parts;      ///< of --part and --parts
-  std::vector<std::uint64_t> skipped;  ///< parts that were whole already
+  bool skipped = false;  ///< its part was whole already
   RegionCount regions;
   double startup_seconds = 0;  ///< opening the files and the device, compiling
   double seconds = 0;          ///< reading, solving and writing, which overlap
@@ -143,10 +143,9 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
                                  {"startup_seconds", summary.startup_seconds},
                                  {"seconds", summary.seconds},
                                  {"warnings", warnings}};
-  if (summary.parts) {
-    json["parts"] = {{"count", summary.parts->count},
-                     {"own", summary.parts->indices},
-                     {"skipped", summary.skipped}};
+  if (!options.part.part.empty()) {
+    json["part"] = options.part.part;
+    json["was_whole"] = summary.skipped;
   }
   if (!options.contacts_file.empty()) {
     json["contacts_output"] = options.contacts_file;
@@ -156,19 +155,17 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
   fmt::print("{}\n", json_text(json));
 }
 
-void print_parts(const SolveOptions& options, const SolveSummary& summary) {
-  fmt::print("Wrote {} of {} in {}\n",
-             counted(summary.parts->indices.size() - summary.skipped.size(), "part"),
-             summary.parts->count, printable(part_file(options.output, 1).parent_path().string()));
-  if (!summary.skipped.empty()) {
-    fmt::print("Left {} as before\n", counted(summary.skipped.size(), "whole part"));
-  }
-  fmt::print("When all are whole: pillarfield join {}\n", printable(options.output));
+void print_part(const SolveOptions& options, const SolveSummary& summary) {
+  const auto [index, count] = *part_of(options.part.part);
+  fmt::print("{} {}\n", summary.skipped ? "Left as it was:" : "Wrote",
+             printable(part_file(options.output, index).string()));
+  fmt::print("When all {} are whole: pillarfield join {}\n", counted(count, "part"),
+             printable(options.output));
 }
 
 void print_text(const SolveOptions& options, const SolverPlan& plan, const Device& solver,
                 const SolveSummary& summary) {
-  if (summary.parts && summary.done.frames == 0) return print_parts(options, summary);
+  if (summary.skipped) return print_part(options, summary);
   const RegionCount& regions = summary.regions;
   const auto frames = static_cast<double>(summary.done.frames);
   const auto pillars = static_cast<double>(regions.all());
@@ -202,11 +199,11 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
                summary.done.most_contacts, printable(options.contacts_file));
   }
-  if (summary.parts) return print_parts(options, summary);
+  if (!options.part.part.empty()) return print_part(options, summary);
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// What a solve of all frames or of some parts needs.
+/// What a solve of all frames or of a part needs.
 struct Job {
   const SolveOptions& options;
   FrameSource& source;
@@ -236,29 +233,22 @@ void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveS
   for (const auto& file : files) file->finish();
 }
 
-/// Solves the parts of this process that are not whole.
-void solve_parts(const Job& job, SolveSummary& summary) {
+/// Solves the part of the options, unless it is whole.
+void solve_one_part(const Job& job, SolveSummary& summary) {
   const std::string& output = job.options.output;
-  const ForceFileInfo info = file_info(job.options, job.plan, job.device);
-  for (const std::uint64_t index : summary.parts->indices) {
-    ForcePart part;
-    part.index = index;
-    part.count = summary.parts->count;
-    const auto done = solve_part(job.source, job.device, job.plan, job.range, output, info, part,
-                                 {&job.counter, &job.check});
-    if (!done) {
-      summary.skipped.push_back(index);
-      continue;
-    }
-    if (done->stopped) stop_if_interrupted(done->frames, part_file(output, index));
-    summary.done.frames += done->frames;
-    summary.done.contacts += done->contacts;
-    summary.done.most_contacts = std::max(summary.done.most_contacts, done->most_contacts);
-  }
+  ForcePart part;
+  std::tie(part.index, part.count) = *part_of(job.options.part.part);
+  const auto done =
+      solve_part(job.source, job.device, job.plan, job.range, output,
+                 file_info(job.options, job.plan, job.device), part, {&job.counter, &job.check});
+  summary.skipped = !done;
+  if (!done) return;
+  if (done->stopped) stop_if_interrupted(done->frames, part_file(output, part.index));
+  summary.done = *done;
 }
 
 void check_part_options(const SolveOptions& options) {
-  if (options.parts.part.empty() && !options.parts.parts) return;
+  if (options.part.part.empty()) return;
   if (!is_hdf5_name(options.output)) {
     throw Error(options.output, "parts are HDF5 files", "end its name in .h5");
   }
@@ -291,7 +281,7 @@ void solve(const SolveOptions& given) {
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device.name);
   RangeOptions range;
-  range.checkpoints = checkpoints_of(options.parts);
+  range.checkpoints = checkpoints_of(options.part);
   range.processor = {.memory = options.device.memory,
                      .frames_in_flight = kFramesInFlight,
                      .on_compiling = terminal_line(options.quiet)};
@@ -303,15 +293,10 @@ void solve(const SolveOptions& given) {
     if (!std::exchange(started, true)) summary.startup_seconds = watch.seconds();
     return is_interrupted();
   };
-  summary.parts = share_of(options.parts);
   {
     Counter counter(source->frames(), options.quiet);
     const Job job = {options, *source, device, plan, range, counter, check};
-    if (summary.parts) {
-      solve_parts(job, summary);
-    } else {
-      solve_all(job, table, summary);
-    }
+    options.part.part.empty() ? solve_all(job, table, summary) : solve_one_part(job, summary);
     summary.regions = counter.regions();
   }
   summary.seconds = watch.seconds() - summary.startup_seconds;

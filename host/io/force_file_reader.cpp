@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "io/force_format.h"
 #include "io/force_planes.h"
@@ -14,7 +13,6 @@
 #include "io/hdf5/number_type.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
-#include "io/part_readers.h"
 #include "io/stored_skin.h"
 #include "io/stored_surface.h"
 #include "pillarfield/error.h"
@@ -26,11 +24,10 @@ namespace pillarfield {
 namespace {
 
 struct OpenForces {
-  OpenForces(hdf5::File opened, const ReadOptions& options);
+  explicit OpenForces(hdf5::File opened);
 
   void open_planes(bool may_lack_chunks);
   void read_size(const std::vector<hsize_t>& shape);
-  void open_parts(const ReadOptions& options);
   void read_info();
   void read_surface_of_skin();
   void count_frames();
@@ -41,7 +38,6 @@ struct OpenForces {
   hdf5::StoredFrames status;
   hdf5::StoredFrames time;
   std::optional<ContactTablesReader> contacts;
-  std::optional<PartReaders> parts;  // of a joined file, which has neither planes nor status
   ForceFileInfo info;
   std::uint64_t frames = 0;
   std::vector<std::string> warnings;
@@ -61,42 +57,23 @@ void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const cha
               "see docs/formats.md");
 }
 
-/// The size of a frame of a joined file's status, whose values lie in its parts.
-std::vector<hsize_t> shape_of_virtual(const hdf5::File& file, const char* name) {
-  const hdf5::Handle dataset = hdf5::open_object(file, name);
-  const hdf5::Handle space = hdf5::own(H5Dget_space(dataset.get()), file.path,
-                                       fmt::format("{} is not a dataset", name), hdf5::kDamaged);
-  std::vector<hsize_t> extent(3);
-  if (H5Sget_simple_extent_ndims(space.get()) != 3 ||
-      H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != 3) {
-    throw Error(file.path.string(), fmt::format("{} does not have 3 dimensions", name),
-                hdf5::kDamaged);
-  }
-  return {extent[1], extent[2]};
-}
-
-OpenForces::OpenForces(hdf5::File opened, const ReadOptions& options) : file(std::move(opened)) {
+OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
   const int version = hdf5::require_format(file, force_format::kName, force_format::kVersion);
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
-  const bool is_joined = hdf5::exists(file, force_format::kParts);
-  if (!is_joined) open_planes(version >= force_format::kSparseSince);
+  open_planes(version >= force_format::kSparseSince);
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
   if (hdf5::exists(file, force_format::kContacts)) {
     contacts.emplace(file);
     info.contacts = contacts->options();
   }
-  read_size(is_joined ? shape_of_virtual(file, force_format::kStatus) : status.shape());
+  read_size(status.shape());
   read_info();
   read_surface_of_skin();
-  if (is_joined) {
-    open_parts(options);
-  } else {
-    info.part = read_part(file, force_format::kPart);
-    count_frames();
-  }
+  info.part = read_part(file);
+  count_frames();
 }
 
 void OpenForces::open_planes(bool may_lack_chunks) {
@@ -125,24 +102,6 @@ void OpenForces::read_size(const std::vector<hsize_t>& shape) {
   info.cols = static_cast<std::uint32_t>(shape[1]);
   hdf5::require_probe_limit(file, force_format::kStatus,
                             static_cast<double>(info.rows) * static_cast<double>(info.cols));
-}
-
-/// Opens the folder of parts, which lies beside the file.
-void OpenForces::open_parts(const ReadOptions& options) {
-  const auto part = read_part(file, force_format::kParts);
-  const hdf5::Handle group = hdf5::open_object(file, force_format::kParts);
-  const std::string folder = hdf5::read_text(file, group.get(), force_format::kFolder).value_or("");
-  if (folder.empty() || folder == "." || folder == ".." ||
-      std::filesystem::path(folder).filename() != folder) {
-    throw Error(file.path.string(), "does not name the folder of its parts", "join them again");
-  }
-  frames = part->frames;
-  if (time.frames() != frames || (contacts && contacts->frames() != frames)) {
-    throw Error(file.path.string(), "its tables do not fit the frames of its parts",
-                "join them again");
-  }
-  parts.emplace(file.path.parent_path() / folder, *part, info, ReadOptions{.trust = options.trust});
-  std::ranges::move(sentences_about(parts->lost()), std::back_inserter(warnings));
 }
 
 void OpenForces::read_info() {
@@ -196,11 +155,11 @@ struct ForceFileReader::State : OpenForces {
   using OpenForces::OpenForces;
 };
 
-void try_forces(hdf5::File file) { (void)OpenForces(std::move(file), {}); }
+void try_forces(hdf5::File file) { (void)OpenForces(std::move(file)); }
 
 ForceFileReader::ForceFileReader(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  state_ = std::make_unique<State>(open_probed(path, options), options);
+  state_ = std::make_unique<State>(open_probed(path, options));
 }
 
 ForceFileReader::~ForceFileReader() = default;
@@ -211,27 +170,11 @@ const ForceFileInfo& ForceFileReader::info() const { return state_->info; }
 std::uint64_t ForceFileReader::frames() const { return state_->frames; }
 const std::vector<std::string>& ForceFileReader::warnings() const { return state_->warnings; }
 
-const std::vector<LostPart>& ForceFileReader::lost_parts() const {
-  static const std::vector<LostPart> none;
-  return state_->parts ? state_->parts->lost() : none;
-}
-
-std::uint64_t ForceFileReader::parts() const { return state_->parts ? state_->parts->parts() : 0; }
-
-std::vector<LostPart> ForceFileReader::examine_parts(const StepProgress& progress) const {
-  const hdf5::QuietErrors quiet;
-  return state_->parts ? state_->parts->examine(progress) : std::vector<LostPart>();
-}
-
 double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   const hdf5::QuietErrors quiet;
   state_->require_frame(index);
   double time_s = 0;
   state_->time.get(index, H5T_NATIVE_DOUBLE, &time_s);
-  if (state_->parts) {
-    state_->parts->read(index, forces);
-    return time_s;
-  }
   if (forces.rows != state_->info.rows || forces.cols != state_->info.cols) {
     forces = ForceField(state_->info.rows, state_->info.cols);
   }

@@ -23,16 +23,14 @@ inline constexpr const char* kStatus = "/force/status";
 inline constexpr const char* kMagnitude = "/force/magnitude";
 inline constexpr const char* kUncertainty = "/uncertainty";
 
-/// Attributes of a part, and of a joined file with its folder of parts.
+/// Attributes of a part.
 inline constexpr const char* kPart = "/part";
-inline constexpr const char* kParts = "/parts";
 inline constexpr const char* kIndex = "index";
 inline constexpr const char* kCount = "count";
 inline constexpr const char* kFrames = "frames";
 inline constexpr const char* kCheckpointEvery = "checkpoint_every";
 inline constexpr const char* kWarmUp = "warm_up";
 inline constexpr const char* kFingerprint = "fingerprint";
-inline constexpr const char* kFolder = "folder";
 
 inline constexpr const char* kContacts = "/contacts";
 inline constexpr const char* kPatch = "/contacts/patch";

@@ -79,26 +79,7 @@ void require_same_division(const std::filesystem::path& file, const ForcePart& p
       file.string(),
       fmt::format("holds part {} of {} of this solve, not of {}", held->index, held->count,
                   part.count),
-      fmt::format("give --part K/{} or --parts {} with its checkpoints, or remove its folder",
-                  held->count, held->count));
-}
-
-std::string name_of(const LostPart& part) {
-  return fmt::format("part {} (frames {} to {})", part.index, part.frames.first,
-                     part.frames.end - 1);
-}
-
-std::vector<std::string> sentences_about(const std::vector<LostPart>& lost) {
-  constexpr std::size_t kMostNamed = 10;
-  const std::size_t named = std::min(lost.size(), kMostNamed);
-  std::vector<std::string> sentences;
-  for (std::size_t i = 0; i < named; ++i) {
-    sentences.push_back(fmt::format("It lacks {}: {}.", name_of(lost[i]), lost[i].reason));
-  }
-  if (lost.size() > named) {
-    sentences.push_back(fmt::format("It lacks {} more parts.", lost.size() - named));
-  }
-  return sentences;
+      fmt::format("give --part K/{} with its checkpoints, or remove its folder", held->count));
 }
 
 }  // namespace pillarfield

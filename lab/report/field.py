@@ -75,30 +75,6 @@ def with_pillars(recordings, least):
             if recording["scores"]["noise"]["ambiguous"] >= least]
 
 
-# --- Kinds of closed forms ---
-
-def kind(family, *motions):
-    return lambda scene: scene["family"] == family and scene["motion"] in motions
-
-
-PARTIAL = ("partial slip", "partial turn")
-KINDS = {
-    "rounded, spin and turn": kind("rounded", "spin", "turn"),
-    "rounded, partial slip": kind("rounded", *PARTIAL),
-    "rounded, roll": kind("rounded", "roll"),
-    "rounded, slide": kind("rounded", "slide"),
-    "cylinder, partial slip and roll":
-        lambda scene: scene["family"] == "cylinder" and scene["motion"] != "press",
-    "cone, spin": kind("cone", "spin"),
-    "cone, partial slip": kind("cone", *PARTIAL),
-    "cone, slide": kind("cone", "slide"),
-    "punch, spin": kind("punch", "spin"),
-    "punch, partial slip": kind("punch", *PARTIAL),
-    "punch, slide": kind("punch", "slide"),
-    "press, any": lambda scene: scene["motion"] == "press",
-}
-
-
 # --- Goals ---
 
 CONTACT_GOALS = {0.8: 0.8, 1.2: 1.3, 1.6: 2.0, 2.2: 3.0, 3.0: 4.6}  # friction: RMS error, counts
@@ -160,7 +136,7 @@ def coverage_goals(histories, which):
                range_text, lambda shares: min(shares) >= 0.9)
 
 
-def goals(histories, closed_forms):
+def goals(histories):
     result = list(error_goals(histories))
     with_some = with_pillars(usual(histories), 1)
     result.append(goal(
@@ -178,12 +154,6 @@ def goals(histories, closed_forms):
                        lambda share: share <= 0.04))
     result += coverage_goals(with_some, "friction up to 3")
     result += coverage_goals(histories, "all frictions")
-    for name, limit in (("rounded, spin and turn", 0.03), ("rounded, partial slip", 0.10)):
-        scenes = list(filter(KINDS[name], closed_forms))
-        result.append(goal(f"closed forms, {name}, ratio to `paper`", f"≤ {limit:.2f}",
-                           lambda method, scenes=scenes: over_paper(scenes, method),
-                           lambda ratio: f"{ratio:.3f}",
-                           lambda ratio, limit=limit: ratio <= limit, noise=True))
     return result
 
 
@@ -254,7 +224,7 @@ def learnt_rows(histories):
         yield cells
 
 
-# --- Coverage, closed forms ---
+# --- Coverage ---
 
 def coverage_rows(histories):
     def row(name, shares):
@@ -274,26 +244,7 @@ def coverage_rows(histories):
     yield row("least of a recording", map(min, zip(*each)))
 
 
-def closed_form_rows(closed_forms):
-    for name, holds in KINDS.items():
-        scenes = list(filter(holds, closed_forms))
-        noise = Score(scenes, "noise")
-        worst = max((over_paper([scene], "contact")
-                     for scene in with_pillars(scenes, ENOUGH_PILLARS)), default=None)
-        yield [name, len(scenes), percent(noise.ambiguous / noise.loaded),
-               *(text(rms(scenes, method))
-                 for method in ("paper", "direct", "contact", "given", "noise")),
-               text(over_paper(scenes, "contact"), ".3f"), text(worst)]
-
-
-# --- Twins, recordings ---
-
-def twin_rows(twins):
-    for row in twins["rows"]:
-        errors = [row["distance"], row["distance"] / 2, *row["contact"], *row["paper"]]
-        yield [*page.cells(row, "normal_share:g friction:.2f"), f"{row['direction_deg']:.1f}°",
-               *(f"{error:.1f}" for error in errors)]
-
+# --- Recordings ---
 
 def recording_rows(histories):
     for indenter in INDENTERS:
@@ -329,7 +280,7 @@ def draw_history(history, folder):
 def main(docs, measured):
     folder = Path(docs, "pictures", "field")
     found = page.load(measured)
-    histories, closed_forms = found.pop("histories"), found.pop("closed_forms")
+    histories = found.pop("histories")
     draw_errors(histories, folder)
     draw_history(found["shown_history"], folder)
     sticking, _, sticking_off = narrow_contacts(histories, 0.05,
@@ -337,7 +288,7 @@ def main(docs, measured):
     by_friction = {friction: of_friction(histories, friction) for friction in FRICTIONS}
     page.write(
         docs, "field", **found, enough=ENOUGH_PILLARS,
-        goal_rows=goals(histories, closed_forms),
+        goal_rows=goals(histories),
         direct={str(friction): rms(some, "direct") for friction, some in by_friction.items()},
         lower={str(friction): rms(some, "direct_0.75") for friction, some in by_friction.items()},
         worse_rows=worse_rows(histories),
@@ -350,8 +301,6 @@ def main(docs, measured):
         coverage_rows=coverage_rows(histories),
         contact_share=percent(found["cost"]["contact_share"]),
         ambiguous_share=percent(found["cost"]["ambiguous_share"], 2),
-        closed_forms=len(closed_forms), closed_form_rows=closed_form_rows(closed_forms),
-        twin_rows=twin_rows(found["twins"]),
         histories=len(histories), recording_rows=recording_rows(histories))
 
 

@@ -12,7 +12,6 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
@@ -21,8 +20,6 @@
 
 #include "lab/studies/contact_study.h"
 #include "lab/studies/contact_study_histories.h"
-#include "lab/studies/contact_study_scenes.h"
-#include "lab/studies/contact_study_twins.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"
@@ -32,7 +29,6 @@
 namespace pillarfield::report {
 namespace {
 
-using contact_study::ClosedForm;
 using contact_study::Evaluation;
 using contact_study::History;
 using contact_study::Recording;
@@ -65,14 +61,8 @@ const Method kDirect = {.name = "direct", .estimator = Estimator::direct};
 const Method kPaper = {.name = "paper", .estimator = Estimator::paper};
 const Method kContact = {.name = "contact"};
 
-/// What is tried on single frames.
-std::vector<Method> basic_methods() {
-  return {kDirect, kPaper, kContact, {.name = "given", .friction_given = true}};
-}
-
-/// What is tried on histories.
 std::vector<Method> all_methods() {
-  std::vector<Method> all = basic_methods();
+  std::vector<Method> all = {kDirect, kPaper, kContact, {.name = "given", .friction_given = true}};
   for (const double point : {0.5, 0.75}) {
     all.push_back({.name = fmt::format("direct_{}", point),
                    .estimator = Estimator::direct,
@@ -142,20 +132,6 @@ Json histories_json(const std::filesystem::path& scenes) {
   return results;
 }
 
-Json closed_forms_json() {
-  const std::vector<Method> methods = basic_methods();
-  std::vector<ClosedForm> scenes = contact_study::closed_forms();
-  contact_study::integrate(scenes);
-  std::vector<Json> results(scenes.size());
-  contact_study::for_each_index(results.size(), [&](std::size_t i) {
-    const bool is_cylinder = scenes[i].contact.body.shape == contact_study::Shape::cylinder;
-    results[i] = {{"family", is_cylinder ? "cylinder" : name_of(scenes[i].family())},
-                  {"motion", name_of(scenes[i].motion())},
-                  {"scores", scores_of(contact_study::record(scenes[i]), methods)}};
-  });
-  return results;
-}
-
 // --- One history in detail ---
 
 /// A finger that is dragged until it slides.
@@ -198,78 +174,6 @@ Json shown_history_json(const std::filesystem::path& scenes) {
          {"paper", counts * paper.back().normal[i]}});
   }
   return {{"name", recording.name}, {"frames", std::move(frames)}, {"pillars", std::move(pillars)}};
-}
-
-// --- Twins ---
-
-template <class DistanceOf>
-double rms(const std::vector<std::size_t>& pillars, DistanceOf distance_of) {
-  double squares = 0;
-  for (const std::size_t i : pillars) squares += std::pow(distance_of(i), 2);
-  return std::sqrt(squares / static_cast<double>(pillars.size()));
-}
-
-/// Readings of twins that differ in single precision.
-std::size_t different_readings(const contact_study::Twins& twins) {
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < twins.first.size(); ++i) {
-    const auto a = contact_study::readings_counts(twins.first[i]);
-    const auto b = contact_study::readings_counts(twins.second[i]);
-    for (std::size_t n = 0; n < a.size(); ++n) {
-      if (static_cast<float>(a[n]) != static_cast<float>(b[n])) ++different;
-    }
-  }
-  return different;
-}
-
-ClosedForm first_of(const contact_study::TwinScene& twin_scene) {
-  ClosedForm scene;
-  scene.contact = contact_study::contact_of(twin_scene);
-  scene.contact_name = "twin";
-  scene.friction = twin_scene.friction;
-  scene.seed = 700'001;
-  scene.loads =
-      std::make_shared<contact_study::PillarLoads>(contact_study::loads_of(scene.contact));
-  return scene;
-}
-
-Json twins_json() {
-  contact_study::TwinScene scene;
-  const Recording recording = contact_study::record(first_of(scene));
-  const Evaluation evaluation(recording);
-  const auto& ambiguous = evaluation.ambiguous(0);
-  const ForceField contact = kContact.solve(recording).front();
-  const ForceField paper = kPaper.solve(recording).front();
-  std::size_t different = 0;
-  Json rows = Json::array();
-  for (const double share : {0.5, 0.7, 0.9}) {
-    scene.normal_share = share;
-    const contact_study::Twins twins = contact_study::sliding_twins(scene);
-    different += different_readings(twins);
-    const auto error = [&](const ForceField& solved, const auto& truth) {
-      return rms(ambiguous, [&](std::size_t i) {
-        return contact_study::distance_counts(
-            {solved.shear_x[i], solved.shear_y[i], solved.normal[i]}, truth[i]);
-      });
-    };
-    rows.push_back({{"normal_share", share},
-                    {"friction", twins.second_friction},
-                    {"direction_deg", twins.second_direction_deg},
-                    {"distance", rms(ambiguous,
-                                     [&](std::size_t i) {
-                                       return contact_study::distance_counts(twins.first[i],
-                                                                             twins.second[i]);
-                                     })},
-                    {"contact", {error(contact, twins.first), error(contact, twins.second)}},
-                    {"paper", {error(paper, twins.first), error(paper, twins.second)}}});
-  }
-  return {{"diameter", 2 * scene.radius},
-          {"peak_counts", scene.peak_counts},
-          {"friction", scene.friction},
-          {"direction_deg", scene.direction_deg},
-          {"readings", 4 * recording.truth.front().pillars()},
-          {"different_readings", different},
-          {"rows", std::move(rows)}};
 }
 
 // --- Cost ---
@@ -356,9 +260,7 @@ Json cost_json(const std::filesystem::path& scene) {
 Json all(const std::filesystem::path& scenes) {
   return {{"cost", cost_json(scenes / "square_metre.toml")},
           {"histories", histories_json(scenes)},
-          {"shown_history", shown_history_json(scenes)},
-          {"closed_forms", closed_forms_json()},
-          {"twins", twins_json()}};
+          {"shown_history", shown_history_json(scenes)}};
 }
 
 }  // namespace

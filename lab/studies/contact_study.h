@@ -14,7 +14,7 @@
 #include "pillarfield/solver_plan.h"
 
 /// Accuracy of the estimated forces of ambiguous pillars: recordings with their truth, and errors
-/// of estimates. contact_study_histories.h and contact_study_scenes.h make the recordings.
+/// of estimates. contact_study_histories.h makes the recordings.
 namespace pillarfield::contact_study {
 
 /// Frames of one sensor and the forces that caused them.

@@ -72,14 +72,5 @@ class Learnt(unittest.TestCase):
         self.assertEqual(field.narrow_contacts([history], 0.2, lambda _: True), (4, 3, 2))
 
 
-class Kinds(unittest.TestCase):
-    def test_a_closed_form_is_of_one_kind(self):
-        for family in ("rounded", "cylinder", "cone", "punch"):
-            for motion in ("press", "partial slip", "slide", "spin", "partial turn"):
-                scene = {"family": family, "motion": motion}
-                kinds = [name for name, holds in field.KINDS.items() if holds(scene)]
-                self.assertEqual(len(kinds), 1, f"{family}, {motion}: {kinds}")
-
-
 if __name__ == "__main__":
     unittest.main()

@@ -20,15 +20,13 @@ __all__ = ["join", "solve", "solve_part"]
 
 
 def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = None,
-          copy: bool = False, overwrite: bool = False, attempts: int = 10,
-          **how: Any) -> ForceFile:
+          overwrite: bool = False, attempts: int = 10, **how: Any) -> ForceFile:
     """Solves a recording in parts on the workers of Dask distributed, joins them and opens the result.
 
     client: distributed.Client; its workers see both paths, and have this package
     recording: path of a file of frames
     output: path of the result, .h5; parts that are whole already are not solved again
     parts: number of parts; by default 64, or as many as there can be
-    copy: copy all values into the output; otherwise it refers to its parts
     overwrite: replace an output of any kind
     attempts: how often a part is tried, since workers may die
     how: as in solve_part()
@@ -70,7 +68,7 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
     except BaseException:  # Ctrl+C too: workers finish the parts that they have begun, and no others.
         client.cancel(list(waiting))
         raise
-    join(output, copy=copy, overwrite=overwrite)
+    join(output, overwrite=overwrite)
     return ForceFile(output)
 
 
@@ -103,18 +101,15 @@ def solve_part(recording: Path, output: Path, part: int, parts: int, *,
                             checkpoint_every, warm_up, contacts, device)
 
 
-def join(output: Path, *, copy: bool = False, allow_missing: bool = False, overwrite: bool = False,
-         trust: bool = False) -> int:
-    """Joins the parts in the folder output + '.parts' into one file of forces.
+def join(output: Path, *, overwrite: bool = False, trust: bool = False) -> None:
+    """Joins the parts in the folder output + '.parts', which may be removed then, into one file of forces.
 
-    copy: copy all values, so that the parts may be removed; otherwise the file refers to them
-    allow_missing: join although parts are missing; their frames read as NaN
     overwrite: replace an output of any kind
     trust: the parts come from your own programs, so they are not examined first
 
-    Returns the number of missing parts. Raises Error if parts differ in source or plan.
+    Raises Error if a part is absent or damaged, or if parts differ in source or plan.
     """
-    return _core.join_parts(output, copy, allow_missing, overwrite, trust)
+    _core.join_parts(output, overwrite, trust)
 
 
 def _dask() -> Any:

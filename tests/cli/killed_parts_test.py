@@ -2,6 +2,7 @@
 
 import os
 import random
+import shlex
 import shutil
 import signal
 import subprocess
@@ -26,9 +27,11 @@ class Killed(PartsFolder):
         self.solve(*PLAN, "--contacts", self.serial, output=self.serial)
         self.command = [PROGRAM, "solve", self.recording, "-o", self.output, *map(str, PLAN),
                         "--contacts", self.output, "-q"]
+        self.all_parts = " && ".join(f"{shlex.join(map(str, self.command))} --part {part}/8"
+                                     for part in range(1, 9))
 
     def assert_joined(self):
-        run("join", self.output)
+        run("join", self.output, "--overwrite")
         self.assert_same(self.serial, self.output)
 
     def test_ten_kills(self):
@@ -37,15 +40,15 @@ class Killed(PartsFolder):
         while kills < 10:
             shutil.rmtree(self.parts, ignore_errors=True)
             while True:
-                process = subprocess.Popen([*self.command, "--parts", "8"])
+                process = subprocess.Popen(self.all_parts, shell=True, start_new_session=True)
                 time.sleep(rng.uniform(0.05, 1.2))
-                process.send_signal(signal.SIGKILL)
+                os.killpg(process.pid, signal.SIGKILL)
                 if process.wait(600) != -signal.SIGKILL:
                     break  # It was faster.
                 kills += 1
                 if kills % 4 == 0:
                     break
-            subprocess.run([*self.command, "--parts", "8"], check=True, timeout=600)
+            subprocess.run(self.all_parts, shell=True, check=True, timeout=600)
             self.assert_joined()
 
 

@@ -122,13 +122,12 @@ class Distributed(unittest.TestCase):
             self.assert_serial(interrupted)
         self.with_workers(1, solve)
         before = signal.signal(signal.SIGALRM, signal.default_int_handler)
-        for copy in (False, True):
-            signal.setitimer(signal.ITIMER_REAL, 0.1)
-            with self.assertRaises(KeyboardInterrupt):
-                while True:
-                    pf.distributed.join(interrupted, copy=copy)
-            self.assertEqual(len(pf.open(interrupted)), 400)
-            self.assertFalse((WORK / "interrupted.h5.part").exists())
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        with self.assertRaises(KeyboardInterrupt):
+            while True:
+                pf.distributed.join(interrupted, overwrite=True)
+        self.assertEqual(len(pf.open(interrupted)), 400)
+        self.assertFalse((WORK / "interrupted.h5.part").exists())
         signal.signal(signal.SIGALRM, before)
 
     def test_errors(self):

@@ -15,7 +15,7 @@
 #include "cli/options/completion.h"
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
-#include "cli/parts/share.h"
+#include "cli/part_share.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
@@ -42,7 +42,7 @@ void add_simulate(CLI::App& parent, Work& work) {
 /// Accepts K/N.
 CLI::Validator part_of_all() {
   const auto error_of = [](const std::string& text) -> std::string {
-    return is_part(text) ? ""
+    return part_of(text) ? ""
                          : fmt::format("'{}' is not a part K/N, such as 7/64; N is at most {}",
                                        text, kMostParts);
   };
@@ -51,17 +51,11 @@ CLI::Validator part_of_all() {
 
 void add_parts(CLI::App* command, PartOptions& options) {
   Group group(command, "Parts");
-  CLI::Option* const part =
-      group
-          .text("--part", options.part, "K/N",
-                "Solve only the K-th of N ranges of frames, into the folder OUTPUT.parts; join "
-                "puts the parts together")
-          ->check(part_of_all());
   group
-      .whole("--parts", options.parts, "N",
-             "Solve all of N parts, one after another; those that are whole are left as they are",
-             1, kMostParts)
-      ->excludes(part);
+      .text("--part", options.part, "K/N",
+            "Solve only the K-th of N ranges of frames, into the folder OUTPUT.parts, unless it is "
+            "there; join puts the parts together")
+      ->check(part_of_all());
   CLI::Option* const every = group.whole(
       "--checkpoint-every", options.checkpoint_every, "FRAMES",
       "Begin anew at multiples of this frame what is carried from frame to frame, so that parts "
@@ -108,7 +102,7 @@ void add_solve(CLI::App& parent, Work& work) {
       .number("--contact-reach", found.reach_mm, "MM",
               "Largest movement of a contact between frames [10]")
       ->needs(file);
-  add_parts(command, options->parts);
+  add_parts(command, options->part);
   add_device(command, options->device);
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
@@ -123,12 +117,7 @@ void add_join(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   input.file("OUTPUT", options->output,
              "Output of solve (.h5), whose parts lie in the folder OUTPUT.parts");
-  input.flag("--allow-missing", options->allow_missing,
-             "Join although parts are missing; their frames read as NaN");
   add_trust(command, options->read);
-  Group(command, "Output")
-      .flag("--copy", options->copy,
-            "Copy all values, so that the parts may be removed [refer to them]");
   add_overwrite(command, options->replace);
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
@@ -143,8 +132,6 @@ void add_compare(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   input.file("FORCES", options->forces, "Force fields of solve (.h5)");
   input.file("RECORDING", options->recording, "Recording that they were solved from, with truth");
-  input.flag("--allow-missing", options->allow_missing,
-             "Leave out the frames of missing parts of a joined file");
   add_trust(command, options->read);
   add_general(command, *options, "Print the table as JSON", kQuietReport);
 }

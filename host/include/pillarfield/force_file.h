@@ -63,10 +63,10 @@ void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& inf
                                  const ReadOptions& options = {});
 
 /// Reads files of the format "pillarfield-forces" (docs/formats.md), including those of a killed
-/// writer and those that join_parts() wrote. Parts are opened when a frame of theirs is read.
+/// writer.
 class ForceFileReader {
  public:
-  /// `options` hold for its parts too. Throws Error if the file is of another format or damaged.
+  /// Throws Error if the file is of another format or damaged.
   explicit ForceFileReader(const std::filesystem::path& path, const ReadOptions& options = {});
   ~ForceFileReader();
   ForceFileReader(ForceFileReader&&) noexcept;
@@ -76,16 +76,6 @@ class ForceFileReader {
   [[nodiscard]] std::uint64_t frames() const;  ///< number of frames
   /// Warnings about the file, one sentence each.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
-
-  /// The parts of a joined file whose files are absent. Their frames read as NaN with
-  /// status::kInconsistent.
-  [[nodiscard]] const std::vector<LostPart>& lost_parts() const;
-
-  /// The number of parts of a joined file; 0 for another file.
-  [[nodiscard]] std::uint64_t parts() const;
-
-  /// Opens every part of a joined file and returns those that are absent or cannot be used.
-  [[nodiscard]] std::vector<LostPart> examine_parts(const StepProgress& progress = {}) const;
 
   /// Reads a frame, with its uncertainty if the file has it, and returns its time, s.
   double read(std::uint64_t index, ForceField& forces) const;

@@ -59,45 +59,22 @@ void check(const ForcePart& part, const std::string& where);
 /// checkpoints: array jobs that repeat some tasks count them anew, and would replace good parts.
 void require_same_division(const std::filesystem::path& file, const ForcePart& part);
 
-/// A part whose file is absent or cannot be used.
-struct LostPart {
-  std::uint64_t index = 0;
-  FrameRange frames;
-  std::string reason;
-};
-
-/// "part 7 (frames 600 to 699)".
-[[nodiscard]] std::string name_of(const LostPart& part);
-
-/// A sentence for each lost part, "It lacks part 7 (frames 600 to 699): REASON.", and one for all
-/// beyond the first ten.
-[[nodiscard]] std::vector<std::string> sentences_about(const std::vector<LostPart>& lost);
-
 /// Called often during a long work on parts, with the steps done so far and all of them; both may
 /// stay as they were. What it throws ends the work.
 using StepProgress = std::function<void(std::uint64_t done, std::uint64_t all)>;
 
 struct JoinOptions {
-  bool copy = false;        ///< copy all values, so that the parts may be removed
-  bool allow_lost = false;  ///< join although parts are lost
   Replace replace = Replace::results;
   ReadOptions read;  ///< of the parts
   StepProgress progress = {};
 };
 
-/// What join_parts() found.
-struct JoinedParts {
-  std::uint64_t frames = 0;
-  std::uint64_t parts = 0;
-  std::vector<LostPart> lost;
-};
-
-/// Writes `output` from the parts of its folder `output` + ".parts": an HDF5 file of forces whose
-/// planes are virtual datasets over the parts, or with JoinOptions::copy a file like any other.
-/// Frames of lost parts have NaN forces, NaN times and status::kInconsistent.
+/// Writes `output`, an HDF5 file of forces with the bits of the serial solve, from the parts in its
+/// folder `output` + ".parts", which may be removed then. Returns what the parts say of all of
+/// them.
 ///
-/// Throws Error if there are no parts, if they differ in source, plan, calibration or count, unless
-/// JoinOptions::allow_lost if one is lost, or if lost ones claim far more than the others hold.
-JoinedParts join_parts(const std::filesystem::path& output, const JoinOptions& options = {});
+/// Throws Error if a part is absent, damaged or incomplete, or if they differ in source, plan,
+/// calibration or count.
+ForcePart join_parts(const std::filesystem::path& output, const JoinOptions& options = {});
 
 }  // namespace pillarfield

@@ -160,22 +160,6 @@ void ContactTables::append(const hdf5::File& part, std::uint64_t first) {
   if (!ids.empty()) largest_id_ += std::ranges::max(ids);
 }
 
-void ContactTables::append_lost(std::uint64_t frames) {
-  ContactQuantities unknown;
-  for (const auto& column : columns_) {
-    if (column.kind == ColumnKind::number) {
-      column.set(unknown, std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-  for (std::uint64_t i = 0; i < frames; ++i) {
-    for (const Hdf5Table* table : {&contacts_, &ended_}) {
-      patch_.put(static_cast<double>(table->rows()));
-      patch_.put(0);
-    }
-    put_row(columns_, unknown, patch_);
-  }
-}
-
 void ContactTables::write() {
   contacts_.write();
   ended_.write();

@@ -65,8 +65,6 @@ class ContactTables {
   /// largest one so far.
   void append(const hdf5::File& part, std::uint64_t first);
 
-  /// Appends frames without values.
-  void append_lost(std::uint64_t frames);
   [[nodiscard]] std::uint64_t frames() const { return patch_.rows(); }
   void write();
   void close();

@@ -28,6 +28,19 @@ std::uint64_t read_count(const hdf5::File& file, hid_t group, const char* name) 
               hdf5::kDamaged);
 }
 
+void write_part(const hdf5::File& file, const ForcePart& part) {
+  const hdf5::Handle group = hdf5::create_group(file, force_format::kPart);
+  const auto write = [&](const char* name, std::uint64_t value) {
+    hdf5::write_attribute(file, group.get(), name, static_cast<double>(value));
+  };
+  write(force_format::kIndex, part.index);
+  write(force_format::kCount, part.count);
+  write(force_format::kFrames, part.frames);
+  write(force_format::kCheckpointEvery, part.checkpoints.every);
+  write(force_format::kWarmUp, part.checkpoints.warm_up);
+  hdf5::write_attribute(file, group.get(), force_format::kFingerprint, part.fingerprint);
+}
+
 }  // namespace
 
 void write_info(const hdf5::File& file, const ForceFileInfo& info,
@@ -46,30 +59,16 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
   hdf5::write_attribute(file, root, force_format::kProgramVersion, std::string(kVersion));
   hdf5::write_attribute(file, root, force_format::kPillarPitch, info.pillar_pitch_mm);
   write_effects(file, force_format::kEffects, info.effects);
-  if (info.part) write_part(file, force_format::kPart, *info.part);
+  if (info.part) write_part(file, *info.part);
   if (!info.surface) return;
   const PillarLayout pillars = {info.rows, info.cols, info.pillar_pitch_mm};
   check(*info.surface, pillars, path.c_str());
   write_surface(file, *info.surface, pillars);
 }
 
-hdf5::Handle write_part(const hdf5::File& file, const char* place, const ForcePart& part) {
-  hdf5::Handle group = hdf5::create_group(file, place);
-  const auto write = [&](const char* name, std::uint64_t value) {
-    hdf5::write_attribute(file, group.get(), name, static_cast<double>(value));
-  };
-  write(force_format::kIndex, part.index);
-  write(force_format::kCount, part.count);
-  write(force_format::kFrames, part.frames);
-  write(force_format::kCheckpointEvery, part.checkpoints.every);
-  write(force_format::kWarmUp, part.checkpoints.warm_up);
-  hdf5::write_attribute(file, group.get(), force_format::kFingerprint, part.fingerprint);
-  return group;
-}
-
-std::optional<ForcePart> read_part(const hdf5::File& file, const char* place) {
-  if (!hdf5::exists(file, place)) return std::nullopt;
-  const hdf5::Handle group = hdf5::open_object(file, place);
+std::optional<ForcePart> read_part(const hdf5::File& file) {
+  if (!hdf5::exists(file, force_format::kPart)) return std::nullopt;
+  const hdf5::Handle group = hdf5::open_object(file, force_format::kPart);
   const auto count = [&](const char* name) { return read_count(file, group.get(), name); };
   ForcePart part;
   part.index = count(force_format::kIndex);

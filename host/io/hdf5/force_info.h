@@ -12,11 +12,8 @@ namespace pillarfield {
 void write_info(const hdf5::File& file, const ForceFileInfo& info,
                 const std::filesystem::path& path);
 
-/// Writes the group `place`, kPart or kParts, and returns it.
-hdf5::Handle write_part(const hdf5::File& file, const char* place, const ForcePart& part);
-
-/// Reads the group `place`; unset if it is absent. Throws Error if it is incomplete or out of
+/// What a part says of itself; unset for another file. Throws Error if it is incomplete or out of
 /// range.
-[[nodiscard]] std::optional<ForcePart> read_part(const hdf5::File& file, const char* place);
+[[nodiscard]] std::optional<ForcePart> read_part(const hdf5::File& file);
 
 }  // namespace pillarfield

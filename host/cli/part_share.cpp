@@ -1,13 +1,9 @@
-#include "cli/parts/share.h"
+#include "cli/part_share.h"
 
 #include <charconv>
-#include <numeric>
-#include <utility>
 
 namespace pillarfield::cli {
-namespace {
 
-/// K and N of "K/N".
 std::optional<std::pair<std::uint64_t, std::uint64_t>> part_of(const std::string& text) {
   std::uint64_t index = 0;
   std::uint64_t count = 0;
@@ -20,24 +16,9 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> part_of(const std::string
   return fits ? std::optional(std::pair(index, count)) : std::nullopt;
 }
 
-}  // namespace
-
-bool is_part(const std::string& text) { return part_of(text).has_value(); }
-
 Checkpoints checkpoints_of(const PartOptions& options) {
   const std::uint64_t every = options.checkpoint_every.value_or(0);
   return {every, options.warm_up.value_or(every / 10)};
-}
-
-std::optional<PartShare> share_of(const PartOptions& options) {
-  if (!options.part.empty()) {
-    const auto [index, count] = *part_of(options.part);
-    return PartShare{count, {index}};
-  }
-  if (!options.parts) return std::nullopt;
-  PartShare share{*options.parts, std::vector<std::uint64_t>(*options.parts)};
-  std::iota(share.indices.begin(), share.indices.end(), std::uint64_t{1});
-  return share;
 }
 
 }  // namespace pillarfield::cli
