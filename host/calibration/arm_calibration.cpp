@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/number_text.h"
 #include "calibration/mean_frame.h"
+#include "calibration/steps.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
@@ -187,6 +189,48 @@ ArmResult calibrate_arm(const SkinCalibration& before, std::span<const FrameStat
   if (result.found) arm = result.arm_mm;
   require_untouched_idle(before, result.calibration, "arm");
   return result;
+}
+
+namespace {
+
+SkinCalibration run_arm(StepWork& work) {
+  const ArmResult result = calibrate_arm(work.before, work.statistics());
+  StepReport& report = work.report;
+  report.headline = fmt::format("Calibrated with {} at {}, {}", counted(result.pillars, "pillar"),
+                                counted(result.places, "place"), counted(work.frames(), "frame"));
+  report.facts = {{"pillars", result.pillars},
+                  {"places", result.places},
+                  {"shear_before_n", result.shear_before_n},
+                  {"shear_after_n", result.shear_after_n}};
+  report.measure("left", result.shear_after_n / result.shear_before_n, "left",
+                 "% of the shear that the pillars read");
+  report.facts["stored"] = result.found;
+  if (result.found) {
+    report.measure("arm_mm", result.arm_mm, "arm",
+                   fmt::format("mm ± {:.1f} %", 100 * result.standard_error));
+    report.facts["standard_error"] = result.standard_error;
+  } else {
+    report.notes.push_back(
+        fmt::format("No off-centre pressure within three standard errors: an arm is longer than "
+                    "{:.3g} mm; none is stored",
+                    result.longest_mm));
+  }
+  work.parameters =
+      fmt::format("places = {}, standard_error = {:.3g}", result.places, result.standard_error);
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind arm_step() {
+  StepKind step = {
+      "arm", "Arm of off-centre pressure, from bodies pressed straight down.", "PRESSED",
+      "Frames of bodies at rest that press straight down, one file per placement", run_arm};
+  step.examples = {
+      kSimulateIdle,       kSimulatePressed,
+      kTareIdle,           "simulate scenes/leaning_skin_pressed.toml --uncalibrated -o balls.h5",
+      kEquilibratePressed, "calibrate arm balls.h5 --calibration equal.h5 -o arm.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

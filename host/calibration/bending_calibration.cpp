@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_text.h"
 #include "calibration/linear_readings.h"
 #include "calibration/normal_equations.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -180,6 +182,63 @@ BendingResult calibrate_bending(const SkinCalibration& before, std::span<const B
   after.bend_y = std::move(sums.patterns[1]);
   after.bend_xy = std::move(sums.patterns[2]);
   return result;
+}
+
+namespace {
+
+void report_bending(StepReport& report, const BendingResult& result) {
+  constexpr const char* kPatterns[] = {"bend_x", "bend_y", "bend_xy"};
+  for (std::size_t i = 0; i < std::size(kPatterns); ++i) {
+    report.measure(
+        fmt::format("{}_rms", kPatterns[i]).c_str(), result.rms[i], kPatterns[i],
+        fmt::format("counts·mm, RMS of the sensels, each ± {:.2f}", result.standard_error[i]));
+  }
+  report.facts["standard_errors"] = result.standard_error;
+  report.measure("residual_before", result.residual_before, "before",
+                 "counts, RMS change of tares");
+  report.measure("residual_after", result.residual_after, "after", "counts, RMS left");
+  report.facts["stored"] = result.found;
+  if (!result.found) report.notes.emplace_back("Within the noise: none is stored");
+}
+
+SkinCalibration run_bending(StepWork& work) {
+  const std::vector<double> radii_mm = work.numbers("radius-mm");
+  const std::vector<double> axes_deg = work.numbers("axis-deg");
+  const std::vector<FrameStatistics> statistics = work.statistics(WireUse::unloaded);
+  std::vector<BentSkin> shapes;
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    shapes.push_back({statistics[i], curvature_of_cylinder(radii_mm[i], axes_deg[i])});
+  }
+  const BendingResult result = calibrate_bending(work.before, shapes);
+  work.report.headline = fmt::format("Bent around {}, {}", counted(shapes.size(), "cylinder"),
+                                     counted(work.frames(), "frame"));
+  report_bending(work.report, result);
+  work.parameters = fmt::format("radii_mm = {}, axes_deg = {}", fmt::join(radii_mm, " "),
+                                fmt::join(axes_deg, " "));
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind bending_step() {
+  StepKind step = {"bending",
+                   "Change of the tares with curvature, from the unloaded skin on known cylinders.",
+                   "BENT", "Frames of the unloaded skin, one file per cylinder", run_bending};
+  step.arguments = {StepArgument::per_file(
+                        "radius-mm", "R1,R2,...",
+                        "Radius of each cylinder, in order; below zero inside of one", {-1e6, 1e6}),
+                    StepArgument::per_file(
+                        "axis-deg", "A1,A2,...",
+                        "Angle of each axis from +x, counter-clockwise, in order", {-360, 360})};
+  step.arguments.front().is_nonzero = true;
+  step.examples = {kSimulateIdle,
+                   kTareIdle,
+                   "simulate scenes/bent_skin_x.toml --uncalibrated -o x.h5",
+                   "simulate scenes/bent_skin_y.toml --uncalibrated -o y.h5",
+                   "simulate scenes/bent_skin_xy.toml --uncalibrated -o xy.h5",
+                   "calibrate bending x.h5 y.h5 xy.h5 --radius-mm 60,60,60 --axis-deg 90,0,45 "
+                   "--calibration tared.h5 -o bending.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/finding_list.h"
 #include "calibration/held_out.h"
 #include "calibration/leak_sum.h"
 #include "calibration/response_fit.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"
@@ -298,6 +300,96 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   require_untouched_idle(before, after, "equilibrate");
   result.findings = found.findings();
   return result;
+}
+
+namespace {
+
+/// Relative shear under uniform pressure above which the gains are worth a warning.
+constexpr double kMuchShear = 0.03;
+
+const char* name_of(ResponseModel model) {
+  return model == ResponseModel::curve ? "curve" : "linear";
+}
+
+void add_held_out(StepReport& report, const char* fact, const std::optional<double>& residual,
+                  const char* what) {
+  if (!residual) return;
+  report.measure(fact, *residual, "held out",
+                 fmt::format("% residual of {} on pressures that the fit left out", what));
+}
+
+void report_equilibration(StepReport& report, const EquilibrationResult& result) {
+  report.facts["levels"] = result.levels;
+  report.measure("counts_per_newton", *result.calibration.counts_per_newton, "sensitivity",
+                 "counts per newton and pillar");
+  report.measure("gain_spread", result.gain_spread, "gain", "% standard deviation, mean 1");
+  report.measure("unevenness", result.unevenness, "unevenness",
+                 "% from pillar to pillar, beyond the spread of their sensels");
+  report.measure("shear", result.shear, "shear", "% of the normal force");
+  if (result.levels > 1) {
+    report.measure("dead_zone_counts", result.dead_zone_counts, "dead zone", "counts, median");
+  }
+  if (result.levels > 2) {
+    report.measure("nonlinearity", result.nonlinearity, "nonlinearity",
+                   "% of the response, residual of the fits");
+  }
+  report.facts["model"] = name_of(result.model);
+  add_held_out(report, "held_out_linear", result.held_out_linear, "straight lines");
+  add_held_out(report, "held_out_curve", result.held_out_curve, "a common curve");
+  report.add(result.calibration, result.findings);
+  report.notes.push_back(fmt::format("Model: {}", name_of(result.model)));
+  report.add_residual(result.calibration.planes.effects);
+}
+
+SkinCalibration run_equilibrate(StepWork& work) {
+  EquilibrationOptions options;
+  options.most_unevenness = work.number("max-unevenness", options.most_unevenness);
+  if (const auto model = work.word("model")) {
+    options.model = *model == "curve" ? ResponseModel::curve : ResponseModel::linear;
+  }
+  const std::vector<double> pressures_kpa = work.numbers("pressure-kpa");
+  const std::vector<FrameStatistics> statistics = work.statistics();
+  std::vector<UniformPress> presses;
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    presses.push_back({statistics[i], pressures_kpa[i]});
+  }
+  const EquilibrationResult result = equilibrate(work.before, presses, options);
+  work.report.headline = fmt::format(
+      "Equilibrated {} x {} sensels from {} at {:g} kPa", result.calibration.rows,
+      result.calibration.cols, counted(work.frames(), "frame"), fmt::join(pressures_kpa, ", "));
+  report_equilibration(work.report, result);
+  if (result.shear > kMuchShear) {
+    work.report.warnings.push_back(fmt::format(
+        "{}: shear is {:.1f} % of the normal force and biases the gains; press without shear",
+        work.files.back().name(), 100 * result.shear));
+  }
+  work.parameters =
+      fmt::format("pressures_kpa = {}, most_unevenness = {}, model = {}",
+                  fmt::join(pressures_kpa, " "), options.most_unevenness, name_of(result.model));
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind equilibrate_step() {
+  StepKind step = {
+      "equilibrate",
+      "Gains, and from several pressures dead zones and a response curve, under uniform pressure.",
+      "UNIFORM", "Frames under uniform pressure, one file per pressure", run_equilibrate};
+  step.arguments = {
+      StepArgument::per_file("pressure-kpa", "P1,P2,...", "Pressure of each file, in order",
+                             {1e-6, 1e6}),
+      StepArgument::number("max-unevenness", "RATIO",
+                           "Largest variation of the pressure from pillar to pillar [0.1]",
+                           {0, 1e6}),
+      StepArgument::word("model", {"linear", "curve"},
+                         "linear: a straight line for each sensel; curve: a response that all "
+                         "share, from two pressures or more [the better one on held-out "
+                         "pressures]")};
+  step.examples = {kSimulateIdle, kSimulatePressed, kTareIdle, kEquilibratePressed,
+                   "calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --model linear "
+                   "--calibration tared.h5 -o lines.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

@@ -8,7 +8,9 @@
 #include <limits>
 #include <utility>
 
+#include "base/number_text.h"
 #include "calibration/finding_list.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/pillar_sensels.h"
@@ -188,6 +190,58 @@ FaultResult FaultFinder::result() const {
   result.findings = found.findings();
   result.frames = statistics_.frames();
   return result;
+}
+
+namespace {
+
+SkinCalibration run_faults(StepWork& work) {
+  FaultOptions options;
+  options.least_frames =
+      static_cast<std::uint32_t>(work.number("min-frames", options.least_frames));
+  options.still_factor = work.number("still", options.still_factor);
+  options.moving_factor = work.number("moving", options.moving_factor);
+  const StepFrames& first = work.files.front();
+  const WireCorrection correct = work.correction(first, WireUse::loaded);
+  FaultFinder finder(first.name(), correct.skin(), correct.type(), work.before, options);
+  for (const StepFrames& file : work.files) {
+    work.for_each(file, [&](const FrameView& frame, double) { finder.add(frame); });
+  }
+  const FaultResult result = finder.result();
+  const SkinCalibration& calibration = result.calibration;
+  const std::size_t sensels = std::size_t{calibration.rows} * calibration.cols;
+  StepReport& report = work.report;
+  report.headline = fmt::format("Tested {} x {} sensels with {}", calibration.rows,
+                                calibration.cols, counted(result.frames, "frame"));
+  report.add(calibration, result.findings);
+  report.facts["untested"] = result.untested;
+  report.notes.push_back(
+      fmt::format("Untested: {} of {} sensels, never predicted to change; --json lists them",
+                  grouped(result.untested.size()), grouped(sensels)));
+  work.parameters = fmt::format("least_frames = {}, still_factor = {}, moving_factor = {}",
+                                options.least_frames, options.still_factor, options.moving_factor);
+  return calibration;
+}
+
+}  // namespace
+
+StepKind faults_step() {
+  StepKind step = {"faults", "Find dead, stuck and saturated sensels by parity, and mask them.",
+                   "FRAMES", "Frames in which all of the skin is pressed", run_faults};
+  step.arguments = {
+      StepArgument::whole("min-frames",
+                          "Smallest number of frames in which parity predicts a sensel [30]",
+                          {2, 1e9}),
+      StepArgument::number("still", "RATIO",
+                           "Largest range of a constant reading, in multiples of its noise [10]",
+                           {1e-6, 1e6}),
+      StepArgument::number(
+          "moving", "RATIO",
+          "Smallest deviation of a changing prediction, in multiples of its noise [5]",
+          {1e-6, 1e6})};
+  step.examples = {kSimulateIdle,
+                   "simulate scenes/new_skin_rolled.toml --uncalibrated -o rolled.h5", kTareIdle,
+                   "calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

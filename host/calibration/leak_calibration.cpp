@@ -8,11 +8,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/leak_fit.h"
 #include "calibration/leak_sum.h"
 #include "calibration/linear_readings.h"
 #include "calibration/normal_equations.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"
@@ -362,6 +364,77 @@ void rescale_for_leaks(SkinCalibration& calibration, const Skin& skin,
     const double own = leak_sum(effects, skin, i) / leak_sum(before, skin, i);
     calibration.planes.gain[i] *= static_cast<float>(own / inner);
   }
+}
+
+namespace {
+
+LeakResult find_leaks(const StepWork& work) {
+  LeakFinder finder(work.correction(work.files.front(), WireUse::loaded).skin(), work.before);
+  for (const StepFrames& file : work.files) {
+    work.for_each(file, [&](const FrameView& frame, double) { finder.add(frame); });
+  }
+  return finder.result();
+}
+
+void report_leaks(StepReport& report, const LeakResult& result) {
+  const auto& [sensel, pillar] = result.leak;
+  const auto& [sensel_error, pillar_error] = result.standard_error;
+  const SensorEffects& effects = result.calibration.planes.effects;
+  const auto unit = [](double error) { return fmt::format("% ± {:.3f}", 100 * error); };
+  if (result.inside_known) {
+    report.measure("leak_inside", sensel.inside, "inside", unit(sensel_error.inside));
+  } else {
+    report.facts["leak_inside"] = sensel.inside;
+    report.notes.emplace_back(
+        "Inside: unknown, since no pressed pillar has an inactive sensel; pull the tip sideways");
+  }
+  report.measure("leak_across", sensel.across, "across", unit(sensel_error.across));
+  report.measure("pillar_leak_edge", pillar.edge, "pillar edge", unit(pillar_error.edge));
+  report.measure("pillar_leak_corner", pillar.corner, "corner", unit(pillar_error.corner));
+  report.facts.update({{"leak_inside_error", sensel_error.inside},
+                       {"leak_across_error", sensel_error.across},
+                       {"pillar_leak_edge_error", pillar_error.edge},
+                       {"pillar_leak_corner_error", pillar_error.corner},
+                       {"inside_known", result.inside_known},
+                       {"presses", result.presses},
+                       {"left_out", result.left_out},
+                       {"places", result.places}});
+  report.measure("residual_before", result.residual_before, "before", "% read by unloaded sensels");
+  report.measure("residual_after", result.residual_after, "after", "% left");
+  report.facts["stored_between_sensels"] = effects.sensel_leak.has_value();
+  report.facts["stored_between_pillars"] = effects.pillar_leak.has_value();
+  if (!effects.sensel_leak)
+    report.notes.emplace_back("Between sensels: none within 3 standard errors");
+  if (!effects.pillar_leak)
+    report.notes.emplace_back("Between pillars: none within 3 standard errors");
+  if (const auto& k = result.calibration.counts_per_newton) {
+    report.measure("counts_per_newton", *k, "sensitivity", "counts per newton and pillar");
+  }
+}
+
+SkinCalibration run_leak(StepWork& work) {
+  const LeakResult result = find_leaks(work);
+  work.report.headline = fmt::format("Found leaks from presses: {}, on {}", grouped(result.presses),
+                                     counted(result.places, "pillar"));
+  report_leaks(work.report, result);
+  work.parameters = fmt::format("presses = {}, places = {}, left_out = {}", result.presses,
+                                result.places, result.left_out);
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind leak_step() {
+  StepKind step = {"leak",
+                   "Leaks between sensels and between pillars, from a fine tip on single pillars.",
+                   "TIP", "Frames in which a fine tip presses one pillar after another", run_leak};
+  step.examples = {kSimulateIdle,
+                   kTareIdle,
+                   "simulate scenes/leaking_skin_pressed.toml --uncalibrated -o pressed.h5",
+                   "simulate scenes/leaking_skin_tip.toml --uncalibrated -o tip.h5",
+                   kEquilibratePressed,
+                   "calibrate leak tip.h5 --calibration equal.h5 -o leak.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

@@ -7,8 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/number_text.h"
 #include "calibration/golden_section.h"
 #include "calibration/mean_frame.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
@@ -249,6 +251,87 @@ LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLo
   store_misfit(result, model == LoadModel::power ? 2 : 1);
   require_untouched_idle(before, result.calibration, "load");
   return result;
+}
+
+namespace {
+
+/// Largest fraction of a load on ambiguous pillars without a warning.
+constexpr double kMuchAmbiguous = 0.05;
+
+void warn_of_loads(StepWork& work, const std::vector<LoadResidual>& loads) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const std::string file = work.files[i].name();
+    if (loads[i].ambiguous_share > kMuchAmbiguous) {
+      work.report.warnings.push_back(fmt::format(
+          "{}: ambiguous pillars bear {:.0f} % of the load; press flat and without shear", file,
+          100 * loads[i].ambiguous_share));
+    }
+    if (loads[i].saturated > 0) {
+      work.report.warnings.push_back(
+          fmt::format("{}: {} pillars have a saturated sensel, which hides force; press less", file,
+                      loads[i].saturated));
+    }
+  }
+}
+
+void report_load(StepReport& report, const LoadResult& result) {
+  report.measure(
+      "counts_per_newton", *result.calibration.counts_per_newton, "sensitivity",
+      fmt::format("counts per newton and pillar, {:.2f} to {:.2f} with ambiguous pillars",
+                  result.least_counts_per_newton, result.most_counts_per_newton));
+  report.facts["least_counts_per_newton"] = result.least_counts_per_newton;
+  report.facts["most_counts_per_newton"] = result.most_counts_per_newton;
+  report.facts["misfit"] = result.misfit;
+  if (const auto& law = result.calibration.power_law) {
+    report.measure("power_law_exponent", law->exponent, "exponent", "of the power law");
+    report.measure("power_law_reference_counts", law->reference_counts, "reference",
+                   "counts, of the power law");
+  }
+  auto& loads = report.facts["loads"] = nlohmann::ordered_json::array();
+  for (const LoadResidual& load : result.loads) {
+    loads.push_back({{"load_n", load.load_n},
+                     {"solved_n", load.solved_n},
+                     {"ambiguous_share", load.ambiguous_share},
+                     {"saturated", load.saturated}});
+    report.notes.push_back(fmt::format(
+        "  {:8.3f} N is solved as {:8.3f} N ({:+.2f} %), {:.1f} % of it on ambiguous pillars",
+        load.load_n, load.solved_n, 100 * (load.solved_n / load.load_n - 1),
+        100 * load.ambiguous_share));
+  }
+  report.add_residual(result.calibration.planes.effects);
+}
+
+SkinCalibration run_load(StepWork& work) {
+  const std::vector<double> loads_n = work.numbers("load-n");
+  const std::vector<FrameStatistics> statistics = work.statistics();
+  std::vector<KnownLoad> known;
+  for (std::size_t i = 0; i < statistics.size(); ++i) known.push_back({statistics[i], loads_n[i]});
+  const std::string model = work.word("model").value_or("linear");
+  const LoadResult result =
+      calibrate_load(work.before, known, model == "power" ? LoadModel::power : LoadModel::linear);
+  work.report.headline = fmt::format("Calibrated with {}, {}", counted(known.size(), "load"),
+                                     counted(work.frames(), "frame"));
+  work.report.facts["model"] = model;
+  report_load(work.report, result);
+  warn_of_loads(work, result.loads);
+  work.parameters = fmt::format("loads_n = {}, model = {}", fmt::join(loads_n, " "), model);
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind load_step() {
+  StepKind step = {"load", "Counts per newton, and a power law, from known loads.", "FRAMES",
+                   "Frames under a constant load, one file per load", run_load};
+  step.arguments = {
+      StepArgument::per_file("load-n", "L1,L2,...", "Normal load of each file, in order",
+                             {1e-6, 1e6}),
+      StepArgument::word("model", {"linear", "power"},
+                         "linear: proportional; power: power law, from at least two loads "
+                         "[linear]")};
+  step.examples = {kSimulateIdle, kSimulatePressed, kTareIdle,
+                   "calibrate load pressed.h5 --load-n 200 --calibration tared.h5 -o loaded.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

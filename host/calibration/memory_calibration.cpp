@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/leak_sum.h"
 #include "calibration/linear_readings.h"
 #include "calibration/memory_fit.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
 
@@ -268,6 +270,75 @@ MemoryResult MemoryFinder::result() const {
   store(fit, pieces, result.residual_after, range, result.calibration);
   require_untouched_idle(calibration_, result.calibration, "memory");
   return result;
+}
+
+namespace {
+
+MemoryResult find_memory(const StepWork& work) {
+  MemoryFinder finder(work.correction(work.files.front(), WireUse::loaded).skin(), work.before);
+  for (std::size_t i = 0; i < work.files.size(); ++i) {
+    const PressureLog& pressure = work.values.logs[i];
+    finder.begin();
+    work.for_each(work.files[i], [&](const FrameView& frame, double time_s) {
+      finder.add(frame, time_s, pressure.at(time_s));
+    });
+  }
+  return finder.result();
+}
+
+void report_memory(StepReport& report, const MemoryResult& result) {
+  report.measure("hysteresis", result.hysteresis, "hysteresis", "% of the range, at half of it");
+  report.measure("creep_per_decade", result.creep_per_decade, "creep", "% in the last decade");
+  report.facts["range_counts"] = result.range_counts;
+  report.measure("dead_zone_counts", result.dead_zone_counts, "dead zone", "counts");
+  report.facts["curved"] = result.curved;
+  report.measure("residual_before", result.residual_before, "before",
+                 "% of the range, RMS without memory");
+  report.measure("residual_after", result.residual_after, "after", "% of the range, RMS left");
+  report.facts["stored"] = result.found;
+  auto& plays = report.facts["plays"] = nlohmann::ordered_json::array();
+  for (const Play& play : result.memory.plays) plays.push_back({play.width_counts, play.weight});
+  auto& creep = report.facts["creep"] = nlohmann::ordered_json::array();
+  for (const Creep& state : result.memory.creep) {
+    creep.push_back({state.time_s, state.weight});
+    report.notes.push_back(
+        fmt::format("  creep of {:.2f} % with {:.3g} s", 100 * state.weight, state.time_s));
+  }
+  if (!result.found) report.notes.emplace_back("The readings show no memory: none is stored");
+  if (result.found && result.curved) report.notes.emplace_back("The response curve is fitted anew");
+  report.add_residual(result.calibration.planes.effects);
+}
+
+SkinCalibration run_memory(StepWork& work) {
+  const MemoryResult result = find_memory(work);
+  work.report.headline = fmt::format("Found hysteresis and creep from {} up to {:.1f} counts",
+                                     counted(work.frames(), "frame"), result.range_counts);
+  report_memory(work.report, result);
+  work.parameters = fmt::format("hysteresis = {:.4f}, creep_per_decade = {:.4f}, residual = {:.4f}",
+                                result.hysteresis, result.creep_per_decade, result.residual_after);
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind memory_step() {
+  StepKind step = {
+      "memory", "Hysteresis and creep, under uniform pressure that rises, rests and falls.",
+      "CYCLES", "Frames from a rested skin on, under uniform pressure that changes", run_memory};
+  step.uses_times = true;
+  step.arguments = {StepArgument::per_file(
+      "pressure", "FILE",
+      "Log of the pressure of each file, in order: lines of time (s), pressure (kPa)", {})};
+  step.arguments.front().kind = StepArgument::Kind::log;
+  step.examples = {kSimulateIdle,
+                   kTareIdle,
+                   "simulate scenes/creeping_skin_pressed.toml --uncalibrated -o pressed.h5",
+                   "simulate scenes/creeping_skin_cycles.toml --uncalibrated -o cycles.h5",
+                   "calibrate equilibrate pressed.h5 --pressure-kpa 187.5 --calibration tared.h5 "
+                   "-o equal.h5",
+                   "calibrate memory cycles.h5 --pressure scenes/creeping_skin_cycles.csv "
+                   "--calibration equal.h5 -o memory.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <string>
 
+#include "base/number_text.h"
 #include "calibration/mean_frame.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
@@ -167,6 +169,85 @@ ShearResult calibrate_shear(const SkinCalibration& before, std::span<const Known
   if (is_one(for_x) && is_one(for_y)) stored.reset();
   require_untouched_idle(before, result.calibration, "shear");
   return result;
+}
+
+namespace {
+
+/// Largest fraction of the normal force on ambiguous pillars without a warning.
+constexpr double kMuchAmbiguousShear = 0.05;
+
+void report_shears(StepWork& work, const std::vector<KnownShear>& known,
+                   const std::vector<ShearSum>& sums) {
+  auto& loads = work.report.facts["loads"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    loads.push_back({{"shear_x_n", known[i].shear_x_n},
+                     {"shear_y_n", known[i].shear_y_n},
+                     {"solved_x_n", sums[i].shear_x_n},
+                     {"solved_y_n", sums[i].shear_y_n},
+                     {"ambiguous_share", sums[i].ambiguous_share}});
+    work.report.notes.push_back(fmt::format("  ({:.3f}, {:.3f}) N is solved as ({:.3f}, {:.3f}) N",
+                                            known[i].shear_x_n, known[i].shear_y_n,
+                                            sums[i].shear_x_n, sums[i].shear_y_n));
+    if (sums[i].ambiguous_share <= kMuchAmbiguousShear) continue;
+    work.report.warnings.push_back(
+        fmt::format("{}: ambiguous pillars bear {:.0f} % of the load; press harder or pull less",
+                    work.files[i].name(), 100 * sums[i].ambiguous_share));
+  }
+}
+
+SkinCalibration run_shear(StepWork& work) {
+  const std::vector<double> shears_n = work.numbers("shear-n");
+  const std::vector<double> loads_n = work.numbers("load-n");
+  const std::vector<FrameStatistics> statistics = work.statistics();
+  std::vector<KnownShear> known;
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    known.push_back({statistics[i], shears_n[2 * i], shears_n[2 * i + 1]});
+    if (!loads_n.empty()) known.back().normal_n = loads_n[i];
+  }
+  const ShearResult result = calibrate_shear(work.before, known);
+  const auto& [x, y] = result.coefficient;
+  const auto& [error_x, error_y] = result.standard_error;
+  const bool stored = result.calibration.planes.effects.shear_coefficient.has_value();
+  StepReport& report = work.report;
+  report.headline = fmt::format("Calibrated with {}, {}", counted(known.size(), "tangential load"),
+                                counted(work.frames(), "frame"));
+  report.measure("shear_coefficient_x", x, "c_x", fmt::format("± {:.4f}", error_x));
+  report.measure("shear_coefficient_y", y, "c_y", fmt::format("± {:.4f}", error_y));
+  report.facts["standard_error_x"] = error_x;
+  report.facts["standard_error_y"] = error_y;
+  report.facts["stored"] = stored;
+  if (!stored) report.notes.emplace_back("Within two standard errors of 1: none is stored");
+  report_shears(work, known, result.loads);
+  work.parameters =
+      fmt::format("shears_n = {}, loads_n = {}, standard_error = {:.3g} {:.3g}",
+                  fmt::join(shears_n, " "), fmt::join(loads_n, " "), error_x, error_y);
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind shear_step() {
+  StepKind step = {"shear", "Shear coefficients from known tangential loads.", "SHEARED",
+                   "Frames of bodies that do not slip under a tangential load, one file per load",
+                   run_shear};
+  StepArgument shears = StepArgument::per_file(
+      "shear-n", "X1,Y1,X2,Y2,...",
+      "Tangential force on the skin of each file, in order: + right, + up", {-1e6, 1e6});
+  shears.count_per_file = 2;
+  StepArgument loads = StepArgument::per_file(
+      "load-n", "N1,N2,...",
+      "Normal force of each file, so that errors of the sensitivity and creep cancel [unknown]",
+      {1e-6, 1e6});
+  loads.required = false;
+  step.arguments = {shears, loads};
+  step.examples = {kSimulateIdle,
+                   kSimulatePressed,
+                   kTareIdle,
+                   "simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5",
+                   kEquilibratePressed,
+                   "calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 "
+                   "-o shear.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/finding_list.h"
+#include "calibration/steps.h"
 #include "pillarfield/error.h"
+#include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"
 
 namespace pillarfield {
@@ -179,6 +182,50 @@ TareResult take_tare(const SkinCalibration& before, const FrameStatistics& unloa
   result.tare_counts = typical.tare;
   result.noise_counts = typical.noise;
   return result;
+}
+
+namespace {
+
+SkinCalibration run_tare(StepWork& work) {
+  const TareOptions options = {.threshold_factor = work.number("threshold-factor", 4),
+                               .preloaded = work.number("preloaded", 0) != 0};
+  const TareResult result =
+      take_tare(work.before, work.statistics(WireUse::unloaded).front(), options);
+  const SkinCalibration& calibration = result.calibration;
+  StepReport& report = work.report;
+  report.headline = fmt::format("Tare of {} x {} sensels from {}", calibration.rows,
+                                calibration.cols, counted(work.frames(), "frame"));
+  report.measure("tare_counts", result.tare_counts, "tare", "counts, median of the valid sensels");
+  report.measure("noise_counts", result.noise_counts, "noise",
+                 "counts, median of the valid sensels");
+  report.measure("untouched_share", untouched_share(calibration), "untouched",
+                 "% of the untouched pillars would have a status");
+  report.measure(
+      "threshold_counts", *calibration.threshold_counts, "threshold",
+      fmt::format("counts, {:g} times the 99th percentile of the noise", options.threshold_factor));
+  report.add(calibration, result.findings);
+  work.parameters = fmt::format("threshold_factor = {}, preloaded = {}", options.threshold_factor,
+                                options.preloaded);
+  return calibration;
+}
+
+}  // namespace
+
+StepKind tare_step() {
+  StepKind step = {"tare", "Tare, noise and threshold from frames of the unloaded skin.",
+                   "UNLOADED", "Frames in which nothing touches the skin", run_tare};
+  step.is_single = true;
+  step.before = StepKind::Before::optional;
+  step.before_help = "Calibration whose tare is replaced [none]";
+  step.arguments = {
+      StepArgument::number("threshold-factor", "RATIO",
+                           "Threshold as a multiple of the noise of a reading [4]",
+                           {0, kMaxThresholdFactor}),
+      StepArgument::flag("preloaded",
+                         "Accept readings that resemble a touch, as of a bent or covered skin")};
+  step.examples = {kSimulateIdle, kTareIdle,
+                   "calibrate tare idle.h5 -o strict.h5 --threshold-factor 6"};
+  return step;
 }
 
 }  // namespace pillarfield

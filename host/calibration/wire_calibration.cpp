@@ -9,11 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/mean_frame.h"
 #include "calibration/normal_equations.h"
+#include "calibration/steps.h"
 #include "calibration/wire_correction.h"
 #include "pillarfield/error.h"
+#include "skin/limits.h"
 
 namespace pillarfield {
 namespace {
@@ -268,6 +271,90 @@ WireResult calibrate_wires(const SkinCalibration& before, std::span<const FrameS
   result.calibration.planes.mask = before.planes.mask;
   if (result.found) result.calibration.planes.effects.wires = result.wires;
   return result;
+}
+
+namespace {
+
+const char* name_of(TareOrigin tares) { return tares == TareOrigin::offset ? "offset" : "conduct"; }
+
+/// What the frames tell of the tares, and how they are taken.
+std::string tares_text(const WireResult& result) {
+  const std::string taken = result.wires.tares == TareOrigin::offset
+                                ? "Tares are taken as an offset behind the wires"
+                                : "Tares are taken as conductance";
+  if (!result.tares_shown) return taken + "; the frames do not tell";
+  return fmt::format("{}; {:.2f} of them conducts", taken, result.conducting_share);
+}
+
+void report_wires(StepReport& report, const WireResult& result) {
+  const WireCrosstalk& wires = result.wires;
+  const WireCrosstalk& error = result.standard_error;
+  report.facts = {{"row_per_count", wires.row_per_count},
+                  {"column_per_count", wires.column_per_count},
+                  {"idle_per_count", wires.idle_per_count},
+                  {"row_error", error.row_per_count},
+                  {"column_error", error.column_per_count},
+                  {"idle_error", error.idle_per_count},
+                  {"sensels", result.sensels}};
+  report.measure("residual_before", result.residual_before, "before",
+                 "% change of their readings under other loads");
+  report.measure("residual_after", result.residual_after, "after", "% left");
+  report.facts["tares"] = name_of(wires.tares);
+  report.facts["conducting_share"] = result.conducting_share;
+  report.facts["stored"] = result.found;
+  const auto line = [](const char* name, double value, double deviation) {
+    return fmt::format("  {:<7} {:.3f} ± {:.3f}", name, 1e6 * value, 1e6 * deviation);
+  };
+  report.notes = {"Resistance times conductance of a count, in millionths:",
+                  line("row", wires.row_per_count, error.row_per_count),
+                  line("column", wires.column_per_count, error.column_per_count),
+                  line("idle", wires.idle_per_count, error.idle_per_count), tares_text(result)};
+  if (!result.found) report.notes.emplace_back("Within three standard errors of 0: none is stored");
+  if (!result.found || result.tares_shown.value_or(wires.tares) == wires.tares) return;
+  report.warnings.push_back(
+      fmt::format("--tares {}: the frames show {}; leave the option out, or check it",
+                  name_of(wires.tares), name_of(*result.tares_shown)));
+}
+
+SkinCalibration run_wires(StepWork& work) {
+  WireTile tile;
+  tile.rows = static_cast<std::uint32_t>(work.number("tile-rows", tile.rows));
+  tile.cols = static_cast<std::uint32_t>(work.number("tile-cols", tile.cols));
+  std::optional<TareOrigin> tares;
+  if (const auto word = work.word("tares")) {
+    tares = *word == "offset" ? TareOrigin::offset : TareOrigin::conductance;
+  }
+  const WireResult result =
+      calibrate_wires(work.before, work.statistics(WireUse::none), tile, tares);
+  work.report.headline = fmt::format("Compared {} in {}", counted(result.sensels, "sensel"),
+                                     counted(work.files.size(), "file"));
+  report_wires(work.report, result);
+  work.parameters =
+      fmt::format("tile = {} x {}, tares = {}", tile.rows, tile.cols, name_of(result.wires.tares));
+  return result.calibration;
+}
+
+}  // namespace
+
+StepKind wires_step() {
+  StepKind step = {
+      "wires", "Row and column crosstalk, from a body at rest while another one presses elsewhere.",
+      "RESTING",
+      "Frames of a body alone, then files with another one in its rows and in its columns",
+      run_wires};
+  step.before = StepKind::Before::none;
+  step.arguments = {
+      StepArgument::whole("tile-rows", "Sensel rows that share wires [64]", kTileSensels),
+      StepArgument::whole("tile-cols", "Sensel columns that share wires [64]", kTileSensels),
+      StepArgument::word("tares", {"conduct", "offset"},
+                         "How tares arise. conduct: unloaded sensels conduct; offset: the "
+                         "converter adds it [as the frames show, or else conduct]")};
+  step.examples = {"simulate scenes/wired_skin_alone.toml --uncalibrated -o alone.h5",
+                   "simulate scenes/wired_skin_row.toml --uncalibrated -o row.h5",
+                   "simulate scenes/wired_skin_column.toml --uncalibrated -o column.h5",
+                   "calibrate wires alone.h5 row.h5 column.h5 --tile-rows 40 --tile-cols 40 -o "
+                   "wires.h5"};
+  return step;
 }
 
 }  // namespace pillarfield

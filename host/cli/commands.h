@@ -5,16 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "calibration/steps.h"
 #include "cli/options/plan_options.h"
 #include "pillarfield/contact_tracker.h"
-#include "pillarfield/equilibration.h"
-#include "pillarfield/fault_finder.h"
-#include "pillarfield/load_calibration.h"
 #include "pillarfield/output_file.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
-#include "pillarfield/tare.h"
-#include "pillarfield/wire_calibration.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
@@ -115,57 +111,11 @@ struct StepOptions : WriteOptions {
   ReadOptions read;
 };
 
-struct TareCommand : StepOptions {
-  std::string unloaded;
-  TareOptions tare;
-};
-
-struct EquilibrateCommand : StepOptions {
-  std::vector<std::string> files;
-  std::vector<double> pressures_kpa;  ///< one per file
-  EquilibrationOptions equilibration;
-};
-
-struct LoadCommand : StepOptions {
-  std::vector<std::string> files;
-  std::vector<double> loads_n;  ///< one per file
-  LoadModel model = LoadModel::linear;
-};
-
-struct ShearCommand : StepOptions {
-  std::vector<std::string> files;
-  std::vector<double> shears_n;  ///< x and y for each file
-  std::vector<double> loads_n;   ///< one per file, or none
-};
-
-struct ArmCommand : StepOptions {
-  std::vector<std::string> files;
-};
-
-struct LeakCommand : StepOptions {
-  std::vector<std::string> files;
-};
-
-struct MemoryCommand : StepOptions {
+struct StepCommand : StepOptions {
+  const StepKind* step = nullptr;
   std::vector<std::string> files;
   std::vector<std::string> logs;  ///< of the pressure, one per file
-};
-
-struct BendingCommand : StepOptions {
-  std::vector<std::string> files;
-  std::vector<double> radii_mm;  ///< one per file
-  std::vector<double> axes_deg;  ///< one per file
-};
-
-struct WiresCommand : StepOptions {
-  std::vector<std::string> files;
-  WireTile tile;
-  std::optional<TareOrigin> tares;
-};
-
-struct FaultsCommand : StepOptions {
-  std::string frames;
-  FaultOptions faults;
+  StepValues values;
 };
 
 struct ApplyCommand : StepOptions {
@@ -187,16 +137,7 @@ void pace(const PaceOptions& options);
 void stream(const StreamOptions& options);
 void control(const ControlOptions& options);
 void compare(const CompareOptions& options);
-void calibrate(const TareCommand& command);
-void calibrate(const EquilibrateCommand& command);
-void calibrate(const LoadCommand& command);
-void calibrate(const ShearCommand& command);
-void calibrate(const ArmCommand& command);
-void calibrate(const LeakCommand& command);
-void calibrate(const MemoryCommand& command);
-void calibrate(const BendingCommand& command);
-void calibrate(const WiresCommand& command);
-void calibrate(const FaultsCommand& command);
+void calibrate(const StepCommand& command);
 void calibrate(const ApplyCommand& command);
 void info(const InfoOptions& options);
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
+#include "base/number_text.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
-#include "cli/number_text.h"
 #include "cli/progress.h"
 #include "cli/warnings.h"
 #include "pillarfield/comparison.h"

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "base/number_text.h"
 #include "cli/commands.h"
 #include "cli/json_text.h"
-#include "cli/number_text.h"
 #include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"

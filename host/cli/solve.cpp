@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_text.h"
 #include "base/quantile.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
-#include "cli/number_text.h"
 #include "cli/part_share.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"

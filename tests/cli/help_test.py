@@ -122,7 +122,7 @@ class WrongCommandLines(CommandTest):
                 ("'-3'", *load, -3), ("1 files and 2 values", *load, "1,2"),
                 ("2 files and 3 values", "calibrate", "shear", "b", *step, "--shear-n", "1,2,3"),
                 ("1 files and 2 values", "calibrate", "memory", *step, "--pressure", "a,b"),
-                ("radius is 0", "calibrate", "bending", *step, "--radius-mm", 0, "--axis-deg", 0),
+                ("radius-mm: it is 0", "calibrate", "bending", *step, "--radius-mm", 0, "--axis-deg", 0),
                 ("cubic", *load, 1, "--model", "cubic"), ("RECORDING", "calibrate", "apply", "a"),
                 ("--threshold-factor", "calibrate", "tare", "a", "-o", "b", "--threshold-factor",
                  -1), ("SOURCE", "pace"), ("fast", "pace", "a", "--rate", "fast"),

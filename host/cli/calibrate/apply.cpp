@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "cli/calibrate/input.h"
+#include "base/number_text.h"
+#include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
-#include "cli/number_text.h"
 #include "cli/progress.h"
+#include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/printable.h"
+#include "pillarfield/recording.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -30,8 +32,10 @@ void copy_frames(FrameSource& source, const ApplyCommand& command, RecordingWrit
 }  // namespace
 
 void calibrate(const ApplyCommand& command) {
-  check_step_output({command.recording}, command, OutputKind::recording);
-  const std::unique_ptr<FrameSource> source = open_for_step(command.recording, command);
+  check_outputs({command.recording, command.calibration}, {{command.output, OutputKind::recording}},
+                command.replace);
+  const std::unique_ptr<FrameSource> source =
+      open_frames_with_warnings(command.recording, command.read, command.quiet);
   const SkinCalibration calibration = read_calibration_file(command.calibration, command.read);
   require_fitting(calibration, source->skin(), command.recording);
   Skin skin = source->skin();

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -64,13 +65,12 @@ class Group {
     return text(names, target, unit, description)->check(whole_number_in(least, most));
   }
 
-  /// Adds an option of one number per file, separated by commas or repeated.
-  CLI::Option* numbers(const std::string& names, std::vector<double>& target, const char* unit,
-                       const char* description) {
-    return number(names, target, unit, description, 1e-6, 1e6)
-        ->required()
-        ->delimiter(',')
-        ->allow_extra_args(false);
+  CLI::Option* word(const std::string& name, std::string& target,
+                    const std::vector<std::string>& words, const char* description) {
+    return command_->add_option(name, target, description)
+        ->type_name(fmt::format("{}", fmt::join(words, "|")))
+        ->check(one_of(words))
+        ->group(heading_);
   }
 
   /// Adds an option that sets `target` to the value of a word; `former` is a former name of `word`.
@@ -89,6 +89,11 @@ class Group {
         ->type_name(fmt::format("{}", fmt::join(words, "|")))
         ->check(one_of(words, former))
         ->group(heading_);
+  }
+
+  CLI::Option* flag_callback(const std::string& name, const std::function<void()>& call,
+                             const char* description) {
+    return command_->add_flag_callback(name, call, description)->group(heading_);
   }
 
   CLI::Option* flag(const std::string& names, bool& target, const char* description) {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "cli/json_text.h"
-#include "cli/number_text.h"
+#include "base/number_text.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/tuning.h"
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "cli/json_text.h"
-#include "cli/number_text.h"
+#include "base/number_text.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 /// Rounded numbers for text output.
-namespace pillarfield::cli {
+namespace pillarfield {
 
 /// "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t number);
@@ -18,4 +18,4 @@ namespace pillarfield::cli {
 /// "25.0 %"; "<0.1 %" of a part that would round to zero.
 [[nodiscard]] std::string percent(std::uint64_t part, std::uint64_t whole);
 
-}  // namespace pillarfield::cli
+}  // namespace pillarfield

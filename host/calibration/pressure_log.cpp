@@ -1,4 +1,4 @@
-#include "cli/calibrate/pressure_log.h"
+#include "calibration/pressure_log.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 #include "base/input_file.h"
 #include "pillarfield/error.h"
 
-namespace pillarfield::cli {
+namespace pillarfield {
 namespace {
 
-constexpr std::uint64_t kMostBytes = 256 << 20;
+constexpr std::uint64_t kMostLogBytes = 256 << 20;
 
 /// The finite number that is all of `text` but blanks around it; NaN otherwise.
 double number_of(std::string_view text) {
@@ -29,7 +29,7 @@ double number_of(std::string_view text) {
 }  // namespace
 
 PressureLog::PressureLog(const std::string& file) {
-  std::istringstream stream(InputFile(file, kMostBytes).text());
+  std::istringstream stream(InputFile(file, kMostLogBytes).text());
   std::string text;
   for (std::size_t number = 1; std::getline(stream, text); ++number) {
     if (!text.empty() && text.back() == '\r') text.pop_back();
@@ -37,15 +37,31 @@ PressureLog::PressureLog(const std::string& file) {
     const std::size_t comma = std::min(text.find(','), text.size());
     const Line line = {number_of(text.substr(0, comma)),
                        comma < text.size() ? number_of(text.substr(comma + 1)) : std::nan("")};
-    const bool valid = line.pressure_kpa >= 0 && !std::isnan(line.time_s);
     if (number == 1 && std::isnan(line.time_s) && std::isnan(line.pressure_kpa)) continue;
-    if (!valid || (!lines_.empty() && line.time_s <= lines_.back().time_s)) {
-      throw Error(fmt::format("{}:{}", file, number), "is not a later time and a pressure",
-                  "write lines such as 0.5,120 with rising times in s and pressures in kPa");
-    }
-    lines_.push_back(line);
+    add(line, fmt::format("{}:{}", file, number));
   }
   if (lines_.empty()) throw Error(file, "has no pressure", "write lines such as 0.5,120");
+}
+
+PressureLog::PressureLog(const std::string& where, const std::vector<double>& times_s,
+                         const std::vector<double>& pressures_kpa) {
+  if (times_s.size() != pressures_kpa.size()) {
+    throw Error(where,
+                fmt::format("{} frames and {} pressures", times_s.size(), pressures_kpa.size()),
+                "give one for each");
+  }
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    add({times_s[i], pressures_kpa[i]}, fmt::format("{}, frame {}", where, i));
+  }
+}
+
+void PressureLog::add(const Line& line, const std::string& where) {
+  const bool valid = line.pressure_kpa >= 0 && !std::isnan(line.time_s);
+  if (!valid || (!lines_.empty() && line.time_s <= lines_.back().time_s)) {
+    throw Error(where, "is not a later time and a pressure",
+                "write lines such as 0.5,120 with rising times in s and pressures in kPa");
+  }
+  lines_.push_back(line);
 }
 
 double PressureLog::at(double time_s) const {
@@ -57,4 +73,4 @@ double PressureLog::at(double time_s) const {
   return before.pressure_kpa + part * (after->pressure_kpa - before.pressure_kpa);
 }
 
-}  // namespace pillarfield::cli
+}  // namespace pillarfield

@@ -1,10 +1,10 @@
-#include "cli/number_text.h"
+#include "base/number_text.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace pillarfield::cli {
+namespace pillarfield {
 
 std::string grouped(std::uint64_t number) {
   std::string digits = std::to_string(number);
@@ -31,4 +31,4 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
   return value < 0.05 ? "<0.1 %" : fmt::format("{:.1f} %", value);
 }
 
-}  // namespace pillarfield::cli
+}  // namespace pillarfield
