@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -53,6 +54,16 @@ py::object plane_or_none(const std::vector<T>& plane, std::uint32_t rows, std::u
 template <class T>
 std::vector<T> plane_from(const py::object& plane, std::uint32_t rows, std::uint32_t cols,
                           std::string_view place);
+
+/// An argument as T. Throws TypeError, naming it, if it is of another type.
+template <class T>
+T argument(const py::handle& value, const std::string& name) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(name + " has a wrong type");
+  }
+}
 
 /// The type of readings of an array. Throws Error for types other than uint8, uint16 and float32.
 [[nodiscard]] SenselType sensel_type_of(const py::array& readings);

@@ -178,7 +178,7 @@ void bind_contacts(py::module_& module) {
       .def(py::init<const SolverPlan&, std::uint64_t, double>(), py::arg("plan"), py::kw_only(),
            py::arg("minimum_pillars") = ContactOptions{}.minimum_pillars,
            py::arg("reach_mm") = ContactOptions{}.reach_mm)
-      .def("update", &Tracker::update, py::arg("planes"), py::arg("times"),
+      .def("update_planes", &Tracker::update, py::arg("planes"), py::arg("times"),
            "FrameContacts of each of the next frames, from planes [frames, rows, cols].");
 }
 

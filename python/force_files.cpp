@@ -15,7 +15,7 @@
 #include "pillarfield/solver_plan.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
-#include "python/index_range.h"
+#include "python/frames.h"
 #include "python/signals.h"
 
 namespace pillarfield::python {
@@ -75,25 +75,17 @@ Skin skin_of(const ForceReader& reader) {
   return skin;
 }
 
-SolvedBy solved_by(const SolverPlan& plan) {
-  SolvedBy how{name_of(plan.estimator), plan.segment_point, plan.calibration.effects, {}};
-  set_sensor(how.contacts.emplace(), plan);
-  return how;
-}
-
-void set(ForceFileInfo& info, const std::optional<SolvedBy>& solved_by) {
-  if (!solved_by) return;
-  info.estimator = solved_by->estimator;
-  info.segment_point = solved_by->segment_point;
-  info.effects = solved_by->effects;
+ForceFileInfo solved_by(const SolverPlan& plan) {
+  ForceFileInfo info = file_info(plan, "", "");
+  set_sensor(info.contacts.emplace(), plan);
+  return info;
 }
 
 /// {"shear_x_low": float32 [frames, rows, cols], ..., "normal_high": ...}.
-py::dict component_ends_of(const py::dict& planes, const std::optional<SolvedBy>& solved_by) {
+py::dict component_ends_of(const py::dict& planes, const std::optional<ForceFileInfo>& solved_by) {
   const ForceArrays forces(planes);
-  ForceFileInfo info;
+  ForceFileInfo info = solved_by.value_or(ForceFileInfo{});
   info.uncertainty = true;
-  set(info, solved_by);
   FramePlanes frame(info);
   const Shape shape = {static_cast<py::ssize_t>(forces.frames()), forces.rows(), forces.cols()};
   const std::size_t pillars = std::size_t{forces.rows()} * forces.cols();
@@ -117,10 +109,9 @@ py::dict component_ends_of(const py::dict& planes, const std::optional<SolvedBy>
 void save_forces(const std::filesystem::path& path, const py::dict& planes,
                  const std::vector<double>& times,
                  const std::optional<std::vector<std::shared_ptr<FrameContacts>>>& contacts,
-                 const Skin& skin, const std::optional<SolvedBy>& solved_by, bool overwrite) {
+                 const Skin& skin, const std::optional<ForceFileInfo>& solved_by, bool overwrite) {
   const ForceArrays forces(planes);
-  ForceFileInfo info;
-  set(info, solved_by);
+  ForceFileInfo info = solved_by.value_or(ForceFileInfo{});
   info.rows = forces.rows();
   info.cols = forces.cols();
   info.frames = forces.frames();
@@ -128,7 +119,7 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   info.angles = planes.contains("theta");
   info.uncertainty = planes.contains("uncertainty_normal");
   info.surface = skin.surface;
-  if (contacts && solved_by && is_hdf5_name(path)) info.contacts = solved_by->contacts;
+  if (!contacts || !is_hdf5_name(path)) info.contacts.reset();
   const py::gil_scoped_release unlocked;
   const auto sink = create_force_sink(path, info, overwrite ? Replace::anything : Replace::results);
   SignalCheck check_signals;
@@ -145,26 +136,24 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
 }  // namespace
 
 void bind_force_files(py::module_& module) {
-  py::class_<SolvedBy>(module, "SolvedBy", "How forces were solved.")
+  py::class_<ForceFileInfo>(module, "SolvedBy", "How forces were solved.")
       .def(py::init(&solved_by), py::arg("plan"));
   py::class_<ForceReader>(module, "ForceReader", kReader)
       .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
            py::arg("trust") = false)
-      .def_property_readonly("skin", &skin_of, "its Skin, as far as the file tells")
+      .def_property_readonly("skin", &skin_of,
+                             "Skin, as far as the file tells: size, pitch and surface.")
       .def_property_readonly(
           "estimator", [](const ForceReader& self) { return self.info().estimator; },
-          "that solved it")
+          "The estimator that solved it.")
       .def_property_readonly(
-          "solved_by",
-          [](const ForceReader& self) {
-            const ForceFileInfo& info = self.info();
-            return SolvedBy{info.estimator, info.segment_point, info.effects, info.contacts};
-          },
+          "solved_by", [](const ForceReader& self) { return self.info(); },
           "what the intervals of the components depend on")
       .def_property_readonly(
           "source", [](const ForceReader& self) { return self.info().source; },
-          "name of the file of frames")
-      .def_property_readonly("warnings", &ForceReader::warnings, "one sentence each")
+          "Name of the file of frames.")
+      .def_property_readonly("warnings", &ForceReader::warnings,
+                             "Warnings about the file, one sentence each.")
       .def(
           "read",
           [](ForceReader& self, std::int64_t first, std::int64_t step, std::int64_t count) {

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pillarfield/contact_tracker.h"
-#include "pillarfield/sensor_effects.h"
+#include "pillarfield/force_field.h"
 #include "python/arrays.h"
 #include "solve/result_planes.h"
 
@@ -63,14 +62,6 @@ class ForceCopy {
   std::vector<float> values_;
   std::vector<std::uint8_t> status_;
   ForceFieldView view_;
-};
-
-/// How forces were solved: what their 95 % intervals and a file of them hold beside the planes.
-struct SolvedBy {
-  std::string estimator;
-  std::optional<double> segment_point;
-  SensorEffects effects;
-  std::optional<ContactOptions> contacts;  ///< of their contacts, if these are tracked
 };
 
 /// Arrays of planes that came from Python: {"shear_x": float32 [frames, rows, cols], ...,

@@ -17,7 +17,6 @@
 #include "pillarfield/error.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
-#include "python/index_range.h"
 #include "python/signals.h"
 
 namespace pillarfield::python {
@@ -25,8 +24,6 @@ namespace {
 
 constexpr const char* kSource =
     R"(Frames with random access: readings, times, skin and calibration.)";
-constexpr const char* kOpen =
-    "Opens frames of a file; pillarfield.Recording describes the options.";
 constexpr const char* kArray = R"(Frames of an array, without a copy.
 
 readings: uint8, uint16 or float32 [frames, rows, cols], dense
@@ -135,14 +132,13 @@ py::dict read_truth(Frames& frames, const IndexRange& range) {
   return stack.release();
 }
 
-py::array_t<double> times_of(Frames& frames, std::uint64_t most) {
+py::array_t<double> times_of(Frames& frames) {
   std::vector<double> times;
   {
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(frames.alone);
     FrameSource& source = *frames.source;
-    for (std::uint64_t i = 0; i < std::min(most, source.frames()); ++i)
-      times.push_back(source.time(i));
+    for (std::uint64_t i = 0; i < source.frames(); ++i) times.push_back(source.time(i));
   }
   const auto size = static_cast<py::ssize_t>(times.size());
   return array_of(std::move(times), {size});
@@ -211,30 +207,30 @@ void write(Frames& frames, const std::filesystem::path& path, bool overwrite) {
 
 void bind_frames(py::module_& module) {
   py::class_<Frames>(module, "FrameSource", kSource)
-      .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("trust") = false,
-                  py::arg("dataset") = "", py::arg("times") = "",
-                  py::arg("frame_size") = py::none(), py::arg("rate_hz") = py::none(),
-                  py::arg("tare_frames") = 0, py::arg("axes") = "", kOpen)
+      .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("trust") = false,
+           py::arg("dataset") = "", py::arg("times") = "", py::arg("frame_size") = py::none(),
+           py::arg("rate_hz") = py::none(), py::arg("tare_frames") = 0, py::arg("axes") = "")
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
                   py::arg("calibration"), py::arg("axes_are_known") = false, kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),
            "Writes all frames as a recording.")
       .def_property_readonly(
-          "skin", [](const Frames& self) { return self.source->skin(); }, "its Skin")
-      .def_property_readonly("calibration", &calibration_of, "its Calibration")
+          "skin", [](const Frames& self) { return self.source->skin(); },
+          "Skin with the constants of the file")
+      .def_property_readonly("calibration", &calibration_of,
+                             "Calibration with the planes of the file")
       .def_property_readonly(
           "format", [](const Frames& self) { return self.source->format(); }, "of the file")
       .def_property_readonly(
           "has_truth", [](const Frames& self) { return self.source->has_truth(); },
-          "true forces are known")
+          "whether it is simulated and has its true forces")
       .def_property_readonly(
           "warnings", [](const Frames& self) { return self.source->warnings(); },
-          "one sentence each")
+          "warnings about the file, one sentence each")
       .def_property_readonly(
           "sensel_type", [](const Frames& self) { return name_of(self.source->sensel_type()); },
           "'uint8', 'uint16' or 'float32'")
-      .def("times", &times_of, py::arg("most") = std::numeric_limits<std::uint64_t>::max(),
-           "Times of all frames, or of the first `most`, float64 [frames], s.")
+      .def_property_readonly("times", &times_of, "times of all frames, float64 [frames], s")
       .def(
           "read",
           [](Frames& self, std::int64_t first, std::int64_t step, std::int64_t count) {

@@ -142,28 +142,6 @@ class LiveFrames {
   std::unique_ptr<StreamedFrame> frame_;
 };
 
-LiveSinkInfo info_of(const SolverPlan& plan, bool contacts, const std::string& device,
-                     const std::string& source, bool overwrite) {
-  LiveSinkInfo info;
-  info.skin = plan.skin;
-  info.sensel_type = plan.sensel_type;
-  info.calibration = plan.calibration;
-  info.replace = overwrite ? Replace::anything : Replace::results;
-  info.forces.rows = plan.skin.pillar_rows();
-  info.forces.cols = plan.skin.pillar_cols();
-  info.forces.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
-  info.forces.estimator = name_of(plan.estimator);
-  if (plan.estimator != Estimator::paper) info.forces.segment_point = plan.segment_point;
-  info.forces.device = device;
-  info.forces.source = source;
-  info.forces.angles = plan.angles;
-  info.forces.uncertainty = plan.uncertainty;
-  info.forces.effects = plan.calibration.effects;
-  info.forces.surface = plan.skin.surface;
-  if (contacts) set_sensor(info.forces.contacts.emplace(), plan);
-  return info;
-}
-
 /// A live sink, used by one thread at a time.
 class Sink {
  public:
@@ -171,7 +149,9 @@ class Sink {
        bool overwrite, std::vector<std::string> allow_origins)
       : target_(target), plan_(plan) {
     const py::gil_scoped_release unlocked;
-    LiveSinkInfo info = info_of(plan, contacts, "", source, overwrite);
+    LiveSinkInfo info = sink_info(plan, "", source);
+    if (contacts) set_sensor(info.forces.contacts.emplace(), plan);
+    info.replace = overwrite ? Replace::anything : Replace::results;
     info.allowed_origins = std::move(allow_origins);
     sink_.emplace(create_live_sink(target, info));
   }
@@ -239,22 +219,29 @@ void bind_live(py::module_& module) {
       .def(py::init<const std::string&, const Skin&, std::uint32_t>(), py::arg("source"),
            py::arg("skin"), py::arg("serial_baud"))
       .def("next", &LiveFrames::next, py::arg("timeout_s"))
-      .def("health", &LiveFrames::health)
-      .def("discard_waiting", &LiveFrames::discard_waiting)
-      .def("close", &LiveFrames::close)
-      .def_property_readonly("skin", &LiveFrames::skin, "Skin with the rows and columns of frames")
+      .def_property_readonly("health", &LiveFrames::health,
+                             "What came and what did not: frames, lost, incomplete, late, ..., "
+                             "rate_hz; as mismatch, the size of frames that came instead, or ''.")
+      .def("discard_waiting", &LiveFrames::discard_waiting,
+           "Discards the frames that wait, without counting them as lost.")
+      .def("close", &LiveFrames::close, "Closes the source.")
+      .def_property_readonly("skin", &LiveFrames::skin,
+                             "Skin with the rows and columns of the frames, for a Plan")
       .def_property_readonly(
           "sensel_type", [](const LiveFrames& self) { return name_of(self.sensel_type()); },
-          "'uint8', 'uint16' or 'float32'");
+          "'uint8', 'uint16' or 'float32', for a Plan");
   py::class_<Sink>(module, "LiveSink", kLiveSink)
       .def(py::init<const std::string&, const SolverPlan&, bool, const std::string&, bool,
                     std::vector<std::string>>(),
            py::arg("target"), py::arg("plan"), py::arg("contacts"), py::arg("source"),
            py::arg("overwrite"), py::arg("allow_origins"))
-      .def("send", &Sink::send, py::arg("planes"), py::arg("contacts"), py::arg("time_s"),
+      .def("send_planes", &Sink::send, py::arg("planes"), py::arg("contacts"), py::arg("time_s"),
            py::arg("sequence"))
-      .def("statistics", &Sink::statistics)
-      .def("close", &Sink::close, py::arg("finish"));
+      .def_property_readonly("statistics", &Sink::statistics,
+                             "frames, dropped, clients, refused; the failure that stopped it, or "
+                             "''; and as notice the first client refused for its origin, or ''.")
+      .def("close", &Sink::close, py::arg("finish") = true,
+           "Closes the sink. finish: complete its file; else it stays a part.");
 }
 
 }  // namespace pillarfield::python

@@ -1,11 +1,25 @@
 // The compiled half of the package: values and calls, NumPy arrays in and out.
 
+#include "pillarfield/error.h"
 #include "pillarfield/version.h"
 #include "python/bindings.h"
 
 namespace {
 
 namespace py = pybind11;
+
+py::str part_text(std::string_view part) { return py::str(part.data(), part.size()); }
+
+void translate(std::exception_ptr pointer) {
+  try {
+    std::rethrow_exception(std::move(pointer));
+  } catch (const pillarfield::Error& error) {
+    const py::object type = py::module_::import("pillarfield._error").attr("Error");
+    const py::object raised =
+        type(part_text(error.place()), part_text(error.failure()), part_text(error.mend()));
+    PyErr_SetObject(type.ptr(), raised.ptr());
+  }
+}
 
 /// Where an object was made by __new__ alone, pybind11 would allocate its value without
 /// constructing it, and read that.
@@ -26,7 +40,7 @@ void require_construction(const py::module_& module) {
 PYBIND11_MODULE(_core, module) {
   using namespace pillarfield::python;
   module.attr("__version__") = pillarfield::kVersion;
-  bind_errors();
+  py::register_local_exception_translator(translate);
   bind_skin(module);
   bind_calibration(module);
   bind_scene(module);
@@ -36,7 +50,6 @@ PYBIND11_MODULE(_core, module) {
   bind_solve(module);
   bind_processor(module);
   bind_force_files(module);
-  bind_parts(module);
   bind_compare(module);
   bind_calibrate(module);
   bind_live(module);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,11 +16,14 @@
 
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
+#include "pillarfield/plan_builder.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/tuning.h"
+#include "pipeline/plan_settings.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/frames.h"
 
 namespace pillarfield::python {
 namespace {
@@ -31,7 +36,6 @@ calibration: Calibration, or the path of its file
 scene: Scene, or the path of its file; its constants and options replace those of skin
 estimator: 'direct', 'paper' or 'contact'
 outputs: of 'angles' and 'uncertainty', beside the forces
-segment_point: position of the force of an ambiguous pillar on its segment, (0, 1]
 friction: friction coefficient if it is known to 3 %, 0.1..9.9
 friction_bound: its upper bound, 0.1..100
 friction_prior: (median, spread of the logarithm) of the friction
@@ -62,79 +66,106 @@ Choice choice_named(const std::string& name, const std::array<Choice, n>& choice
     if (name == name_of(choice)) return choice;
     names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name_of(choice));
   }
-  throw Error("Plan", fmt::format("'{}' is no {}", name, what),
+  throw Error("Plan", fmt::format("'{}' is not a known {}", name, what),
               fmt::format("give one of {}", names));
 }
 
 constexpr std::array kTypes = {SenselType::u8, SenselType::u16, SenselType::f32};
 constexpr std::array kEstimators = {Estimator::direct, Estimator::paper, Estimator::contact};
 
-void set_outputs(SolverPlan& plan, const std::vector<std::string>& outputs) {
-  plan.angles = plan.uncertainty = false;
+std::vector<std::string> outputs_of(const py::handle& given) {
+  auto outputs = argument<std::vector<std::string>>(given, "outputs");
   for (const std::string& output : outputs) {
-    if (output != "angles" && output != "uncertainty") {
-      throw Error("Plan", fmt::format("'{}' is no output", output),
+    if (std::ranges::find(kPlanOutputs, output) == std::end(kPlanOutputs)) {
+      throw Error("Plan", fmt::format("'{}' is not an output", output),
                   "give a list of 'angles' and 'uncertainty'");
     }
-    (output == "angles" ? plan.angles : plan.uncertainty) = true;
   }
+  outputs.emplace_back("forces");  // An empty list replaces the outputs of a scene.
+  return outputs;
 }
 
-/// Applies a scene and returns its time constant of the baseline.
-std::optional<double> apply(const Scene& scene, SolverPlan& plan) {
-  set_skin(plan.skin, scene);
-  set_solver(plan, scene);
-  return scene.baseline_time_s;
+/// Sets a setting by its name; false if there is none of this name.
+bool set(PlanSettings& settings, const std::string& name, const py::handle& value) {
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (name != setting.name) continue;
+    settings.*setting.member =
+        setting.whole ? argument<int>(value, name) : argument<double>(value, name);
+    return true;
+  }
+  if (name == "estimator") {
+    settings.estimator = choice_named(argument<std::string>(value, name), kEstimators, "estimator");
+  } else if (name == "outputs") {
+    settings.outputs = outputs_of(value);
+  } else if (name == "friction_prior") {
+    const auto [median, spread] = argument<std::pair<double, double>>(value, name);
+    settings.friction_prior = {median, spread};
+  } else if (name == "unrelated_frames") {
+    settings.unrelated_frames = argument<bool>(value, name);
+  } else {
+    return false;
+  }
+  return true;
 }
 
-/// Sets `member` to a value that was given.
-template <class Member, class Value>
-void set(Member& member, const std::optional<Value>& value) {
-  if (value) member = *value;
+PlanSettings settings_of(const py::kwargs& given) {
+  PlanSettings settings;
+  for (const auto& [key, value] : given) {
+    const auto name = key.cast<std::string>();
+    if (value.is_none()) continue;
+    if (name == "segment_point") {
+      throw Error("Plan", "segment_point is not a setting any more", "leave it out");
+    }
+    if (!set(settings, name, value)) {
+      throw py::type_error(fmt::format("Plan() has no argument '{}'", name));
+    }
+  }
+  return settings;
 }
 
-SolverPlan make_plan(
-    const Skin& skin, const std::string& sensel_type,
-    const std::optional<ValueOrPath<SkinCalibration>>& calibration,
-    const std::optional<ValueOrPath<Scene>>& scene, const std::optional<std::string>& estimator,
-    const std::optional<std::vector<std::string>>& outputs, std::optional<double> segment_point,
-    std::optional<double> friction, std::optional<double> friction_bound,
-    const std::optional<std::pair<double, double>>& friction_prior, bool unrelated_frames,
-    std::optional<double> threshold_counts, std::optional<double> counts_per_newton,
-    std::optional<double> full_scale_counts, std::optional<double> parity_tolerance_counts,
-    std::optional<double> noise_counts, std::optional<double> baseline_time_s,
-    std::optional<int> baseline_interval, std::optional<double> frame_interval_s) {
+using CalibrationOrPath = std::optional<ValueOrPath<SkinCalibration>>;
+using SceneOrPath = std::optional<ValueOrPath<Scene>>;
+
+SolverPlan plan_with(SolverPlan plan, const CalibrationOrPath& calibration,
+                     const SceneOrPath& scene, const py::kwargs& given,
+                     const std::function<double()>& frame_interval_s) {
+  PlanSources from;
+  from.settings = settings_of(given);
+  std::optional<Scene> loaded_scene;
+  std::optional<SkinCalibration> loaded;
+  if (scene) {
+    loaded_scene = value_of(*scene, [](const auto& path) { return load_scene(path); });
+    from.scene = &*loaded_scene;
+  }
+  if (calibration) {
+    loaded = value_of(*calibration, [](const auto& path) { return read_calibration_file(path); });
+    from.calibration = &*loaded;
+  }
+  plan = build_plan(std::move(plan), from, "Plan", frame_interval_s);
+  check(plan, "Plan");
+  return plan;
+}
+
+SolverPlan make_plan(const Skin& skin, const std::string& sensel_type,
+                     const CalibrationOrPath& calibration, const SceneOrPath& scene,
+                     const py::kwargs& given) {
   SolverPlan plan;
   plan.skin = skin;
   plan.sensel_type = choice_named(sensel_type, kTypes, "type of readings");
-  std::optional<double> baseline;
-  if (scene) {
-    baseline = apply(value_of(*scene, [](const auto& path) { return load_scene(path); }), plan);
-  }
-  if (calibration) {
-    const SkinCalibration given =
-        value_of(*calibration, [](const auto& path) { return read_calibration_file(path); });
-    require_fitting(given, plan.skin, "Plan");
-    apply(given, plan.skin, plan.calibration);
-  }
-  if (estimator) plan.estimator = choice_named(*estimator, kEstimators, "estimator");
-  if (outputs) set_outputs(plan, *outputs);
-  set(plan.segment_point, segment_point);
-  set(plan.friction.given, friction);
-  set(plan.friction.bound, friction_bound);
-  if (friction_prior) std::tie(plan.friction.median, plan.friction.spread) = *friction_prior;
-  if (unrelated_frames) plan.friction.memory = false;
-  set(plan.skin.threshold_counts, threshold_counts);
-  set(plan.skin.counts_per_newton, counts_per_newton);
-  set(plan.skin.full_scale_counts, full_scale_counts);
-  set(plan.parity_tolerance_counts, parity_tolerance_counts);
-  set(plan.noise_counts, noise_counts);
-  set(plan.frame_interval_s, frame_interval_s);
-  set(baseline, baseline_time_s);
-  if (baseline) plan.baseline_rate = baseline_rate(*baseline, plan.frame_interval_s);
-  set(plan.baseline_interval, baseline_interval);
-  check(plan, "Plan");
-  return plan;
+  const double usual_s = plan.frame_interval_s;
+  return plan_with(std::move(plan), calibration, scene, given, [&] { return usual_s; });
+}
+
+/// A plan for frames, which give its time from frame to frame.
+SolverPlan plan_of(Frames& frames, const Skin& skin, const CalibrationOrPath& calibration,
+                   const SceneOrPath& scene, const py::kwargs& given) {
+  SolverPlan plan;
+  plan.skin = skin;
+  plan.sensel_type = frames.source->sensel_type();
+  return plan_with(std::move(plan), calibration, scene, given, [&] {
+    const std::lock_guard alone(frames.alone);
+    return frame_interval_of(*frames.source, "frames");
+  });
 }
 
 std::string plan_text(const SolverPlan& plan) {
@@ -149,14 +180,7 @@ void bind_plan(py::module_& module) {
   const py::none unset;
   py::class_<SolverPlan>(module, "Plan", kPlan)
       .def(py::init(&make_plan), py::arg("skin"), py::kw_only(), py::arg("sensel_type") = "uint8",
-           py::arg("calibration") = unset, py::arg("scene") = unset, py::arg("estimator") = unset,
-           py::arg("outputs") = unset, py::arg("segment_point") = unset,
-           py::arg("friction") = unset, py::arg("friction_bound") = unset,
-           py::arg("friction_prior") = unset, py::arg("unrelated_frames") = false,
-           py::arg("threshold_counts") = unset, py::arg("counts_per_newton") = unset,
-           py::arg("full_scale_counts") = unset, py::arg("parity_tolerance_counts") = unset,
-           py::arg("noise_counts") = unset, py::arg("baseline_time_s") = unset,
-           py::arg("baseline_interval") = unset, py::arg("frame_interval_s") = unset)
+           py::arg("calibration") = unset, py::arg("scene") = unset)
       .def_readonly("skin", &SolverPlan::skin, "its Skin, with all constants applied")
       .def_property_readonly(
           "sensel_type", [](const SolverPlan& plan) { return name_of(plan.sensel_type); },
@@ -169,6 +193,9 @@ void bind_plan(py::module_& module) {
           "stages", [](const SolverPlan& plan) { return kernel_stages(plan); },
           "names of the stages that are compiled into the kernel")
       .def("__repr__", &plan_text);
+  module.def("plan_of", &plan_of, py::arg("frames"), py::arg("skin"), py::kw_only(),
+             py::arg("calibration") = unset, py::arg("scene") = unset,
+             "A Plan for frames, with their type and time from frame to frame.");
 }
 
 }  // namespace pillarfield::python

@@ -196,14 +196,19 @@ void bind_processor(py::module_& module) {
   py::class_<Ring>(module, "Processor", kProcessor)
       .def(py::init<const SolverPlan&, int, int, bool, const std::string&>(), py::arg("plan"),
            py::arg("frames_in_flight"), py::arg("lent"), py::arg("contacts"), py::arg("device"))
-      .def("submit", &Ring::submit, py::arg("readings"), py::arg("time_s"), py::arg("missing"))
-      .def("receive", &Ring::receive)
-      .def("try_receive", &Ring::try_receive)
-      .def("set_tare", &Ring::set_tare, py::arg("tare"))
-      .def("tare", &Ring::tare)
-      .def("close", &Ring::close)
+      .def("submit_readings", &Ring::submit, py::arg("readings"), py::arg("time_s"),
+           py::arg("missing"))
+      .def("receive_planes", &Ring::receive)
+      .def("try_receive_planes", &Ring::try_receive)
+      .def("set_tare", &Ring::set_tare, py::arg("tare"),
+           "Replaces the tare, [R, C], counts, for the frames submitted from now on.\n\nRaises "
+           "Error if the plan has no tare (it may be zero) or the values do not fit.")
+      .def_property_readonly("tare", &Ring::tare,
+                             "The tare after all frames so far, float32 [R, C], counts, or None.")
+      .def("close", &Ring::close, "Frees the device, but no result that is held.")
       .def_property_readonly("plan", &Ring::plan, "its Plan")
-      .def_property_readonly("in_flight", &Ring::in_flight, "frames submitted, not yet received");
+      .def_property_readonly("in_flight", &Ring::in_flight,
+                             "Frames submitted and not yet received.");
 }
 
 }  // namespace pillarfield::python

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/number_text.h"
-#include "calibration/mean_frame.h"
 #include "calibration/steps.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/error.h"

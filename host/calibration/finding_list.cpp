@@ -5,6 +5,26 @@
 
 namespace pillarfield {
 
+const char* name_of(SenselFault fault) {
+  switch (fault) {
+    case SenselFault::not_a_number:
+      return "not a number";
+    case SenselFault::saturated:
+      return "saturated";
+    case SenselFault::stuck:
+      return "stuck";
+    case SenselFault::noisy:
+      return "noisy";
+    case SenselFault::unresponsive:
+      return "unresponsive";
+    case SenselFault::unequal:
+      return "unequal";
+    case SenselFault::unknown:
+      break;
+  }
+  return "unknown";
+}
+
 FindingList::FindingList(std::vector<std::uint8_t> mask, const FrameStatistics& statistics)
     : statistics_(statistics), mask_(std::move(mask)) {
   if (mask_.empty()) mask_.assign(statistics.skin().sensels(), 1);

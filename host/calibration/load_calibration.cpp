@@ -9,7 +9,6 @@
 
 #include "base/number_text.h"
 #include "calibration/golden_section.h"
-#include "calibration/mean_frame.h"
 #include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"

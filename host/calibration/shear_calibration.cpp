@@ -7,7 +7,6 @@
 #include <string>
 
 #include "base/number_text.h"
-#include "calibration/mean_frame.h"
 #include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"

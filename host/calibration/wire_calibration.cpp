@@ -11,7 +11,6 @@
 
 #include "base/number_text.h"
 #include "base/quantile.h"
-#include "calibration/mean_frame.h"
 #include "calibration/normal_equations.h"
 #include "calibration/steps.h"
 #include "calibration/wire_correction.h"

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "base/number_text.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
-#include "base/number_text.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"

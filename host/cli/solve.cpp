@@ -59,37 +59,15 @@ struct SolveSummary {
   double seconds = 0;          ///< reading, solving and writing, which overlap
 };
 
-/// Seconds between frames: the median of the first ones, so that a gap does not count. Throws Error
-/// where the times do not rise.
-double frame_interval(const SolveOptions& options, FrameSource& source) {
-  constexpr std::uint64_t kMostIntervals = 100;  // The time of a frame may cost reading all of it.
-  std::vector<double> intervals;
-  const std::uint64_t frames = std::min(source.frames(), kMostIntervals + 1);
-  double before = frames > 0 ? source.time(0) : 0;
-  for (std::uint64_t index = 1; index < frames; ++index) {
-    const double time = source.time(index);
-    intervals.push_back(time - std::exchange(before, time));
-  }
-  if (const double interval = intervals.empty() ? 0 : median(intervals); interval > 0) {
-    return interval;
-  }
-  throw Error(options.input, "the times of its frames do not rise",
-              "leave out --follow-baseline, and creep of the calibration");
-}
-
 /// The settings of the file, then of the command line.
 SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
-  SolverPlan plan;
-  plan.skin = source.skin();
-  plan.sensel_type = source.sensel_type();
-  plan.calibration = source.calibration();
-  return plan_of(options.plan, std::move(plan), options.input,
-                 [&] { return frame_interval(options, source); });
+  return plan_of(options.plan, plan_of_frames(source), options.input,
+                 [&] { return frame_interval_of(source, options.input); });
 }
 
 ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {
   ForceFileInfo info =
-      file_info(plan, device, std::filesystem::path(options.input).filename().string());
+      file_info(plan, device.info().name, std::filesystem::path(options.input).filename().string());
   if (!options.contacts_file.empty() && is_hdf5_name(options.output))
     info.contacts = options.contacts;
   return info;

@@ -122,6 +122,23 @@ PlannedOutput planned_contact_file(const std::filesystem::path& path) {
   return {path, format_of(path, OutputKind::contacts).kind};
 }
 
+ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
+                        const std::string& source) {
+  ForceFileInfo info;
+  info.rows = plan.skin.pillar_rows();
+  info.cols = plan.skin.pillar_cols();
+  info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
+  info.estimator = name_of(plan.estimator);
+  if (plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
+  info.device = device;
+  info.source = source;
+  info.angles = plan.angles;
+  info.uncertainty = plan.uncertainty;
+  info.effects = plan.calibration.effects;
+  info.surface = plan.skin.surface;
+  return info;
+}
+
 std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                              const ForceFileInfo& info, Replace replace) {
   check(info, path.string());

@@ -132,23 +132,6 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
   return done;
 }
 
-ForceFileInfo file_info(const SolverPlan& plan, const Device& device,
-                        const std::string& source_name) {
-  ForceFileInfo info;
-  info.rows = plan.skin.pillar_rows();
-  info.cols = plan.skin.pillar_cols();
-  info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
-  info.estimator = name_of(plan.estimator);
-  if (plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
-  info.device = device.info().name;
-  info.source = source_name;
-  info.angles = plan.angles;
-  info.uncertainty = plan.uncertainty;
-  info.effects = plan.calibration.effects;
-  info.surface = plan.skin.surface;
-  return info;
-}
-
 std::optional<PipelineStatistics> solve_part(FrameSource& source, const Device& device,
                                              const SolverPlan& plan, const RangeOptions& options,
                                              const std::filesystem::path& output,

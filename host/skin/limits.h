@@ -15,6 +15,8 @@ inline constexpr Range kPillarArmMm = {1e-3, 1e3};
 inline constexpr Range kTileSensels = {2, 1024};  ///< rows or columns that share wires
 inline constexpr Range kCurveCounts = {0, 1e9, true};
 
+inline constexpr Range kBaselineTimeS = {1e-6, 1e9};  ///< of a followed baseline
+
 // Of FrictionKnowledge.
 inline constexpr Range kFrictions = {0.1, 9.9};
 inline constexpr Range kPriorSpread = {0.01, 3};

@@ -13,15 +13,16 @@ docs/python.md is the manual.
 from . import calibrate, distributed
 from ._compare import Comparison, compare
 from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, RegionErrors, Scene,
-                    SenselFinding, Skin, Surface, __version__)
+                    Skin, Surface, __version__)
 from ._error import Error
 from ._field import ForceField, Intervals, Points, Uncertainty
 from ._live import Frame, LiveSink, LiveSource, live, sink
 from ._processor import Contacts, Processor
-from ._recording import ForceFile, Recording, open
+from ._recording import ForceFile, Recording, open, save_recording
 from ._scene import Simulation, scene, simulate
-from ._solve import save_recording, solve
+from ._solve import solve
 from ._status import Region, Status
+from .calibrate import SenselFinding
 
 __all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
            "ForceFile", "Frame", "FrameContacts", "Intervals", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",

@@ -30,41 +30,17 @@ class Frame:
     missing: list[tuple[int, int, int, int]]
 
 
-class LiveSource:
+class LiveSource(_core.LiveFrames):
     """Frames of a sensor as they come, an iterator of Frame; live() opens one."""
 
     def __init__(self, source: str, *, skin: Optional[_core.Skin] = None,
                  serial_baud: int = 2_000_000) -> None:
-        self._frames = _core.LiveFrames(source, skin or _core.Skin(2, 2), serial_baud)
-
-    @property
-    def skin(self) -> _core.Skin:
-        """Skin with the rows and columns of the frames, for a Plan."""
-        return self._frames.skin
-
-    @property
-    def sensel_type(self) -> str:
-        """'uint8', 'uint16' or 'float32', for a Plan."""
-        return self._frames.sensel_type
-
-    @property
-    def health(self) -> dict[str, Any]:
-        """What came and what did not: frames, lost, incomplete, late, ..., rate_hz; as mismatch, the
-        size of frames that came instead, or ''."""
-        return self._frames.health()
+        super().__init__(source, skin or _core.Skin(2, 2), serial_baud)
 
     def receive(self, timeout_s: float) -> Optional[Frame]:
         """The next frame, or None if none comes in time; raises StopIteration at the end."""
-        item = self._frames.next(timeout_s)
+        item = self.next(timeout_s)
         return None if item is None else Frame(*item)
-
-    def discard_waiting(self) -> None:
-        """Discards the frames that wait, without counting them as lost."""
-        self._frames.discard_waiting()
-
-    def close(self) -> None:
-        """Closes the source."""
-        self._frames.close()
 
     def __iter__(self) -> Iterator[Frame]:
         return self
@@ -101,12 +77,12 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
     return LiveSource(source, skin=skin, serial_baud=serial_baud)
 
 
-class LiveSink:
+class LiveSink(_core.LiveSink):
     """Passes forces on without waiting for who receives them; sink() opens one."""
 
     def __init__(self, target: str, plan: _core.Plan, *, contacts: bool = False, source: str = "",
                  overwrite: bool = False, allow_origins: Sequence[str] = ()) -> None:
-        self._sink = _core.LiveSink(target, plan, contacts, source, overwrite, list(allow_origins))
+        super().__init__(target, plan, contacts, source, overwrite, list(allow_origins))
         self._contacts = contacts
         self._sent = 0
 
@@ -115,18 +91,8 @@ class LiveSink:
         if len(forces.shape) != 2:
             raise Error("LiveSink.send", "the forces are of several frames", "send one at a time")
         contacts = forces.contacts if self._contacts else None
-        self._sink.send(forces._batch(), contacts, float(forces.times), self._sent)
+        self.send_planes(forces._batch(), contacts, float(forces.times), self._sent)
         self._sent += 1
-
-    @property
-    def statistics(self) -> dict[str, Any]:
-        """frames, dropped, clients, refused; the failure that stopped it, or ''; and as notice the
-        first client refused for its origin, or ''."""
-        return self._sink.statistics()
-
-    def close(self, finish: bool = True) -> None:
-        """Closes the sink. finish: complete its file; else it stays a part."""
-        self._sink.close(finish)
 
     def __enter__(self) -> LiveSink:
         return self

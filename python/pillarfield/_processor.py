@@ -15,7 +15,7 @@ from ._field import ForceField
 from ._frames import readings_of
 
 
-class Processor:
+class Processor(_core.Processor):
     """Solves frames one by one on an OpenCL device, in order, several in flight.
 
     plan: Plan with the skin and what to compute
@@ -39,20 +39,9 @@ class Processor:
 
     def __init__(self, plan: _core.Plan, *, frames_in_flight: int = 2, lent: int = 4,
                  contacts: bool = False, device: str = "") -> None:
-        self._ring = _core.Processor(plan, frames_in_flight, lent, contacts, device)
-        self._plan = plan
+        super().__init__(plan, frames_in_flight, lent, contacts, device)
         self._in_flight = frames_in_flight
         self._submitted = 0
-
-    @property
-    def plan(self) -> _core.Plan:
-        """Its Plan."""
-        return self._plan
-
-    @property
-    def in_flight(self) -> int:
-        """Frames submitted and not yet received."""
-        return self._ring.in_flight
 
     def submit(self, frame: Any, time_s: Optional[float] = None) -> None:
         """Starts to solve a frame, which it copies.
@@ -63,9 +52,9 @@ class Processor:
         Raises Error if all frames are in flight or the frame does not fit.
         """
         if time_s is None:
-            time_s = getattr(frame, "time_s", self._submitted * self._plan.frame_interval_s)
-        readings = readings_of(getattr(frame, "readings", frame), self._plan.sensel_type)
-        self._ring.submit(readings, time_s, getattr(frame, "missing", []))
+            time_s = getattr(frame, "time_s", self._submitted * self.plan.frame_interval_s)
+        readings = readings_of(getattr(frame, "readings", frame), self.plan.sensel_type)
+        self.submit_readings(readings, time_s, getattr(frame, "missing", []))
         self._submitted += 1
 
     def receive(self) -> ForceField:
@@ -73,11 +62,11 @@ class Processor:
 
         Raises Error if none is in flight.
         """
-        return self._field(self._ring.receive())
+        return self._field(self.receive_planes())
 
     def try_receive(self) -> Optional[ForceField]:
         """receive() if the oldest frame in flight is solved, without waiting; else None."""
-        planes = self._ring.try_receive()
+        planes = self.try_receive_planes()
         return None if planes is None else self._field(planes)
 
     def stream(self, frames: Iterable[Any], ahead: int = 0) -> Iterator[ForceField]:
@@ -107,25 +96,9 @@ class Processor:
     def _discard(self) -> None:
         """Receives a frame that nobody wants, unless the processor is closed."""
         try:
-            self._ring.receive()
+            self.receive_planes()
         except Error:
             pass
-
-    def set_tare(self, tare: npt.ArrayLike) -> None:
-        """Replaces the tare, [R, C], counts, for the frames submitted from now on.
-
-        Raises Error if the plan has no tare (it may be zero) or the values do not fit.
-        """
-        self._ring.set_tare(tare)
-
-    @property
-    def tare(self) -> Optional[npt.NDArray[np.float32]]:
-        """The tare after all frames so far, float32 [R, C], counts, or None."""
-        return self._ring.tare()
-
-    def close(self) -> None:
-        """Frees the device, but no result that is held."""
-        self._ring.close()
 
     def __enter__(self) -> Processor:
         return self
@@ -137,11 +110,11 @@ class Processor:
     def _field(self, planes: dict[str, Any]) -> ForceField:
         contacts = planes.pop("contacts", None)
         return ForceField._of(planes, np.asarray(planes.pop("times")),
-                              None if contacts is None else [contacts], self._plan.skin,
-                              _core.SolvedBy(self._plan))
+                              None if contacts is None else [contacts], self.plan.skin,
+                              _core.SolvedBy(self.plan))
 
 
-class Contacts:
+class Contacts(_core.Tracker):
     """Finds the contacts of frame after frame and tracks them over time.
 
     plan: Plan of the solver; it gives pitch, friction and noise of the sensor
@@ -158,9 +131,6 @@ class Contacts:
     <FrameContacts: 1 contacts, 0.8 N>
     """
 
-    def __init__(self, plan: _core.Plan, *, minimum_pillars: int = 1, reach_mm: float = 10.0) -> None:
-        self._tracker = _core.Tracker(plan, minimum_pillars=minimum_pillars, reach_mm=reach_mm)
-
     def update(self, forces: ForceField) -> _core.FrameContacts:
         """The contacts of the next frame; forces are of one frame."""
         if len(forces.shape) != 2:
@@ -169,4 +139,4 @@ class Contacts:
 
     def over(self, forces: ForceField) -> Sequence[_core.FrameContacts]:
         """The contacts of each of the next frames."""
-        return self._tracker.update(forces._batch(), forces.times.reshape(-1))
+        return self.update_planes(forces._batch(), forces.times.reshape(-1))

@@ -1,7 +1,8 @@
-"""Files of frames and of forces."""
+"""Files of frames and of forces, and frames in memory."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from typing import Any, Optional, Union
 
@@ -9,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._error import Error
 from ._field import ForceField
-from ._frames import Axes, Path, Readings, axis_words
+from ._frames import Axes, Path, Readings, axis_words, frames_first, readings_of, times_of
+from ._scene import Simulation
 
 
 def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
@@ -21,7 +24,7 @@ def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
     return chosen.start, chosen.step, len(chosen)
 
 
-class Recording:
+class Recording(_core.FrameSource):
     """Frames of a file of any format (docs/formats.md), read when they are indexed.
 
     recording[10] is a frame [R, C], recording[1000:2000:10] an array [T, R, C], of uint8, uint16 or
@@ -40,61 +43,32 @@ class Recording:
     def __init__(self, path: Path, *, trust: bool = False, dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
                  tare_frames: int = 0, axes: Axes = "") -> None:
-        self._source = _core.FrameSource.open(
+        super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
             rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes))
 
     @property
-    def skin(self) -> _core.Skin:
-        """Skin with the constants of the file."""
-        return self._source.skin
-
-    @property
-    def calibration(self) -> _core.Calibration:
-        """Planes of the file's calibration."""
-        return self._source.calibration
-
-    @property
-    def times(self) -> npt.NDArray[np.float64]:
-        """Times of all frames, float64 [T], s."""
-        return self._source.times()
-
-    @property
     def dtype(self) -> np.dtype[Any]:
         """Type of the readings: uint8, uint16 or float32."""
-        return np.dtype(self._source.sensel_type)
+        return np.dtype(self.sensel_type)
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """(frames, sensel rows, sensel columns)."""
         return len(self), self.skin.rows, self.skin.cols
 
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the file, one sentence each."""
-        return self._source.warnings
-
-    @property
-    def has_truth(self) -> bool:
-        """Whether it is simulated and has its true forces."""
-        return self._source.has_truth
-
     def truth(self, frames: Union[int, slice] = slice(None)) -> ForceField:
         """True forces of a frame or of a slice. Raises Error without truth."""
         chosen = range_of(frames, len(self))
-        planes = self._source.read_truth(*chosen)
-        times = self._source.times()[frames if isinstance(frames, slice) else slice(
+        planes = self.read_truth(*chosen)
+        times = self.times[frames if isinstance(frames, slice) else slice(
             chosen[0], chosen[0] + 1)]
         field = ForceField._of(planes, times, None, self.skin)
         return field if isinstance(frames, slice) else field[0]
 
-    def __len__(self) -> int:
-        """The number of frames."""
-        return len(self._source)
-
     def __getitem__(self, frames: Union[int, slice]) -> Readings:
         """Readings of a frame [R, C] or of a slice [T, R, C]."""
-        readings = self._source.read(*range_of(frames, len(self)))
+        readings = self.read(*range_of(frames, len(self)))
         return readings if isinstance(frames, slice) else np.asarray(readings[0])
 
     def __iter__(self) -> Iterator[Readings]:
@@ -110,7 +84,7 @@ class Recording:
         return f"<Recording: {frames} frames of {rows} x {cols} sensels, {self.dtype}>"
 
 
-class ForceFile:
+class ForceFile(_core.ForceReader):
     """A file of forces, read when it is indexed.
 
     file[10] is the ForceField of a frame, file[1000:2000:10] that of several. trust: the file comes
@@ -118,38 +92,11 @@ class ForceFile:
     damaged.
     """
 
-    def __init__(self, path: Path, *, trust: bool = False) -> None:
-        self._reader = _core.ForceReader(path, trust=trust)
-
-    @property
-    def skin(self) -> _core.Skin:
-        """Skin, as far as the file tells: size, pitch and surface."""
-        return self._reader.skin
-
-    @property
-    def estimator(self) -> str:
-        """The estimator that solved it."""
-        return self._reader.estimator
-
-    @property
-    def source(self) -> str:
-        """Name of the file of frames."""
-        return self._reader.source
-
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the file, one sentence each."""
-        return self._reader.warnings
-
-    def __len__(self) -> int:
-        """The number of frames."""
-        return len(self._reader)
-
     def __getitem__(self, frames: Union[int, slice]) -> ForceField:
         """Forces of a frame, planes [P, Q], or of a slice, [T, P, Q]."""
-        planes = self._reader.read(*range_of(frames, len(self)))
+        planes = self.read(*range_of(frames, len(self)))
         field = ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), self.skin,
-                               self._reader.solved_by)
+                               self.solved_by)
         return field if isinstance(frames, slice) else field[0]
 
     def __iter__(self) -> Iterator[ForceField]:
@@ -170,3 +117,75 @@ def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _cor
     if kind == "calibration":
         return _core.Calibration.load(path, trust=trust)
     return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust)
+
+
+def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
+                   times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
+                   axes: Axes = "",
+                   calibration: Optional[_core.Calibration] = None,
+                   overwrite: bool = False) -> None:
+    """Writes frames as a recording, for the viewer and the command line.
+
+    frames: readings, counts, [T, R, C], or what solve() takes but iterators
+    skin, times, rate_hz, axes, calibration: as in solve()
+    overwrite: replace an existing recording. Raises Error if it cannot be written.
+    """
+    if isinstance(frames, (str, os.PathLike)) and (skin or calibration or times is not None):
+        frames = Recording(frames, rate_hz=rate_hz if times is None else 1.0, axes=axes)
+        rate_hz, axes = None, ""
+    if isinstance(frames, Recording) and (skin or calibration or times is not None):
+        skin, calibration = skin or frames.skin, calibration or frames.calibration
+        times = frames.times if times is None else times
+        frames = frames[:]
+    source_of(frames, skin, times, rate_hz, calibration, axes).write(path, overwrite=overwrite)
+
+
+def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
+              rate_hz: Optional[float] = None,
+              calibration: Optional[_core.Calibration] = None,
+              axes: Axes = "") -> _core.FrameSource:
+    """Frames with random access from a path, an array, a Recording or a Simulation.
+
+    axes: of an array, or that of a path.
+    """
+    if isinstance(frames, (str, os.PathLike, Recording)) and times is not None:
+        raise Error("times", "files have times of their own", "give times with an array")
+    if isinstance(frames, (str, os.PathLike)):
+        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes))
+    if isinstance(frames, Recording):
+        if rate_hz is not None:
+            raise Error("rate_hz", "this Recording was opened without it", "give it to pf.Recording()")
+        if axes:
+            raise Error("axes", "a Recording has the axes frames, rows, columns",
+                        "give axes to pf.Recording()")
+        return frames
+    if axes:
+        if isinstance(frames, Simulation):
+            raise Error("axes", "a Simulation has the axes frames, rows, columns", "leave it out")
+        frames = frames_first(frames, axes)
+    axes_are_known = bool(axes) or skin is not None or isinstance(frames, Simulation)
+    if isinstance(frames, Simulation):
+        skin, calibration = skin or frames.skin, calibration or frames.calibration
+        times = frames.times if times is None else times
+        frames = frames.frames
+    readings = readings_of(frames)
+    if readings.ndim not in (2, 3):
+        raise Error("frames", f"the array has {readings.ndim} axes",
+                    "give [rows, cols] for a frame, [frames, rows, cols] for several")
+    if readings.ndim == 2:
+        if not axes_are_known:
+            _core.require_likely_frame(*readings.shape, "frames")
+        readings = readings.reshape(1, *readings.shape)
+    return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
+                                      skin_of(skin, readings.shape[-2:]), calibration,
+                                      axes_are_known)
+
+
+def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:
+    """The skin of frames of this shape; raises Error if a given one has another size."""
+    if skin is None:
+        return _core.Skin(*shape)
+    if (skin.rows, skin.cols) != shape:
+        raise Error("frames", f"they are {shape[0]} x {shape[1]}",
+                    f"the skin has {skin.rows} x {skin.cols} sensels")
+    return skin

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Optional, TypeGuard, Union
+from typing import Any, Optional, TypeGuard, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,13 +13,10 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import (Axes, Path, array_of, axis_words, frames_first, readings_of, timed,
-                      times_of, warn)
-from ._recording import Recording
+from ._frames import Axes, Path, array_of, readings_of, timed, warn
+from ._recording import Recording, skin_of, source_of
 from ._scene import Simulation
-
-if TYPE_CHECKING:
-    from .calibrate import Step
+from .calibrate import Step, tare
 
 _SCALE_ASSUMED = (f"The frames have no counts_per_newton; {_core.Skin(2, 2).counts_per_newton:g} "
                   "is assumed.")
@@ -68,23 +65,18 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
         frames = array_of(frames)
-    if axes and not isinstance(frames, (str, os.PathLike)):
-        frames = _with_axes(frames, axes)
     source = source_of(frames, skin, times, rate_hz, axes=axes)
     if tare_frames:
-        calibration = _tare_of(frames, tare_frames, calibration, skin or source.skin, rate_hz, axes)
+        if not 10 <= tare_frames < len(source):
+            raise Error("tare_frames", f"{tare_frames} of {len(source)} frames cannot be the unloaded ones",
+                        "give 10 or more, but fewer than there are")
+        calibration = tare(source.read(0, 1, tare_frames), calibration or source.calibration,
+                           skin=skin or source.skin).calibration
     _warn(([_SCALE_ASSUMED] if source.format == "array" else []) + source.warnings,
           _constants_given(skin, calibration, options))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
-
-
-def _with_axes(frames: Any, axes: Axes) -> npt.ArrayLike:
-    if isinstance(frames, (Recording, Simulation)):
-        raise Error("axes", f"a {type(frames).__name__} has the axes frames, rows, columns",
-                    "give axes to pf.Recording()")
-    return frames_first(frames, axes)
 
 
 def _calibration_of(given: Any) -> Optional[_core.Calibration]:
@@ -112,113 +104,14 @@ def _warn(sentences: Iterable[str], given: set[str]) -> None:
     warn(sentence for sentence in sentences if not any(name in sentence for name in given))
 
 
-def _tare_of(frames: Any, count: int, before: Any, skin: _core.Skin,
-             rate_hz: Optional[float], axes: Axes) -> _core.Calibration:
-    from .calibrate import tare  # which imports this module
-    if isinstance(frames, (str, os.PathLike)):
-        frames = Recording(frames, rate_hz=rate_hz, axes=axes)
-    if isinstance(frames, Recording):
-        before = before or frames.calibration
-    frames = getattr(frames, "frames", frames)
-    if getattr(frames, "ndim", 3) != 3 or not 10 <= count < len(frames):
-        raise Error("tare_frames", f"{count} of {len(frames)} frames cannot be the unloaded ones",
-                    "give 10 or more, but fewer than there are")
-    first = frames[:count]
-    return tare(first, before, skin=skin).calibration
-
-
-def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
-                   times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-                   calibration: Optional[_core.Calibration] = None,
-                   overwrite: bool = False) -> None:
-    """Writes frames as a recording, for the viewer and the command line.
-
-    frames: readings, counts, [T, R, C], or what solve() takes but iterators
-    skin, times, rate_hz, calibration: as in solve()
-    overwrite: replace an existing recording. Raises Error if it cannot be written.
-    """
-    if isinstance(frames, (str, os.PathLike)) and (skin or calibration or times is not None):
-        frames = Recording(frames, rate_hz=rate_hz if times is None else 1.0)
-        rate_hz = None
-    if isinstance(frames, Recording) and (skin or calibration or times is not None):
-        skin, calibration = skin or frames.skin, calibration or frames.calibration
-        times = frames.times if times is None else times
-        frames = frames[:]
-    source_of(frames, skin, times, rate_hz, calibration).write(path, overwrite=overwrite)
-
-
-def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
-              rate_hz: Optional[float] = None,
-              calibration: Optional[_core.Calibration] = None,
-              axes: Axes = "") -> _core.FrameSource:
-    """Frames with random access from a path, an array, a Recording or a Simulation.
-
-    axes: of a path's array; an array has frames first, and `axes` says that they are known.
-    """
-    if isinstance(frames, (str, os.PathLike, Recording)) and times is not None:
-        raise Error("times", "files have times of their own", "give times with an array")
-    if isinstance(frames, (str, os.PathLike)):
-        return _core.FrameSource.open(frames, rate_hz=rate_hz, axes=axis_words(axes))
-    if isinstance(frames, Recording):
-        if rate_hz is not None:
-            raise Error("rate_hz", "this Recording was opened without it", "give it to pf.Recording()")
-        return frames._source
-    axes_are_known = bool(axes) or skin is not None or isinstance(frames, Simulation)
-    if isinstance(frames, Simulation):
-        skin, calibration = skin or frames.skin, calibration or frames.calibration
-        times = frames.times if times is None else times
-        frames = frames.frames
-    readings = readings_of(frames)
-    if readings.ndim not in (2, 3):
-        raise Error("frames", f"the array has {readings.ndim} axes",
-                    "give [rows, cols] for a frame, [frames, rows, cols] for several")
-    if readings.ndim == 2:
-        if not axes_are_known:
-            _core.require_likely_frame(*readings.shape, "frames")
-        readings = readings.reshape(1, *readings.shape)
-    return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
-                                      skin_of(skin, readings.shape[-2:]), calibration,
-                                      axes_are_known)
-
-
 def _is_iterator(frames: Any) -> TypeGuard[Iterable[Any]]:
     return (isinstance(frames, Iterable) and not hasattr(frames, "__array__")
             and not isinstance(frames, (str, list, tuple, os.PathLike, Simulation)))
 
 
-def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:
-    """The skin of frames of this shape; raises Error if a given one has another size."""
-    if skin is None:
-        return _core.Skin(*shape)
-    if (skin.rows, skin.cols) != shape:
-        raise Error("frames", f"they are {shape[0]} x {shape[1]}",
-                    f"the skin has {skin.rows} x {skin.cols} sensels")
-    return skin
-
-
-def _needs_interval(options: dict[str, Any], calibration: Any) -> bool:
-    if "frame_interval_s" in options:
-        return False
-    if isinstance(calibration, (str, os.PathLike)):
-        return True
-    return ("baseline_time_s" in options or "scene" in options
-            or (calibration is not None and "memory" in calibration.effects))
-
-
-def _interval_of(source: _core.FrameSource) -> float:
-    """Seconds between frames: the median of the first ones, so that a gap does not count."""
-    times = source.times(101)
-    interval = float(np.median(np.diff(times))) if len(times) > 1 else 0.01
-    if not interval > 0:
-        raise Error("frames", "their times do not rise", "give times that do, or frame_interval_s")
-    return interval
-
-
 def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any, contacts: bool,
                   device: str, options: dict[str, Any]) -> ForceField:
-    if _needs_interval(options, calibration):
-        options = {"frame_interval_s": _interval_of(source), **options}
-    plan = _core.Plan(skin, sensel_type=source.sensel_type, calibration=calibration, **options)
+    plan = _core.plan_of(source, skin, calibration=calibration, **options)
     planes = _core.solve_source(source, plan, contacts, device)
     return _field_of(planes, plan, source.has_truth or "scene" in options)
 

@@ -14,7 +14,6 @@ from . import _core
 from ._error import Error
 from ._frames import Path
 from ._recording import ForceFile, Recording
-from ._solve import _needs_interval, _interval_of
 
 __all__ = ["join", "solve", "solve_part"]
 
@@ -91,14 +90,12 @@ def solve_part(recording: Path, output: Path, part: int, parts: int, *,
     Returns whether it was solved by this call. Raises Error if a file or an option is wrong, or if
     another process writes the part.
     """
-    source = Recording(recording, **(reading or {}))._source
-    if _needs_interval(options, calibration or source.calibration):
-        options = {"frame_interval_s": _interval_of(source), **options}
-    plan = _core.Plan(source.skin, sensel_type=source.sensel_type,
-                      calibration=calibration or source.calibration, **options)
+    source = Recording(recording, **(reading or {}))
+    plan = _core.plan_of(source, source.skin, calibration=calibration or source.calibration, **options)
     warm_up = checkpoint_every // 10 if warm_up is None else warm_up
-    return _core.solve_part(source, plan, os.path.basename(recording), output, part, parts,
-                            checkpoint_every, warm_up, contacts, device)
+    solved: bool = _core.solve_part(source, plan, os.path.basename(recording), output, part, parts,
+                                    checkpoint_every, warm_up, contacts, device)
+    return solved
 
 
 def join(output: Path, *, overwrite: bool = False, trust: bool = False) -> None:

@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "calibration/mean_frame.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/tare.h"

@@ -169,27 +169,6 @@ class Chain(Calibrate):
         log.unlink()
         self.assert_fails(*step, names=["log.csv"])
 
-    def test_a_power_law_is_found_and_undone(self):
-        sensor = SENSOR.replace("dead_zone_counts = 3", "power_law_exponent = 1.3\n"
-                                "power_law_reference_counts = 150")
-        tared = self.folder / "tared.h5"
-        run("calibrate", "tare", self.unloaded(sensor=sensor), "-o", tared)
-        middle = self.pressed(0.5, sensor=sensor)
-        light, heavy = self.pressed(0.1, sensor=sensor), self.pressed(0.9, sensor=sensor)
-        equal, straight = self.folder / "equal.h5", self.folder / "straight.h5"
-        run("calibrate", "equilibrate", middle, "--pressure-kpa", self.pressure_kpa(0.5),
-            "--calibration", tared, "-o", equal)
-        pillars = SIZE * SIZE
-        loads = ",".join(str(newtons * pillars) for newtons in (0.1, 0.5, 0.9))
-        result = run_json("calibrate", "load", light, middle, heavy, "--load-n", loads,
-                          "--model", "power", "--calibration", equal, "-o", straight)
-        self.assertAlmostEqual(result["power_law_exponent"], 1.3, delta=0.005)
-        ball = self.record("ball", BALL, sensor=sensor, frames=20)
-        self.assertLess(self.error_of(ball, "--calibration", straight),
-                        0.4 * self.error_of(ball, "--calibration", equal))
-        solved = run_json("solve", ball, "--calibration", straight, "-o", self.folder / "f.h5")
-        self.assertIn("power_law", solved["stages"])
-
     def test_faults_are_found_and_masked(self):
         sensor = SENSOR.replace("dead_share = 0.003", "")
         tared = self.folder / "tared.h5"

@@ -1,6 +1,5 @@
-"""Docstrings, doctests, the names of the stub, and the manual's snippets."""
+"""Doctests, exported names, objects without a value, and the manual's snippets."""
 
-import ast
 import contextlib
 import doctest
 import importlib
@@ -37,18 +36,6 @@ class Documentation(unittest.TestCase):
             tried += result.attempted
         self.assertGreater(tried, 20)
 
-    def test_every_public_name_has_a_docstring(self):
-        for name in pf.__all__:
-            value = getattr(pf, name)
-            if name == "__version__":
-                continue
-            self.assertTrue(inspect.getdoc(value), name)
-            if not inspect.isclass(value) or issubclass(value, int):
-                continue
-            for member, attribute in public(value).items():
-                fields = getattr(value, "__dataclass_fields__", {})
-                self.assertTrue(inspect.getdoc(attribute) or member in fields, f"{name}.{member}")
-
     def test_the_manual_runs(self):
         """Each Python block of docs/python.md runs, in order, in one program."""
         blocks = re.findall(r"^```python\n(.*?)^```$", (SOURCE / "docs/python.md").read_text(),
@@ -62,18 +49,7 @@ class Documentation(unittest.TestCase):
                 exec(compile(block, "docs/python.md", "exec"), names)
 
 
-class Stub(unittest.TestCase):
-    def test_names_of_the_compiled_half(self):
-        tree = ast.parse((SOURCE / "python/pillarfield/_core.pyi").read_text())
-        for node in tree.body:
-            if isinstance(node, ast.ClassDef):
-                stubbed = {entry.name for entry in node.body if isinstance(entry, ast.FunctionDef)}
-                bound = {name for name in vars(getattr(pf._core, node.name))
-                         if not name.startswith("_") or name in ("__len__", "__getitem__")}
-                self.assertEqual(stubbed - {"__init__"}, bound, node.name)
-        stubbed = {node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
-        self.assertEqual(stubbed, set(public(pf._core)))
-
+class Names(unittest.TestCase):
     def test_an_object_without_a_value_raises(self):
         for cls in vars(pf._core).values():
             if not inspect.isclass(cls) or type(cls).__name__ != "pybind11_type":

@@ -77,7 +77,7 @@ class Steps(unittest.TestCase):
         frames = noisy(self.tare + add * self.gain)
         pulled = np.sqrt(2) * (2 * 400 - 2 * 200) / (4 * K) * 25
         step = pf.calibrate.shear([(frames, (pulled / 1.3, 0.0))], self.equilibrated().calibration)
-        self.assertAlmostEqual(step.facts["coefficient"][0], 1.3, delta=0.05)
+        self.assertAlmostEqual(step.facts["shear_coefficient_x"], 1.3, delta=0.05)
 
     def test_paths_and_wrong_arguments(self):
         path = WORK / "unloaded.h5"

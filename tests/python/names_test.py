@@ -40,8 +40,14 @@ def numbers():
         for owner in ast.parse(path.read_text()).body:
             for node in owner.body if isinstance(owner, ast.ClassDef) else ():
                 if isinstance(node, ast.FunctionDef) and node.returns and len(node.args.args) == 1:
-                    if re.search("float|ndarray|Floats|Array", ast.unparse(node.returns)):
-                        yield f"{owner.name}.{node.name}"
+                    name, kind = node.name, node.returns
+                elif isinstance(node, ast.AnnAssign):
+                    name, kind = ast.unparse(node.target), node.annotation
+                else:
+                    continue
+                if re.search("float|ndarray|NDArray|Floats|Place", ast.unparse(kind)):
+                    owners = ["Contact", "ContactTotal"] if owner.name == "_Quantities" else [owner.name]
+                    yield from (f"{each}.{name}" for each in owners)
 
 
 class Names(unittest.TestCase):

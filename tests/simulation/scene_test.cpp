@@ -77,7 +77,6 @@ recording = 3
 parity_tolerance_counts = 4
 baseline_time_s = 30
 estimator = "direct"
-segment_point = 0.75
 angles = true
 uncertainty = true
 [[contact]]
@@ -151,7 +150,6 @@ load_n = 0.5
   EXPECT_EQ(scene.parity_tolerance_counts, 4);
   EXPECT_EQ(scene.baseline_time_s, 30);
   EXPECT_EQ(scene.estimator, Estimator::direct);
-  EXPECT_EQ(scene.segment_point, 0.75);
   EXPECT_TRUE(scene.angles);
   EXPECT_TRUE(scene.uncertainty);
   const auto& contacts = std::get<std::vector<Contact>>(scene.load);
@@ -184,7 +182,6 @@ TEST(Scene, WhatIsNotListedIsAbsent) {
   EXPECT_FALSE(scene.sensor.adc_bits);
   EXPECT_FALSE(scene.parity_tolerance_counts);
   EXPECT_EQ(scene.estimator, Estimator::direct);
-  EXPECT_EQ(scene.segment_point, 0.875);
   EXPECT_FALSE(scene.angles);
   EXPECT_FALSE(scene.uncertainty);
   EXPECT_EQ(scene.skin.counts_per_newton, 320);
@@ -421,7 +418,6 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "parity_tolerance_counts",
                                    "baseline_time_s",
                                    "estimator",
-                                   "segment_point",
                                    "angles",
                                    "uncertainty",
                                    "factor",

@@ -328,7 +328,6 @@ TEST(Simulator, RefusesScenesOutOfRange) {
       [](Scene& s) { s.skin.full_scale_counts = 256; },
       [](Scene& s) { s.skin.full_scale_counts = 200.5; },
       [](Scene& s) { s.parity_tolerance_counts = -1; },
-      [](Scene& s) { s.segment_point = 1.5; },
       [&](Scene& s) { ball(s).contact_radius_mm = kNan; },
       [&](Scene& s) { ball(s).path.clear(); },
       [&](Scene& s) { ball(s).path.push_back(ball(s).path.front()); },

@@ -140,8 +140,6 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
        "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
        "allowed: estimator = \"direct\" or \"contact\""},
-      {"[solver]\nsegment_point = 0",
-       "s.toml:3: key 'segment_point' in [solver] is 0; allowed: a number in (0, 1]"},
       {"[solver]\nparity_tolerance_counts = true",
        "s.toml:3: key 'parity_tolerance_counts' in [solver] is true; allowed: a number in [0, "
        "1e+33]"},

@@ -8,6 +8,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/plan_builder.h"
 #include "pillarfield/reading_check.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
@@ -149,10 +150,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   info.name = path.filename().string();
   info.kind = source->format();
   info.warnings = source->warnings();
-  SolverPlan plan;
-  plan.skin = source->skin();
-  plan.sensel_type = source->sensel_type();
-  plan.calibration = source->calibration();
+  SolverPlan plan = plan_of_frames(*source);
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
   plan.frame_interval_s = 1 / info.rate_hz;

@@ -14,6 +14,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/live_tare.h"
 #include "pillarfield/pipeline.h"
+#include "pillarfield/plan_builder.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/peak_hold.h"
 #include "viewer/source/plane_block.h"
@@ -43,21 +44,6 @@ SourceInfo live_info(const std::string& name, const SolverPlan& plan, const Proc
   info.has_uncertainty = plan.uncertainty;
   set_sensor(info.contacts, plan);
   info.solver = fmt::format("{} on {}", name_of(plan.estimator), processor.device().info().name);
-  return info;
-}
-
-LiveSinkInfo recording_info(const SourceInfo& source, const SolverPlan& plan,
-                            const std::vector<float>& tare) {
-  LiveSinkInfo info;
-  info.skin = plan.skin;
-  info.sensel_type = plan.sensel_type;
-  info.calibration = plan.calibration;
-  info.calibration.tare = tare;
-  info.forces.rows = plan.skin.pillar_rows();
-  info.forces.cols = plan.skin.pillar_cols();
-  info.forces.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
-  info.forces.source = source.name;
-  info.replace = Replace::nothing;
   return info;
 }
 
@@ -405,7 +391,9 @@ void LivePlayer::record(const std::filesystem::path& path) {
   LiveSinkInfo info;
   {
     const std::scoped_lock lock(state_->mutex);
-    info = recording_info(state_->info, state_->plan, state_->tare);
+    info = sink_info(state_->plan, "", state_->info.name);
+    info.calibration.tare = state_->tare;
+    info.replace = Replace::nothing;
   }
   auto sink = create_live_recording(path.string(), info);
   const std::scoped_lock lock(state_->recording_mutex);
@@ -459,17 +447,15 @@ LiveStatus LivePlayer::status() const {
 }
 
 SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
-  SolverPlan plan;
-  plan.skin = stream.skin();
-  plan.sensel_type = stream.sensel_type();
-  plan.calibration = stream.calibration();
+  PlanSources from;
+  std::optional<SkinCalibration> calibration;
   if (!options.calibration.empty()) {
-    const SkinCalibration calibration =
-        read_calibration_file(options.calibration, options.producer.read);
-    require_fitting(calibration, plan.skin, options.calibration.string());
-    apply(calibration, plan.skin, plan.calibration);
+    calibration = read_calibration_file(options.calibration, options.producer.read);
+    from.calibration = &*calibration;
   }
-  if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
+  from.settings.counts_per_newton = options.counts_per_newton;
+  SolverPlan plan = build_plan(plan_of_frames(stream), from, options.calibration.string(),
+                               [&] { return SolverPlan{}.frame_interval_s; });
   if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
   plan.angles = true;
   plan.uncertainty = plan.noise_counts.has_value() || !plan.calibration.noise.empty();

@@ -13,6 +13,11 @@ void note_former_name(const std::string& former, const std::string& name) {
              former, name);
 }
 
+void add_former_option(CLI::App* command, const std::string& name, const std::string& note) {
+  const auto print = [note](const std::string&) { fmt::print(stderr, "pillarfield: {}\n", note); };
+  command->add_option_function<std::string>(name, print, note)->group("");
+}
+
 CLI::Validator number_in(double least, double most) {
   const auto error_of = [=](const std::string& text) -> std::string {
     double value = 0;

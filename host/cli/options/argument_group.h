@@ -21,6 +21,9 @@ inline constexpr double kAny = std::numeric_limits<double>::max();
 /// Prints that a former name works in this release only.
 void note_former_name(const std::string& former, const std::string& name);
 
+/// Adds an option that has no effect any more: its value is dropped, and `note` printed.
+void add_former_option(CLI::App* command, const std::string& name, const std::string& note);
+
 /// Accepts a finite number in [least, most]; CLI::Range also accepts NaN.
 CLI::Validator number_in(double least, double most);
 

@@ -12,7 +12,6 @@
 #include "base/nearest_word.h"
 #include "cli/commands.h"
 #include "cli/options/argument_group.h"
-#include "cli/options/completion.h"
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
 #include "cli/part_share.h"

@@ -1,6 +1,6 @@
-#include "cli/options/completion.h"
-
 #include <fmt/format.h>
+
+#include "cli/options/help.h"
 
 namespace pillarfield::cli {
 
@@ -15,6 +15,7 @@ std::string completion_words(const CLI::App& app, std::span<const std::string> w
     lines += fmt::format("{}\t{}\n", command->get_name(), command->get_description());
   }
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;  // A former name.
     for (const std::string& name : option->get_lnames()) {
       lines += fmt::format("--{}\t{}\n", name, option->get_description());
     }

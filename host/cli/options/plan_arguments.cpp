@@ -1,11 +1,48 @@
-// Options of sensor, solver, contacts and device, which several commands have.
+// Options of sensor, solver, contacts and device, which several commands have, and their plan.
 
 #include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "cli/options/shared_arguments.h"
+#include "cli/pace/frames.h"
+#include "cli/warnings.h"
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/error.h"
+#include "pillarfield/printable.h"
+#include "pipeline/plan_settings.h"
 #include "skin/limits.h"
 
 namespace pillarfield::cli {
+namespace {
+
+/// Adds the numbers of a heading of the help.
+void add_settings(Group& group, const char* heading, PlanSettings& settings) {
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (setting.option == nullptr || std::string_view(setting.heading) != heading) continue;
+    std::optional<double>& target = settings.*setting.member;
+    const auto& [low, high, open_low, open_high] = setting.range;
+    if (setting.whole) {
+      group.whole(setting.option, target, setting.unit, setting.help,
+                  static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high));
+    } else if (low == kAnyNumber.low) {
+      group.number(setting.option, target, setting.unit, setting.help);
+    } else {
+      group.number(setting.option, target, setting.unit, setting.help, low, high);
+    }
+  }
+}
+
+/// Refuses a tare of the frames where that of the calibration is needed behind its wires.
+void check_tare(const PlanOptions& options, const SensorEffects& effects) {
+  if (options.read.tare_frames == 0 || !effects.wires || has_offset_tares(effects)) return;
+  throw Error("--tare-frames", "the tare of a skin with crosstalk of wires needs its calibration",
+              fmt::format("write one: pillarfield calibrate tare UNLOADED --calibration {} -o FILE",
+                          printable(options.calibration)));
+}
+
+}  // namespace
 
 void add_sensor(CLI::App* command, PlanOptions& plan) {
   Group input(command, "Input");
@@ -15,60 +52,38 @@ void add_sensor(CLI::App* command, PlanOptions& plan) {
              "Calibration to take planes and constants from");
   add_trust(command, plan.read);
   Group sensor(command, "Sensor");
-  sensor.number("--threshold", plan.threshold_counts, "COUNTS",
-                "Readings above this are usable [the file's]");
-  sensor.number("--counts-per-newton", plan.counts_per_newton, "COUNTS",
-                "Counts per newton and pillar [the file's]");
-  sensor.number("--full-scale", plan.full_scale_counts, "COUNTS",
-                "Readings of this or more are saturated [the file's]");
-  sensor.number("--noise", plan.noise_counts, "COUNTS",
-                "Standard deviation of a reading [the calibration's or scene's]");
-  sensor.number("--follow-baseline", plan.baseline_time_s, "SECONDS",
-                "Time constant with which the tare of untouched sensels follows drift [constant "
-                "tare]",
-                1e-6, 1e9);
-  sensor.whole("--baseline-interval", plan.baseline_interval, "N",
-               "Follow it in one of N pillar rows per frame, at 1/N of the cost [1; with "
-               "--everything up to 64]",
-               1, 1024);
+  add_settings(sensor, "Sensor", plan.settings);
 }
 
 void add_solver(CLI::App* command, PlanOptions& plan) {
+  PlanSettings& settings = plan.settings;
   Group solver(command, "Solver");
   solver.choice<Estimator>(
-      "--estimator", plan.estimator,
+      "--estimator", settings.estimator,
       {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"contact", Estimator::contact}},
       "direct: each pillar from its own readings; paper: the paper's equations; contact: "
       "ambiguous pillars from the friction of their contact [direct]",
       "field", "contact");
   solver
-      .text("--outputs", plan.outputs, "WORDS",
+      .text("--outputs", settings.outputs, "WORDS",
             "Planes to compute, separated by commas: forces; angles adds magnitude, theta and "
             "phi; uncertainty adds standard deviations and intervals [forces]")
       ->check(one_of({"forces", "angles", "uncertainty"}))
       ->delimiter(',');
-  solver.number("--segment-point", plan.segment_point, "RATIO",
-                "Reported point of a region 3 pillar on its feasible segment, as a fraction of the "
-                "largest normal force; 0.5 minimises the largest error [0.875]",
-                1e-6, 1);
-  solver.number("--parity-tolerance", plan.parity_tolerance_counts, "COUNTS",
-                "Flag pillars whose parity residual is larger [not tested]");
-  solver.flag("--everything", plan.everything,
+  add_settings(solver, "Solver", settings);
+  solver.flag("--everything", settings.everything,
               "All outputs, the parity test and --follow-baseline; needs the noise");
+  add_former_option(command, "--segment-point",
+                    "--segment-point went: direct reports 7/8 of the largest normal force");
   Group friction(command, "Friction");
-  friction.number("--friction", plan.friction, "RATIO",
-                  "Friction coefficient of all contacts, known to 3 % [estimated]", kFrictions.low,
-                  kFrictions.high);
-  friction.number("--friction-bound", plan.friction_bound, "RATIO",
-                  "Upper bound of friction coefficients [none]", kFrictionBound.low,
-                  kFrictionBound.high);
+  add_settings(friction, "Friction", settings);
   friction
-      .number("--friction-prior", plan.friction_prior, "MEDIAN,SPREAD",
+      .number("--friction-prior", settings.friction_prior, "MEDIAN,SPREAD",
               "Log-normal prior of friction coefficients [1,0.5]", kPriorSpread.low,
               kFrictions.high)
       ->expected(2)
       ->delimiter(',');
-  friction.flag("--unrelated-frames", plan.unrelated_frames,
+  friction.flag("--unrelated-frames", settings.unrelated_frames,
                 "Carry no friction over from earlier frames");
 }
 
@@ -89,6 +104,30 @@ void add_contacts(CLI::App* command, ContactOptions& options) {
                  std::numeric_limits<std::uint32_t>::max());
   contacts.number("--contact-reach", options.reach_mm, "MM",
                   "Largest movement of a contact between frames [10]");
+}
+
+ReadOptions frame_options(const PlanOptions& options) {
+  ReadOptions read = options.read;
+  read.counts_per_newton = options.settings.counts_per_newton;
+  read.threshold_counts = options.settings.threshold_counts;
+  read.full_scale_counts = options.settings.full_scale_counts;
+  return read;
+}
+
+SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::string& source,
+                   const std::function<double()>& frame_interval_s) {
+  PlanSources from = {.keeps_tare = options.read.tare_frames > 0, .settings = options.settings};
+  std::optional<Scene> scene;
+  const std::string& file = options.scene.empty() && is_scene(source) ? source : options.scene;
+  if (!file.empty()) from.scene = &scene.emplace(load_scene_with_warnings(file));
+  std::optional<SkinCalibration> calibration;
+  if (!options.calibration.empty()) {
+    calibration = read_calibration_file(options.calibration, options.read);
+    check_tare(options, calibration->planes.effects);
+    from.calibration = &*calibration;
+  }
+  if (options.read.sensel_pitch_mm) plan.skin.sensel_pitch_mm = *options.read.sensel_pitch_mm;
+  return build_plan(std::move(plan), from, source, frame_interval_s);
 }
 
 }  // namespace pillarfield::cli

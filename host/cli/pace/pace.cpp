@@ -47,10 +47,8 @@ SolverPlan plan_of(const PaceOptions& options, const PaceFrames& frames) {
   plan.skin = frames.skin;
   plan.sensel_type = frames.sensel_type;
   plan.calibration = frames.calibration;
-  PlanOptions plan_options = options.plan;
-  if (is_scene(options.source) && plan_options.scene.empty()) plan_options.scene = options.source;
   plan =
-      plan_of(plan_options, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
+      plan_of(options.plan, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
   check(plan, options.source);  // Before the frames are loaded, which is slow.
   return plan;
 }

@@ -67,13 +67,7 @@ void check_files(const StreamOptions& options) {
 
 /// The plan has a tare, so that it can be measured anew.
 SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
-  SolverPlan plan;
-  plan.skin = source.skin();
-  plan.sensel_type = source.sensel_type();
-  plan.calibration = source.calibration();
-  PlanOptions plan_options = options.plan;
-  if (is_scene(options.source) && plan_options.scene.empty()) plan_options.scene = options.source;
-  plan = plan_of(plan_options, std::move(plan), options.source, [&] {
+  SolverPlan plan = plan_of(options.plan, plan_of_frames(source), options.source, [&] {
     if (options.rate_hz) return 1 / *options.rate_hz;
     throw Error("--rate", "--follow-baseline and creep need the rate of the sensor",
                 "give --rate HZ");
@@ -84,26 +78,11 @@ SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
 }
 
 LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, const Device& device) {
-  LiveSinkInfo info;
-  info.skin = plan.skin;
-  info.sensel_type = plan.sensel_type;
-  info.calibration = plan.calibration;
+  LiveSinkInfo info = sink_info(plan, device.info().name, options.source);
   info.replace = options.replace;
   info.allowed_origins = options.allowed_origins;
-  ForceFileInfo& forces = info.forces;
-  forces.rows = plan.skin.pillar_rows();
-  forces.cols = plan.skin.pillar_cols();
-  forces.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
-  forces.estimator = name_of(plan.estimator);
-  if (plan.estimator != Estimator::paper) forces.segment_point = plan.segment_point;
-  forces.device = device.info().name;
-  forces.source = options.source;
-  forces.angles = plan.angles;
-  forces.uncertainty = plan.uncertainty;
-  forces.effects = plan.calibration.effects;
-  forces.surface = plan.skin.surface;
-  forces.contacts = options.contacts;
-  set_sensor(*forces.contacts, plan);
+  info.forces.contacts = options.contacts;
+  set_sensor(*info.forces.contacts, plan);
   return info;
 }
 

@@ -14,6 +14,7 @@
 #include "pillarfield/output_file.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/sensor_effects.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
 
@@ -36,6 +37,10 @@ struct ForceFileInfo {
   std::optional<ForcePart> part = {};   ///< it holds one part of the frames; HDF5 only
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };
+
+/// What the plan says of a file of its forces, without contacts. `device` and `source` are names.
+[[nodiscard]] ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
+                                      const std::string& source);
 
 /// Creates a sink in the format of the extension of `path` (docs/formats.md; endings_of() lists
 /// them). `replace` limits which existing file it may replace. Throws Error for another extension

@@ -55,4 +55,8 @@ class FrameStatistics {
 /// Throws Error if `statistics` are of fewer than `least` frames.
 void require_frames(const FrameStatistics& statistics, std::uint32_t least);
 
+/// The mean frame, float32; a sensel at full scale in any frame is at full scale, one without
+/// readings is NaN.
+[[nodiscard]] FrameBuffer mean_frame(const FrameStatistics& frames);
+
 }  // namespace pillarfield

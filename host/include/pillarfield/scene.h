@@ -104,9 +104,8 @@ struct Scene {
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
   std::uint32_t recording = 0;  ///< number of this recording of the seed's sensor; sets its noise
-  std::optional<double> parity_tolerance_counts;  ///< as in SolverPlan, like the next five members
+  std::optional<double> parity_tolerance_counts;  ///< as in SolverPlan, like the next four members
   Estimator estimator = Estimator::direct;
-  double segment_point = kSegmentPoint;
   FrictionKnowledge friction;
   bool angles = false;
   bool uncertainty = false;

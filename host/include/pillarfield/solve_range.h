@@ -56,8 +56,4 @@ std::optional<PipelineStatistics> solve_part(FrameSource& source, const Device& 
                                              ForceFileInfo info, ForcePart part,
                                              std::vector<ForceSink*> others = {});
 
-/// The ForceFileInfo of a solve; `source_name` is the name of the file of frames.
-[[nodiscard]] ForceFileInfo file_info(const SolverPlan& plan, const Device& device,
-                                      const std::string& source_name);
-
 }  // namespace pillarfield

@@ -210,7 +210,6 @@ void check(const Scene& scene, const char* where) {
     check_range(where, "parity_tolerance_counts", *scene.parity_tolerance_counts,
                 kParityToleranceCounts);
   }
-  check_range(where, "segment_point", scene.segment_point, kSegmentPoints);
   if (scene.baseline_time_s) {
     check_range(where, "baseline_time_s", *scene.baseline_time_s, kBaselineTimeS);
   }

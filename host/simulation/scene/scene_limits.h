@@ -149,8 +149,6 @@ inline constexpr Range kRateHz = {1e-6, 1e6};
 inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr std::uint32_t kMaxRecording = 1'000'000'000;
 inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
-inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
-inline constexpr Range kSegmentPoints = {0, 1, true};
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};

@@ -237,8 +237,9 @@ void read_solver(TomlSection section, Scene& scene) {
     scene.warnings.emplace_back(
         R"(estimator = "field" is now "contact"; the former name works in this release only)");
   }
-  scene.segment_point =
-      section.number("segment_point", kSegmentPoints).value_or(scene.segment_point);
+  if (section.number("segment_point", {0, 1, true})) {
+    scene.warnings.emplace_back("segment_point has no effect any more; leave it out");
+  }
   scene.angles = section.flag("angles").value_or(scene.angles);
   scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
   if (scene.uncertainty && scene.estimator == Estimator::paper) {

@@ -5,7 +5,6 @@ namespace pillarfield {
 void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.parity_tolerance_counts = scene.parity_tolerance_counts;
   plan.estimator = scene.estimator;
-  plan.segment_point = scene.segment_point;
   plan.friction = scene.friction;
   plan.angles = scene.angles;
   plan.uncertainty = scene.uncertainty;

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pillarfield/recording.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/skin_calibration.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield {
+
+/// What frames say of their plan. `Frames` is a FrameSource or a FrameStream.
+template <class Frames>
+[[nodiscard]] SolverPlan plan_of_frames(const Frames& frames) {
+  SolverPlan plan;
+  plan.skin = frames.skin();
+  plan.sensel_type = frames.sensel_type();
+  plan.calibration = frames.calibration();
+  return plan;
+}
+
+/// Seconds between frames: the median of the first ones, so that a gap does not count; 0.01 of a
+/// single frame. Throws Error, naming `where`, if the times do not rise.
+[[nodiscard]] double frame_interval_of(FrameSource& source, const std::string& where);
+
+/// Settings that are unset leave what the frames, the scene and the calibration say.
+struct PlanSettings {
+  std::optional<double> threshold_counts;
+  std::optional<double> counts_per_newton;
+  std::optional<double> full_scale_counts;
+  std::optional<double> noise_counts;
+  std::optional<double> baseline_time_s;
+  std::optional<double> baseline_interval;
+  std::optional<double> frame_interval_s;
+  std::optional<double> parity_tolerance_counts;
+  std::optional<double> friction;
+  std::optional<double> friction_bound;
+  std::vector<double> friction_prior;  ///< empty, or median and spread
+  std::optional<Estimator> estimator;
+  std::vector<std::string> outputs;  ///< "forces", "angles", "uncertainty"; empty: unset
+  bool unrelated_frames = false;
+  bool everything = false;  ///< all outputs, the parity test and a followed baseline
+};
+
+/// Where a plan comes from beside its frames.
+struct PlanSources {
+  const Scene* scene = nullptr;                  ///< null: none
+  const SkinCalibration* calibration = nullptr;  ///< null: none
+  bool keeps_tare = false;                       ///< and noise, of the frames
+  PlanSettings settings = {};
+};
+
+/// Applies the scene, the calibration and the settings, in this order, to the plan of frames.
+/// Messages name them `where`. Calls `frame_interval_s` if the plan needs the time from frame to
+/// frame and no setting gives it: for a followed baseline, hysteresis and creep. Throws Error where
+/// the calibration does not fit.
+[[nodiscard]] SolverPlan build_plan(SolverPlan plan, const PlanSources& from,
+                                    const std::string& where,
+                                    const std::function<double()>& frame_interval_s);
+
+}  // namespace pillarfield

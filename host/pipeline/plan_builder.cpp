@@ -1,0 +1,128 @@
+#include "pillarfield/plan_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/quantile.h"
+#include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
+
+namespace pillarfield {
+namespace {
+
+/// Default time constant of the baseline of PlanSettings::everything, seconds.
+constexpr double kBaselineTimeDefaultS = 10;
+
+/// Baseline interval of PlanSettings::everything: at most 64 frames and 1/100 of the time constant.
+int baseline_interval_of(double baseline_time_s, double frame_interval_s) {
+  constexpr double kMostFrames = 64;
+  return static_cast<int>(std::clamp(baseline_time_s / (100 * frame_interval_s), 1.0, kMostFrames));
+}
+
+void apply_calibration(const SkinCalibration& calibration, bool keeps_tare,
+                       const std::string& where, SolverPlan& plan) {
+  require_fitting(calibration, plan.skin, where);
+  std::vector<float> tare = plan.calibration.tare;
+  std::vector<float> noise = plan.calibration.noise;
+  apply(calibration, plan.skin, plan.calibration);
+  if (!keeps_tare) return;
+  plan.calibration.tare = std::move(tare);
+  plan.calibration.noise = std::move(noise);
+}
+
+/// Sets a member to a value that was given.
+template <class Member>
+void set_given(Member& member, const std::optional<double>& value) {
+  if (value) member = *value;
+}
+
+void apply_numbers(const PlanSettings& settings, SolverPlan& plan) {
+  set_given(plan.skin.threshold_counts, settings.threshold_counts);
+  set_given(plan.skin.counts_per_newton, settings.counts_per_newton);
+  set_given(plan.skin.full_scale_counts, settings.full_scale_counts);
+  set_given(plan.parity_tolerance_counts, settings.parity_tolerance_counts);
+  set_given(plan.noise_counts, settings.noise_counts);
+  set_given(plan.frame_interval_s, settings.frame_interval_s);
+}
+
+void apply_friction(const PlanSettings& settings, FrictionKnowledge& friction) {
+  set_given(friction.given, settings.friction);
+  set_given(friction.bound, settings.friction_bound);
+  if (!settings.friction_prior.empty()) {
+    friction.median = settings.friction_prior[0];
+    friction.spread = settings.friction_prior[1];
+  }
+  if (settings.unrelated_frames) friction.memory = false;
+}
+
+void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
+  const std::vector<std::string>& outputs = settings.outputs;
+  if (outputs.empty()) return;
+  plan.angles = std::ranges::find(outputs, "angles") != outputs.end();
+  plan.uncertainty = std::ranges::find(outputs, "uncertainty") != outputs.end();
+}
+
+/// Enables all outputs and the parity test; an earlier tolerance stays.
+void enable_everything(SolverPlan& plan) {
+  plan.angles = true;
+  plan.uncertainty = true;
+  if (plan.parity_tolerance_counts) return;
+  // The residual is one of four readings, the margin five deviations of three.
+  plan.parity_tolerance_counts = region_margin(plan) * std::sqrt(4.0 / 3);
+}
+
+}  // namespace
+
+double frame_interval_of(FrameSource& source, const std::string& where) {
+  constexpr double kIntervalOfOneFrameS = 0.01;
+  constexpr std::uint64_t kMostIntervals = 100;  // The time of a frame may cost reading all of it.
+  const std::uint64_t frames = std::min(source.frames(), kMostIntervals + 1);
+  if (frames < 2) return kIntervalOfOneFrameS;
+  std::vector<double> intervals;
+  double before = source.time(0);
+  for (std::uint64_t index = 1; index < frames; ++index) {
+    const double time = source.time(index);
+    intervals.push_back(time - std::exchange(before, time));
+  }
+  if (const double interval = median(intervals); interval > 0) return interval;
+  throw Error(where, "the times of its frames do not rise",
+              "give times that do, or leave out a followed baseline and creep");
+}
+
+SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::string& where,
+                      const std::function<double()>& frame_interval_s) {
+  const PlanSettings& settings = from.settings;
+  std::optional<double> baseline_time_s;
+  if (from.scene != nullptr) {
+    set_skin(plan.skin, *from.scene);
+    set_solver(plan, *from.scene);
+    baseline_time_s = from.scene->baseline_time_s;
+  }
+  if (from.calibration != nullptr) {
+    apply_calibration(*from.calibration, from.keeps_tare, where, plan);
+  }
+  apply_numbers(settings, plan);
+  if (settings.baseline_time_s) baseline_time_s = settings.baseline_time_s;
+  if (settings.estimator) plan.estimator = *settings.estimator;
+  apply_friction(settings, plan.friction);
+  apply_outputs(settings, plan);
+  if (settings.everything) {
+    enable_everything(plan);
+    if (!baseline_time_s) baseline_time_s = kBaselineTimeDefaultS;
+  }
+  if (settings.baseline_interval) {
+    plan.baseline_interval = static_cast<int>(*settings.baseline_interval);
+  }
+  if (!baseline_time_s && !plan.calibration.effects.memory) return plan;
+  if (!settings.frame_interval_s) plan.frame_interval_s = frame_interval_s();
+  if (!baseline_time_s) return plan;
+  plan.baseline_rate = baseline_rate(*baseline_time_s, plan.frame_interval_s);
+  if (settings.everything && !settings.baseline_interval) {
+    plan.baseline_interval = baseline_interval_of(*baseline_time_s, plan.frame_interval_s);
+  }
+  return plan;
+}
+
+}  // namespace pillarfield
