@@ -75,6 +75,7 @@ estimator = "contact"
 friction_bound = 4
 friction_prior = [0.8, 0.4]
 memory = false
+segment_point = 0.5
 angles = true
 parity_tolerance_counts = 8
 [[contact]]

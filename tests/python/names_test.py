@@ -45,7 +45,7 @@ def numbers():
                     name, kind = ast.unparse(node.target), node.annotation
                 else:
                     continue
-                if re.search("float|ndarray|NDArray|Floats|Place", ast.unparse(kind)):
+                if re.search("float|Floats|Doubles|Place", ast.unparse(kind)):
                     owners = ["Contact", "ContactTotal"] if owner.name == "_Quantities" else [owner.name]
                     yield from (f"{each}.{name}" for each in owners)
 
@@ -55,7 +55,7 @@ class Names(unittest.TestCase):
         public = dict(names())
         self.assertEqual([name for name, value in public.items() if not inspect.getdoc(value)], [])
         found = [public[name] for name in numbers() if isinstance(public.get(name), property)]
-        self.assertGreater(len(found), 60)
+        self.assertGreater(len(found), 50)
         self.assertEqual([value for value in map(inspect.getdoc, found) if not re.search(UNIT, value)], [])
 
     def test_every_name_is_tested(self):
