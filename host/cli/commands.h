@@ -57,25 +57,11 @@ struct JoinCommand : WriteOptions {
   ReadOptions read;
 };
 
-struct PaceOptions : PrintOptions {
-  std::string source;
-  double rate_hz = 1000;
-  double seconds = 10;
-  std::optional<double> deadline_ms;
-  std::uint64_t backlog_frames = 4;
-  int frames_in_flight = 2;
-  double spin_us = 0;
-  std::uint64_t memory_limit_mib = 1024;
-  bool realtime = false;
-  bool strict = false;
-  PlanOptions plan;
-  DeviceOptions device;
-};
-
 struct StreamOptions : PrintOptions {
   std::string source;
   std::optional<double> rate_hz;  ///< of a replayed file, or of the sensor
   bool repeat = false;
+  bool summary = false;  ///< measures whether the solver keeps up with rate_hz
   std::uint32_t serial_baud = 2'000'000;
   std::vector<std::string> sinks;
   std::vector<std::string> allowed_origins;  ///< of web pages
@@ -133,7 +119,6 @@ struct InfoOptions : PrintOptions {
 void simulate(const SimulateOptions& options);
 void solve(const SolveOptions& given);
 void join(const JoinCommand& command);
-void pace(const PaceOptions& options);
 void stream(const StreamOptions& options);
 void control(const ControlOptions& options);
 void compare(const CompareOptions& options);

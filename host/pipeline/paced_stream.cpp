@@ -46,6 +46,7 @@ class PacedStream final : public FrameStream {
   [[nodiscard]] const Skin& skin() const override { return stream_->skin(); }
   [[nodiscard]] SenselType sensel_type() const override { return stream_->sensel_type(); }
   [[nodiscard]] const Calibration& calibration() const override { return stream_->calibration(); }
+  [[nodiscard]] StreamHealth health() const override;
   [[nodiscard]] Arrival next(StreamedFrame& frame, nanoseconds timeout) override;
 
  private:
@@ -61,7 +62,16 @@ class PacedStream final : public FrameStream {
   std::optional<nanoseconds> start_;       ///< time of the first frame
   std::uint64_t first_sequence_ = 0;
   double first_time_s_ = 0;
+  std::uint64_t dropped_ = 0;
 };
+
+/// A dropped frame counts as a sensor's that came faster than the program read them.
+StreamHealth PacedStream::health() const {
+  StreamHealth health = stream_->health();
+  health.lost += dropped_;
+  health.overrun += dropped_;
+  return health;
+}
 
 /// Time at which `ahead_` is due. At the end of a stream without a rate it is an earlier frame,
 /// whose time has passed.
@@ -76,9 +86,8 @@ nanoseconds PacedStream::due_ahead() const {
 }
 
 void PacedStream::sleep(nanoseconds now, nanoseconds timeout) {
-  const nanoseconds until = std::min(due_ - pace_.spin, now + timeout);
+  const nanoseconds until = std::min(due_, now + timeout);
   if (now < until) clock_->sleep_until(until);
-  // The caller spins through the remaining time by calling next() again.
 }
 
 Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
@@ -103,7 +112,10 @@ Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
       return Arrival::ended;
     } else {
       ahead_is_ = Arrival::timed_out;
-      if (pace_.drop_after && now - due_ > *pace_.drop_after) continue;
+      if (pace_.drop_after && now - due_ > *pace_.drop_after) {
+        ++dropped_;
+        continue;
+      }
       std::swap(frame, ahead_);
       frame.arrived = due_;
       return Arrival::arrived;

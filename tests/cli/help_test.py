@@ -12,7 +12,7 @@ import unittest
 from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
 
 STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "apply"]
-COMMANDS = [["simulate"], ["solve"], ["stream"], ["pace"], ["compare"], ["calibrate"],
+COMMANDS = [["simulate"], ["solve"], ["stream"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["info"], ["completion"]]
 
 
@@ -93,7 +93,7 @@ class WrongCommandLines(CommandTest):
         for meant, *arguments in (
                 ("solve", "slove"), ("simulate", "sim", "x"), ("tare", "calibrate", "tear", "a"),
                 ("--version", "--verison"), ("--threshold", *solve, "--thresold", 3),
-                ("--threshold", *solve, "--thresold=3"), ("--rate", "pace", "a", "--rat", 3),
+                ("--threshold", *solve, "--thresold=3"), ("--rate", "stream", "a", "--rat", 3),
                 ("direct", *solve, "--estimator", "direckt"), ("linear", "calibrate", "load", "a",
                 "--model", "liner"), ("angles", *solve, "--outputs", "forces,angels"),
                 ("shared", *solve, "--memory", "share"), ("bash", "completion", "bsh")):
@@ -125,18 +125,18 @@ class WrongCommandLines(CommandTest):
                 ("radius-mm: it is 0", "calibrate", "bending", *step, "--radius-mm", 0, "--axis-deg", 0),
                 ("cubic", *load, 1, "--model", "cubic"), ("RECORDING", "calibrate", "apply", "a"),
                 ("--threshold-factor", "calibrate", "tare", "a", "-o", "b", "--threshold-factor",
-                 -1), ("SOURCE", "pace"), ("fast", "pace", "a", "--rate", "fast"),
-                ("--backlog", "pace", "a", "--backlog", -1), ("--rate", "pace", "a", "--rate", 0),
-                ("'nan'", "pace", "a", "--rate", "nan"), ("--rate", "pace", "a", "--rate", 1e6),
-                ("--deadline", "pace", "a", "--deadline", 0), ("--spin", "pace", "a", "--spin", -1),
-                ("'0'", "pace", "a", "--memory-limit", 0)):
+                 -1), ("SOURCE", "stream"), ("fast", "stream", "a", "--rate", "fast"),
+                ("--rate", "stream", "a", "--rate", 0), ("'nan'", "stream", "a", "--rate", "nan"),
+                ("--rate", "stream", "a", "--rate", 1e6),
+                ("--summary requires --rate", "stream", "a", "--summary")):
             line = self.assert_fails(*arguments, status=2, names=[fault])
             self.assertRegex(line, r"; see 'pillarfield.* --help'$|; did you mean")
 
     def test_former_names_work_with_a_note(self):
         scene = SOURCE / "scenes/spin.toml"
-        messages = run("live", scene, "--rate", 50, "--seconds", 0.1, "-q", "--json").stderr
-        self.assertRegex(messages, r"\Apillarfield: 'live' is now 'pace'; .*\n\Z")
+        for gone in ("pace", "live"):
+            self.assertIn("stream SOURCE --repeat --rate HZ --summary",
+                          self.assert_fails(gone, scene, "--rate", 50, status=2, names=[gone]))
         old = self.folder / "old.toml"
         old.write_text(scene.read_text() + '\n[solver]\nestimator = "field"\n')
         messages = run("simulate", old, "-o", self.folder / "a.h5", "-q").stderr
@@ -156,8 +156,7 @@ class Numbers(CommandTest):
         scene = SOURCE / "scenes/spin.toml"
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
-        needed = {"simulate": [scene, "-o", output], "pace": [recording],
-                  "stream": [recording], "info": [recording],
+        needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording],
                   "apply": [recording, recording, "-o", output],
                   "compare": [recording, recording],
                   "info": [recording], "apply": [recording, recording, "-o", output],

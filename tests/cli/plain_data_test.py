@@ -227,7 +227,6 @@ class PlainData(CommandTest):
                           names=["--rate"])
         run("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"), "--rate", 50)
         self.assertAlmostEqual(run_json("info", self.path("r.h5"))["seconds"], 29 / 50)
-        self.assertIn("dropped", run_json("pace", array, "--seconds", 0.05))
         self.assert_fails("stream", array, "--record", self.path("s.h5"), names=["--rate"])
         run("stream", array, "--rate", 200, "--record", self.path("s.h5"), "-q")
         self.assertGreater(run_json("info", self.path("s.h5"))["frames"], 0)  # A busy computer drops some.
@@ -245,7 +244,7 @@ class PlainData(CommandTest):
 
     def test_a_dash_is_no_file(self):
         for arguments in (("solve", "-", "-o", "f.h5"), ("solve", self.recording, "-o", "-"),
-                          ("info", "-"), ("pace", "-"), ("compare", "-", self.recording),
+                          ("info", "-"), ("compare", "-", self.recording),
                           ("calibrate", "tare", "-", "-o", "c.h5"), ("simulate", "-", "-o", "r.h5"),
                           ("simulate", "a.toml", "-o", "-")):
             self.assert_fails(*arguments, status=2, names=["'-' is no file"])

@@ -53,8 +53,8 @@ class StrangeText(CommandTest):
                          "i\ufffdn.h5")
         compared = json.loads(output_of("compare", forces, recording, "--json")[0])
         self.assertEqual(compared["frames"], 10)
-        paced = json.loads(output_of("pace", recording, "--seconds", "0.1", "--json")[0])
-        self.assertTrue(paced["source"].endswith("i\ufffdn.h5"))
+        streamed = json.loads(output_of("stream", recording, "--rate", "100", "--summary", "--json")[0])
+        self.assertTrue(streamed["summary"]["source"].endswith("i\ufffdn.h5"))
         calibration = name(b"k\xff.h5")
         for step, written in ((["tare", recording, "--preloaded"], calibration),
                               (["apply", calibration, recording], name(b"l\xff.h5"))):
@@ -87,7 +87,7 @@ class StrangeText(CommandTest):
     def test_names_of_files_are_escaped(self):
         absent = self.folder / f"{ESCAPES}.h5"
         for command in (["info", absent], ["solve", absent, "-o", "a.h5"],
-                        ["compare", absent, absent], ["pace", absent],
+                        ["compare", absent, absent], ["stream", absent],
                         ["calibrate", "tare", absent, "-o", "a.h5"]):
             self.assertIn(ESCAPED, self.either(*command)[1])
         self.assertIn(ESCAPED, self.either("simulate", self.scene, "-o", absent)[0])

@@ -115,6 +115,23 @@ class Replay(StreamTest):
                                           "--json"))
         self.assertEqual(summary["solved"], 50)
 
+    def test_the_summary_counts_late_and_lost_frames(self):
+        limits = ("--repeat", "--frames", 20, "--summary")
+        noise = ("--everything", "--noise", 0.5)
+        summary = self.ended(self.started(self.scene, "--rate", 0.5, "--seconds", 1, "--summary",
+                                          "--json"))
+        self.assertEqual((summary["solved"], summary["lost"], summary["missed"]), (1, 0, 0))
+        summary = self.ended(self.started(self.recording, "--rate", 100000, *limits, *noise, "--json"))
+        latency = summary["latency_ms"]
+        self.assertEqual(list(latency), ["median", "p99", "p99_9", "worst"])
+        self.assertEqual((summary["solved"], summary["missed"]), (20, 20))
+        self.assertGreater(summary["lost"], 0)
+        self.assertEqual(summary["overrun"], summary["lost"])
+        self.assertIsNone(latency["p99"])
+        text = run("stream", self.scene, "--rate", 100000, *limits).stdout
+        for words in ("99 % never", "20 frames solved more than a period of 0.010 ms", " lost, "):
+            self.assertIn(words, text)
+
     def test_an_interrupt_completes_the_files(self):
         forces = self.folder / "live.h5"
         process = self.started(self.scene, "--repeat", "--to", forces, "--control", self.socket,

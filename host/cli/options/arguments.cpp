@@ -214,6 +214,11 @@ Work parse_arguments(int argc, char** argv) {
     words.erase(words.begin());
     words.emplace_back("--help");
   }
+  if (!words.empty() && (words.front() == "pace" || words.front() == "live")) {
+    throw WrongCommandLine(fmt::format(
+        "'{}' is part of stream now: pillarfield stream SOURCE --repeat --rate HZ --summary",
+        words.front()));
+  }
   Work work;
   CLI::App app("Turns frames of a high-density artificial skin into fields of three-axis force.",
                "pillarfield");
@@ -229,7 +234,6 @@ Work parse_arguments(int argc, char** argv) {
   add_join(app, work);
   add_stream(app, work);
   add_control(app, work);
-  add_pace(app, work);
   add_compare(app, work);
   add_calibrate(app, work);
   add_info(app, work);
@@ -257,7 +261,6 @@ Work parse_arguments(int argc, char** argv) {
     if (&command == &app) throw WrongCommandLine(message);
     throw WrongCommandLine(name.substr(app.get_name().size() + 1) + ": " + message);
   }
-  if (std::string_view(argv[1]) == "live") note_former_name("live", "pace");
   return work;
 }
 

@@ -57,48 +57,13 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
 
 }  // namespace
 
-void add_pace(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<PaceOptions>(
-      parent, work, pace, "pace",
-      "Solve frames at a fixed rate and report the latency of their forces.",
-      "  pillarfield pace scenes/demo.toml --seconds 2\n"
-      "  pillarfield pace scenes/demo.toml --rate 500 --everything --seconds 2\n");
-  command->alias("live");
-  Group input(command, "Input");
-  input.file("SOURCE", options->source,
-             "Scene (TOML), or frames as of solve, replayed from memory");
-  add_tare_frames(command, options->plan.read);
-  add_plain_data(command, options->plan.read, false);
-  input.whole("--memory-limit", options->memory_limit_mib, "MIB",
-              "Memory limit of the frames loaded beforehand [1024]", 1, 1U << 20U);
-  Group pacing(command, "Pace");
-  pacing.number("--rate", options->rate_hz, "HZ", "Frames per second [1000]", 0.01, 1e5);
-  pacing.number("--seconds", options->seconds, "SECONDS", "Duration of the run [10]");
-  pacing.number("--deadline", options->deadline_ms, "MS",
-                "Latency above which a frame counts as missed [one period]", 1e-3, 1e6);
-  pacing.whole("--backlog", options->backlog_frames, "FRAMES",
-               "Drop a frame that is late by more periods [4]", 0, 1000);
-  pacing.flag("--strict", options->strict,
-              "Fail if a frame was dropped or missed its deadline, or the run was interrupted");
-  add_sensor(command, options->plan);
-  add_solver(command, options->plan);
-  add_device(command, options->device);
-  Group device(command, "Device");
-  device.whole("--in-flight", options->frames_in_flight, "FRAMES",
-               "Number of frames in the solver at once [2]", 1, 64);
-  device.number("--spin", options->spin_us, "US", "Busy-wait for this last part of each wait [0]",
-                0, 1e6);
-  device.flag("--realtime", options->realtime,
-              "Request real-time scheduling and locked memory; warn if refused");
-  add_general(command, *options, "Print the report as JSON", kQuietReport);
-}
-
 void add_stream(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<StreamOptions>(
       parent, work, stream, "stream",
       "Solve live frames of a sensor and send their forces on (docs/streams.md).",
       "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n"
-      "  pillarfield stream scenes/demo.toml --repeat --seconds 1 --to udp:127.0.0.1:9870\n");
+      "  pillarfield stream scenes/demo.toml --repeat --seconds 1 --to udp:127.0.0.1:9870\n"
+      "  pillarfield stream scenes/demo.toml --repeat --seconds 2 --rate 500 --summary\n");
   Group input(command, "Input");
   command
       ->add_option("SOURCE", options->source,
@@ -107,13 +72,19 @@ void add_stream(CLI::App& parent, Work& work) {
       ->required()
       ->type_name("SOURCE")
       ->group("Input");
-  input.number("--rate", options->rate_hz, "HZ",
-               "Frames per second of a replayed file [its own], or of the sensor", 0.01, 1e5);
+  CLI::Option* const rate =
+      input.number("--rate", options->rate_hz, "HZ",
+                   "Frames per second of a replayed file [its own], or of the sensor", 0.01, 1e5);
   input.flag("--repeat", options->repeat, "Replay a file again and again");
   input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
               100'000'000);
   add_plain_data(command, options->plan.read, false);
   add_stream_ends(command, *options);
+  Group(command, "Run")
+      .flag("--summary", options->summary,
+            "Measure whether this computer keeps up with --rate: drop late frames of a file, print "
+            "latencies and losses at the end")
+      ->needs(rate);
   add_sensor(command, options->plan);
   add_solver(command, options->plan);
   add_contacts(command, options->contacts);

@@ -49,7 +49,6 @@ std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Wor
   return {command, options};
 }
 
-void add_pace(CLI::App& parent, Work& work);
 void add_stream(CLI::App& parent, Work& work);
 void add_control(CLI::App& parent, Work& work);
 

@@ -14,7 +14,6 @@ void LatencyHistogram::add(std::chrono::nanoseconds latency) {
 }
 
 std::optional<double> LatencyHistogram::quantile_ms(double fraction) const {
-  if (frames_ == 0) return std::nullopt;
   const double wanted = std::max(1.0, std::ceil(fraction * static_cast<double>(frames_)));
   std::uint64_t count = 0;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
@@ -23,7 +22,7 @@ std::optional<double> LatencyHistogram::quantile_ms(double fraction) const {
     const double upper = 1e-3 * std::pow(10, static_cast<double>(bin) / kBinsPerDecade);
     return std::min(upper, worst_ms_);
   }
-  return worst_ms_;
+  return std::nullopt;
 }
 
 }  // namespace pillarfield::cli

@@ -13,10 +13,11 @@ class LatencyHistogram {
  public:
   void add(std::chrono::nanoseconds latency);
   void clear() { *this = {}; }
-  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  /// Counts `frames` as later than all others.
+  void add_lost(std::uint64_t frames) { frames_ += frames; }
 
   /// The latency in ms that at least `fraction` (0..1) of the frames did not exceed; unset without
-  /// frames.
+  /// frames, and where it is that of a lost one.
   [[nodiscard]] std::optional<double> quantile_ms(double fraction) const;
   [[nodiscard]] double worst_ms() const { return worst_ms_; }
 

@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
-#include "cli/pace/frames.h"
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
 #include "cli/warnings.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
-#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -35,27 +40,50 @@ class Laps {
   std::uint64_t sequence_ = 0;
 };
 
+/// The first frames of a scene, as many as fit into memory.
 class ReplayedScene final : public FrameStream {
  public:
-  ReplayedScene(PaceFrames frames, double interval_s, bool repeat)
-      : frames_(std::move(frames)), interval_s_(interval_s), laps_(frames_.loaded.size(), repeat) {}
+  ReplayedScene(const Simulator& simulator, bool repeat, bool quiet)
+      : skin_(simulator.scene().skin),
+        sensel_type_(simulator.sensel_type()),
+        calibration_(simulator.calibration()),
+        interval_s_(1 / simulator.scene().rate_hz),
+        laps_(frames_of(simulator), repeat) {
+    const std::uint64_t frames = frames_of(simulator);
+    ForceField truth(skin_.pillar_rows(), skin_.pillar_cols());
+    Progress progress("Simulating", frames, quiet);
+    for (std::uint64_t index = 0; index < frames && !is_interrupted(); ++index) {
+      frames_.emplace_back(sensel_type_, skin_.rows, skin_.cols);
+      simulator.render(index, frames_.back(), truth);
+      progress.show(index + 1);
+    }
+  }
 
-  [[nodiscard]] const Skin& skin() const override { return frames_.skin; }
-  [[nodiscard]] SenselType sensel_type() const override { return frames_.sensel_type; }
-  [[nodiscard]] const Calibration& calibration() const override { return frames_.calibration; }
+  [[nodiscard]] const Skin& skin() const override { return skin_; }
+  [[nodiscard]] SenselType sensel_type() const override { return sensel_type_; }
+  [[nodiscard]] const Calibration& calibration() const override { return calibration_; }
   [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds) override {
     frame.sequence = laps_.sequence();
     if (laps_.is_over()) return Arrival::ended;
-    frame.readings = frames_.loaded[laps_.take()].view();
+    frame.readings = frames_[laps_.take()].view();
     frame.missing.clear();
     frame.time_s = interval_s_ * static_cast<double>(frame.sequence);
     return Arrival::arrived;
   }
 
  private:
-  PaceFrames frames_;
+  static std::uint64_t frames_of(const Simulator& simulator) {
+    const std::uint64_t bytes = simulator.scene().skin.sensels() * size_of(simulator.sensel_type());
+    return std::min<std::uint64_t>(simulator.scene().frames,
+                                   std::max<std::uint64_t>(kMostSceneBytes / bytes, 1));
+  }
+
+  Skin skin_;
+  SenselType sensel_type_;
+  Calibration calibration_;
   double interval_s_;
   Laps laps_;
+  std::vector<FrameBuffer> frames_;
 };
 
 class ReplayedFile final : public FrameStream {
@@ -90,20 +118,19 @@ class ReplayedFile final : public FrameStream {
   Laps laps_;
 };
 
-std::unique_ptr<FrameStream> replayed_scene(const std::string& file, bool repeat, bool quiet) {
-  const Scene scene = load_scene_with_warnings(file);
-  PaceFrames frames = open_pace_frames(file, {});
-  load(frames, frames.in_source, kMostSceneBytes, quiet);
-  return std::make_unique<ReplayedScene>(std::move(frames), 1 / scene.rate_hz, repeat);
-}
-
 }  // namespace
 
+bool is_scene(const std::string& file) { return file.ends_with(".toml"); }
+
 std::unique_ptr<FrameStream> replayed_file(const std::string& file, const ReadOptions& options,
-                                           std::optional<double> rate_hz, bool repeat, bool quiet) {
+                                           std::optional<double> rate_hz, bool repeat,
+                                           bool drops_late, bool quiet) {
+  constexpr double kMostPeriodsLate = 4;
   std::unique_ptr<FrameStream> stream;
   if (is_scene(file)) {
-    stream = replayed_scene(file, repeat, quiet);
+    const Simulator simulator(load_scene_with_warnings(file));
+    stream = std::make_unique<ReplayedScene>(simulator, repeat, quiet);
+    if (is_interrupted()) return nullptr;
   } else {
     ReadOptions read = options;
     read.rate_hz = rate_hz;
@@ -114,7 +141,12 @@ std::unique_ptr<FrameStream> replayed_file(const std::string& file, const ReadOp
     }
     stream = std::make_unique<ReplayedFile>(file, std::move(source), repeat);
   }
-  return paced_stream(std::move(stream), {.rate_hz = rate_hz});
+  Pace pace = {.rate_hz = rate_hz};
+  if (drops_late) {
+    pace.drop_after =
+        std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * kMostPeriodsLate / *rate_hz));
+  }
+  return paced_stream(std::move(stream), pace);
 }
 
 }  // namespace pillarfield::cli

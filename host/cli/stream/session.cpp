@@ -113,6 +113,8 @@ class StreamSession::Sinks final : public ForceSink {
     const auto latency = Clock::now().time_since_epoch() - frame.arrived;
     session_.all_latencies_.add(latency);
     session_.recent_latencies_.add(latency);
+    const std::optional<double>& rate_hz = session_.options_.rate_hz;
+    if (rate_hz && latency > nanoseconds_of(1 / *rate_hz)) ++session_.missed_;
     session_.contacts_ = frame.contacts->contacts.size();
     ++session_.solved_;
   }
@@ -351,6 +353,7 @@ void StreamSession::print_line(const std::string& line) {
 
 /// A line of JSON, or on a terminal a line that each report draws anew.
 void StreamSession::show(const HealthReport& health) {
+  if (options_.summary) return;
   if (options_.json) {
     return print_line(json_text({{"health", health_json(health)}}));
   }
@@ -437,27 +440,43 @@ std::string StreamSession::record(std::uint64_t client, const std::string& file)
   }
 }
 
-void StreamSession::print_summary() const {
-  if (options_.json) {
-    nlohmann::ordered_json json = health_json(last_health_);
-    json["source"] = options_.source;
-    json["device"] = processor_.device().info().name;
-    json["latency_ms"] = {{"median", all_latencies_.quantile_ms(0.5).value_or(0)},
-                          {"p99", all_latencies_.quantile_ms(0.99).value_or(0)},
-                          {"worst", all_latencies_.worst_ms()}};
-    fmt::print("{}\n", json_text({{"summary", json}}));
-    return;
-  }
+void StreamSession::print_summary_json() {
+  const auto quantile = [&](double fraction) -> nlohmann::ordered_json {
+    const auto ms = all_latencies_.quantile_ms(fraction);
+    return ms ? nlohmann::ordered_json(*ms) : nlohmann::ordered_json(nullptr);
+  };
+  nlohmann::ordered_json json = health_json(last_health_);
+  json["source"] = options_.source;
+  json["device"] = processor_.device().info().name;
+  json["pillars"] = plan_.skin.pillars();
+  if (options_.rate_hz) json["missed"] = missed_;
+  json["latency_ms"] = {{"median", quantile(0.5)},
+                        {"p99", quantile(0.99)},
+                        {"p99_9", quantile(0.999)},
+                        {"worst", all_latencies_.worst_ms()}};
+  fmt::print("{}\n", json_text({{"summary", json}}));
+}
+
+void StreamSession::print_summary() {
+  if (options_.summary) all_latencies_.add_lost(last_health_.stream.lost);
+  if (options_.json) return print_summary_json();
   if (options_.quiet) return;
+  const auto quantile = [&](double fraction) {
+    const auto ms = all_latencies_.quantile_ms(fraction);
+    return ms ? fmt::format("{:.3f} ms", *ms) : "never";
+  };
   const StreamHealth& stream = last_health_.stream;
   const double seconds = seconds_of(Clock::now() - start_);
   fmt::print("Solved {} of {} x {} pillars from {} in {:.1f} s on {}\n", counted(solved_, "frame"),
              plan_.skin.pillar_rows(), plan_.skin.pillar_cols(), printable(options_.source),
              seconds, processor_.device().info().name);
   if (solved_ > 0) {
-    fmt::print("  latency    median {:.3f} ms, 99 % {:.3f} ms, worst {:.3f} ms\n",
-               *all_latencies_.quantile_ms(0.5), *all_latencies_.quantile_ms(0.99),
-               all_latencies_.worst_ms());
+    fmt::print("  latency    median {}, 99 % {}, 99.9 % {}, worst {:.3f} ms\n", quantile(0.5),
+               quantile(0.99), quantile(0.999), all_latencies_.worst_ms());
+  }
+  if (options_.summary) {
+    fmt::print("  late       {} solved more than a period of {:.3f} ms after they came\n",
+               counted(missed_, "frame"), 1e3 / *options_.rate_hz);
   }
   fmt::print(
       "  frames     {} lost, {} incomplete; {} packets or ring slots came too fast to be read\n",

@@ -40,7 +40,7 @@ class StreamSession {
   /// completes the sinks.
   void run();
 
-  void print_summary() const;
+  void print_summary();
 
  private:
   class Source;
@@ -54,6 +54,7 @@ class StreamSession {
   void report_health();
   [[nodiscard]] HealthReport health() const;
   [[nodiscard]] nlohmann::ordered_json health_json(const HealthReport& health) const;
+  void print_summary_json();
   void show(const HealthReport& health);
   void print_line(const std::string& line);
 
@@ -78,6 +79,7 @@ class StreamSession {
   bool quit_ = false;
   std::uint64_t received_ = 0;
   std::uint64_t solved_ = 0;
+  std::uint64_t missed_ = 0;    ///< frames solved later than a period after they came
   std::uint64_t contacts_ = 0;  ///< in the last frame
   LatencyHistogram all_latencies_;
   LatencyHistogram recent_latencies_;

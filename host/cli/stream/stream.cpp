@@ -8,7 +8,6 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/pace/frames.h"
 #include "cli/progress.h"
 #include "cli/stream/replay.h"
 #include "cli/stream/session.h"
@@ -36,7 +35,7 @@ std::optional<FrameSize> stated_size(const PlanOptions& options) {
 std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   if (!is_live_source(options.source)) {
     return replayed_file(options.source, frame_options(options.plan), options.rate_hz,
-                         options.repeat, options.quiet);
+                         options.repeat, options.summary, options.quiet);
   }
   if (const auto say = terminal_line(options.quiet)) {
     say(fmt::format("Waiting for frames from {} ...", options.source));
@@ -105,7 +104,7 @@ void stream(const StreamOptions& options) {
   Processor processor(device, plan,
                       {.memory = options.device.memory,
                        .frames_in_flight = options.frames_in_flight,
-                       .start_on_host = true,
+                       .start_on_host = !options.summary,
                        .on_compiling = terminal_line(options.quiet)});
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
   session.run();

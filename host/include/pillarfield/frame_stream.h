@@ -96,9 +96,9 @@ class FrameStream {
 /// Timing of a paced stream.
 struct Pace {
   std::optional<double> rate_hz = {};  ///< above 0; unset: follow StreamedFrame::time_s
-  /// A frame that is not read within this time is dropped; unset: none is.
+  /// A frame that is not read within this time is dropped, and counts in StreamHealth::lost and
+  /// overrun; unset: none is.
   std::optional<std::chrono::nanoseconds> drop_after = {};
-  std::chrono::nanoseconds spin{0};  ///< part of each wait spent spinning, at its end
 };
 
 /// Delivers the frames of a stream at the pace of a sensor: the first at once, each other one when
