@@ -1,5 +1,3 @@
-#include "pillarfield/live.h"
-
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
+#include "pillarfield/live_session.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
 #include "python/process.h"
@@ -114,7 +113,7 @@ class LiveFrames {
     with_stream([&](FrameStream& stream) {
       arrival = stream.next(*frame_, patience);
       if (arrival != Arrival::arrived) return;
-      copy_readings(copy);
+      pillarfield::copy_readings(frame_->readings, copy);
       time_s = frame_->time_s;
       sequence = frame_->sequence;
       for (const auto& [first_row, rows, first_col, cols] : frame_->missing) {
@@ -124,15 +123,6 @@ class LiveFrames {
     if (arrival == Arrival::ended) throw py::stop_iteration();
     if (arrival == Arrival::timed_out) return py::none();
     return py::make_tuple(readings, time_s, sequence, missing);
-  }
-
-  void copy_readings(std::byte* copy) const {
-    const FrameView& view = frame_->readings;
-    const std::size_t row_bytes = view.cols * size_of(view.type);
-    const auto* const data = static_cast<const std::byte*>(view.data);
-    for (std::size_t row = 0; row < view.rows; ++row) {
-      copy = std::copy_n(data + row * view.row_stride * size_of(view.type), row_bytes, copy);
-    }
   }
 
   std::mutex mutex_;
@@ -149,8 +139,8 @@ class Sink {
        bool overwrite, std::vector<std::string> allow_origins)
       : target_(target), plan_(plan) {
     const py::gil_scoped_release unlocked;
-    LiveSinkInfo info = sink_info(plan, "", source);
-    if (contacts) set_sensor(info.forces.contacts.emplace(), plan);
+    LiveSinkInfo info =
+        live_sink_info(plan, "", source, contacts ? std::optional(ContactOptions{}) : std::nullopt);
     info.replace = overwrite ? Replace::anything : Replace::results;
     info.allowed_origins = std::move(allow_origins);
     sink_.emplace(create_live_sink(target, info));

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -30,15 +29,6 @@ SkinCalibration watched_calibration(const SolverPlan& plan) {
   calibration.cols = plan.skin.cols;
   calibration.planes = plan.calibration;
   return calibration;
-}
-
-void copy_rows(const FrameView& frame, FrameBuffer& to) {
-  const std::size_t bytes = frame.cols * size_of(frame.type);
-  const auto* from = static_cast<const std::byte*>(frame.data);
-  for (std::size_t row = 0; row < frame.rows; ++row) {
-    std::memcpy(to.bytes().data() + row * bytes,
-                from + row * frame.row_stride * size_of(frame.type), bytes);
-  }
 }
 
 }  // namespace
@@ -167,7 +157,7 @@ void SenselWatch::offer(const FrameView& frame) {
   if (!state_->is_ready) return;
   const std::unique_lock lock(state_->mutex, std::try_to_lock);
   if (!lock || !state_->is_ready.exchange(false)) return;
-  copy_rows(frame, state_->frame);
+  copy_readings(frame, state_->frame.bytes().data());
   state_->is_full = true;
   state_->changed.notify_one();
 }

@@ -1,4 +1,3 @@
-#include <cstring>
 #include <memory>
 
 #include "device/slot_memory.h"
@@ -59,13 +58,7 @@ class StagedMemory final : public SlotMemory {
   }
 
   DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
-    const std::size_t row_bytes = frame.cols * size_of(frame.type);
-    const std::size_t stride_bytes = frame.row_stride * size_of(frame.type);
-    const auto* const readings = static_cast<const std::byte*>(frame.data);
-    for (std::size_t row = 0; row < frame.rows; ++row) {
-      std::memcpy(frame_on_host_.data() + row * row_bytes, readings + row * stride_bytes,
-                  row_bytes);
-    }
+    copy_readings(frame, frame_on_host_.data());
     queue.enqueueWriteBuffer(frame_, CL_FALSE, 0, frame_bytes_, frame_on_host_.data());
     return {frame_, frame.cols};
   }

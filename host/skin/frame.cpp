@@ -27,6 +27,14 @@ void FrameBuffer::Free::operator()(std::byte* memory) const { ::operator delete[
 
 FrameView FrameBuffer::view() const { return {data_.get(), type_, rows_, cols_, cols_}; }
 
+void copy_readings(const FrameView& frame, std::byte* to) {
+  const std::size_t row_bytes = frame.cols * size_of(frame.type);
+  const auto* from = static_cast<const std::byte*>(frame.data);
+  for (std::uint32_t row = 0; row < frame.rows; ++row, to += row_bytes) {
+    std::memcpy(to, from + row * frame.row_stride * size_of(frame.type), row_bytes);
+  }
+}
+
 void check(const FrameView& frame, const Skin& skin, SenselType type, std::string_view where) {
   if (frame.rows != skin.rows || frame.cols != skin.cols || frame.type != type) {
     throw Error(where,

@@ -22,14 +22,6 @@ std::span<const LiveSinkKind> live_sink_kinds() {
   return kinds;
 }
 
-LiveSinkInfo sink_info(const SolverPlan& plan, const std::string& device,
-                       const std::string& source) {
-  return {.forces = file_info(plan, device, source),
-          .skin = plan.skin,
-          .sensel_type = plan.sensel_type,
-          .calibration = plan.calibration};
-}
-
 std::unique_ptr<LiveSink> create_live_sink(const std::string& target, const LiveSinkInfo& info) {
   const auto kinds = live_sink_kinds();
   const auto kind = std::ranges::find_if(kinds, [&](const LiveSinkKind& candidate) {

@@ -318,23 +318,6 @@ class ControlLines(StreamTest):
         control.say("quit")
         self.ended(process)
 
-    def test_a_recording_has_the_tare_that_was_measured_while_it_ran(self):
-        raw = np.full((12, 16), 20, np.uint8)
-        idle, copy = self.folder / "idle.npy", self.folder / "copy.h5"
-        np.save(idle, np.broadcast_to(raw, (200, 12, 16)))
-        process = self.started(idle, "--rate", 200, "--repeat", "--seconds", 30, "--tare", 0.2, "--record", copy,
-                               "--control", self.socket, "--json")
-        control = self.control()
-        wait_for(lambda: control.say("health")["health"]["solved"] > 60, "frames")
-        answer = control.say("tare 0.1 preloaded")
-        self.assertIn("keeps the tare of its start", answer["warning"])
-        control.say("quit")
-        process.communicate(timeout=PATIENCE_S)
-        self.assertEqual(process.returncode, 0)
-        with h5py.File(copy) as file:
-            np.testing.assert_array_equal(file["calibration/tare"][:], raw)
-            self.assertFalse(file["frames/missing"][:].any())
-
     def test_an_answer_comes_after_the_client_closed_its_sending_side(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
         self.control().say("health")

@@ -178,7 +178,7 @@ void Application::attend_sensor() {
     state_.notice = status.message;
     redraws_.field();
   }
-  if (status.silent_s > kSilentSeconds && !status.ended) redraws_.field();
+  if (status.health.since_frame_s > kSilentSeconds && !status.ended) redraws_.field();
 }
 
 }  // namespace pillarfield::viewer

@@ -2,18 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <future>
 #include <mutex>
 #include <thread>
 #include <utility>
 
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
-#include "pillarfield/live_tare.h"
-#include "pillarfield/pipeline.h"
+#include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/peak_hold.h"
@@ -47,6 +44,12 @@ SourceInfo live_info(const std::string& name, const SolverPlan& plan, const Proc
   return info;
 }
 
+LiveSinkInfo recording_info(const SourceInfo& source, const SolverPlan& plan) {
+  LiveSinkInfo info = live_sink_info(plan, "", source.name);
+  info.replace = Replace::nothing;
+  return info;
+}
+
 /// The readings of a field on display, and its forces where pillars without readings were taken
 /// out.
 struct LiveField {
@@ -63,83 +66,55 @@ struct LiveFieldOwner {
   std::optional<Processor::PinnedResult> result;  ///< released first: then `field` implies a slot
 };
 
-void copy_readings(const FrameView& from, FrameBuffer& to) {
-  const std::size_t row_bytes = from.cols * size_of(from.type);
-  const auto* source = static_cast<const std::byte*>(from.data);
-  std::byte* const target = to.bytes().data();
-  for (std::uint32_t row = 0; row < from.rows; ++row) {
-    std::copy_n(source + row * from.row_stride * size_of(from.type), row_bytes,
-                target + row * row_bytes);
-  }
-}
-
 }  // namespace
 
-struct LivePlayer::State final : FrameStream, ForceSink {
+struct LivePlayer::State final : ForceSink {
   State(std::unique_ptr<FrameStream> from, const std::string& name, SolverPlan with,
         Processor solver, std::shared_ptr<Curves> measured);
   ~State() override;
-
-  // The stream as the pipeline sees it.
-  [[nodiscard]] const Skin& skin() const override { return stream->skin(); }
-  [[nodiscard]] SenselType sensel_type() const override { return stream->sensel_type(); }
-  [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) override;
 
   void append(const SolvedFrame& frame) override;
 
   // Run in the thread.
   void run();
   void run_pipeline();
-  void take_tare(const StreamedFrame& frame);
-  [[nodiscard]] std::string pass_tare_on(const std::vector<float>& measured);
   void follow_clock(const SolvedFrame& frame);
   [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
   void publish(const SolvedFrame& frame);
   void wake_display();
 
-  void tell(std::string words);
+  void take_events();
 
   const std::unique_ptr<FrameStream> stream;
   const SolverPlan plan;
   Processor processor;
   const SourceInfo info;
   const std::shared_ptr<Curves> curves;
+  LiveSession session;
   const LiveTime start = live_now();
   // Of the thread.
   ContactTracker tracker;
-  LiveTare live_tare;
   PeakHold peak;
   ObjectPool<LiveField> fields;
   bool tracks = false;
   double last_time_s = -1;               ///< of the frame solved last, since `start`
   std::optional<double> clock_offset_s;  ///< that time less the sensor's
-  SenselWatch watch;
 
   std::atomic<bool> stopping = false;
   std::atomic<bool> paused = false;
   std::atomic<bool> wants_contacts = false;
   std::atomic<bool> wants_peak = false;
   std::atomic<bool> peak_begins = false;
-  std::atomic<bool> wants_tare = false;
-  std::atomic<bool> taring = false;
   std::atomic<bool> ended = false;
   std::atomic<std::uint64_t> solved = 0;
-  std::atomic<LiveTime> last_arrival{start};
 
   mutable std::mutex mutex;  ///< guards the members up to `failed`
-  StreamHealth health;
-  std::vector<float> tare;
   std::unique_ptr<ShownField> waiting;
   std::uint64_t taken = 0;
   RecentTimes times;
   std::string message;
   std::uint64_t messages = 0;
   std::exception_ptr failed;
-
-  mutable std::mutex recording_mutex;  ///< guards the next three members
-  std::unique_ptr<LiveSink> recording;
-  bool recording_awaits_tare = false;  ///< the next tare is that of its frames
-  std::future<void> finishing;
 
   std::mutex waking;  ///< guards `wake`, also while it runs
   std::function<void()> wake;
@@ -153,26 +128,23 @@ LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& n
       processor(std::move(solver)),
       info(live_info(name, plan, processor)),
       curves(std::move(measured)),
+      session(*stream, plan, processor, recording_info(info, plan)),
       tracker(plan.skin.pillar_pitch_mm(), info.contacts),
-      live_tare(plan.skin, plan.sensel_type),
       fields(FieldProducer::kMostShown, [this] { return std::make_unique<LiveField>(plan); }),
-      watch(plan),
-      tare(plan.calibration.tare),
       thread([this] { run(); }) {}
 
 LivePlayer::State::~State() {
   stopping = true;
   thread.join();
-  if (finishing.valid()) finishing.wait();
-  if (recording == nullptr) return;
-  recording->finish();
-  const std::string failure = recording->statistics().failure;
-  if (!failure.empty()) fmt::print(stderr, "pillarfield-viewer: {}\n", failure);
+  session.finish();
+  for (const LiveSession::Sink& sink : session.sinks()) {
+    if (sink.statistics.failure.empty()) continue;
+    fmt::print(stderr, "pillarfield-viewer: {}\n", sink.statistics.failure);
+  }
 }
 
 void LivePlayer::State::run() {
   try {
-    stream->discard_waiting();
     while (!stopping && !ended) run_pipeline();
   } catch (...) {
     const std::scoped_lock lock(mutex);
@@ -186,64 +158,27 @@ void LivePlayer::State::run() {
 void LivePlayer::State::run_pipeline() {
   tracks = wants_contacts;
   if (tracks) tracker = ContactTracker(plan.skin.pillar_pitch_mm(), info.contacts);
-  Pipeline pipeline(*this, processor, {this},
-                    {.contacts = tracks ? &tracker : nullptr,
-                     .stop = [this] { return stopping || tracks != wants_contacts; }});
-  ended = !pipeline.run().stopped;
+  const PipelineStatistics done =
+      session.run({.contacts = tracks ? &tracker : nullptr, .sink = this, .stop = [this] {
+                     return stopping || tracks != wants_contacts;
+                   }});
+  ended = !done.stopped;
 }
 
-Arrival LivePlayer::State::next(StreamedFrame& frame, std::chrono::nanoseconds timeout) {
-  const Arrival arrival = stream->next(frame, timeout);
-  {
-    const std::scoped_lock lock(mutex);
-    health = stream->health();
+std::string words_of(const LiveEvent& event) {
+  if (event.kind == LiveEvent::Kind::recording) {
+    return fmt::format("recorded {}: {}", recorded_words(event.recorded), event.recording);
   }
-  if (arrival != Arrival::arrived) return arrival;
-  last_arrival = frame.arrived;
-  if (!frame.missing.empty()) return arrival;
-  watch.offer(frame.readings);
-  take_tare(frame);
-  return arrival;
+  if (!event.error.empty()) return event.error;
+  return event.recording.empty() ? "tare taken"
+                                 : "tare taken; the recording keeps that of its start";
 }
 
-void LivePlayer::State::take_tare(const StreamedFrame& frame) {
-  if (wants_tare.exchange(false)) live_tare.start(kTareTime);
-  if (!live_tare.is_running()) return;
-  std::string said;
-  try {
-    const std::vector<float>* const measured = live_tare.add(frame.readings, frame.arrived);
-    if (measured == nullptr) return;
-    processor.set_tare(*measured);
-    watch.set_tare(*measured);
-    {
-      const std::scoped_lock lock(mutex);
-      tare = *measured;
-    }
-    said = pass_tare_on(*measured);
-  } catch (const Error& error) {
-    taring = false;
-    tell(error.what());
-    return;
+void LivePlayer::State::take_events() {
+  for (const LiveEvent& event : session.take_events()) {
+    message = words_of(event);
+    ++messages;
   }
-  taring = false;
-  tell(said);
-}
-
-/// A recording states one tare for all of its frames: the first one. Returns what to tell.
-std::string LivePlayer::State::pass_tare_on(const std::vector<float>& measured) {
-  const std::scoped_lock lock(recording_mutex);
-  if (recording == nullptr) return "tare taken";
-  if (!std::exchange(recording_awaits_tare, false)) {
-    return "tare taken; the recording keeps that of its start";
-  }
-  recording->set_tare(measured);
-  return "tare taken";
-}
-
-void LivePlayer::State::tell(std::string words) {
-  const std::scoped_lock lock(mutex);
-  message = std::move(words);
-  ++messages;
 }
 
 ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t index) const {
@@ -273,10 +208,6 @@ void LivePlayer::State::follow_clock(const SolvedFrame& frame) {
 
 void LivePlayer::State::append(const SolvedFrame& frame) {
   follow_clock(frame);
-  {
-    const std::scoped_lock lock(recording_mutex);
-    if (recording != nullptr) recording->append(frame);
-  }
   curves->add(field_of(frame, solved));
   if (wants_peak) {
     if (peak_begins.exchange(false)) peak.reset();
@@ -292,7 +223,7 @@ void LivePlayer::State::append(const SolvedFrame& frame) {
 void LivePlayer::State::publish(const SolvedFrame& frame) {
   const auto owner = std::make_shared<LiveFieldOwner>(fields.acquire());
   if (owner->field == nullptr) return;
-  copy_readings(frame.readings, owner->field->readings);
+  copy_readings(frame.readings, owner->field->readings.bytes().data());
   auto field = std::make_unique<ShownField>(field_of(frame, solved - 1));
   field->raw = owner->field->readings.view();
   if (frame.missing.empty()) {
@@ -342,14 +273,13 @@ void LivePlayer::set_peak(bool wanted) {
 }
 
 PlayerState LivePlayer::state() const {
-  const std::scoped_lock lock(state_->mutex);
   return {.frame = state_->solved,
           .frames = 0,
           .playing = !state_->paused,
           .loops = false,
           .follows = true,
           .speed = 1,
-          .rate_hz = state_->health.rate_hz};
+          .rate_hz = state_->session.health().stream.rate_hz};
 }
 
 PlayerStatistics LivePlayer::statistics() const {
@@ -381,43 +311,14 @@ void LivePlayer::on_new_field(std::function<void()> wake) {
   state_->wake = std::move(wake);
 }
 
-void LivePlayer::tare() {
-  state_->taring = true;
-  state_->wants_tare = true;
-}
+void LivePlayer::tare() { state_->session.start_tare(kTareTime); }
 
 void LivePlayer::record(const std::filesystem::path& path) {
   stop_recording();
-  LiveSinkInfo info;
-  {
-    const std::scoped_lock lock(state_->mutex);
-    info = sink_info(state_->plan, "", state_->info.name);
-    info.calibration.tare = state_->tare;
-    info.replace = Replace::nothing;
-  }
-  auto sink = create_live_recording(path.string(), info);
-  const std::scoped_lock lock(state_->recording_mutex);
-  state_->recording = std::move(sink);
-  state_->recording_awaits_tare =
-      state_->taring ||
-      std::ranges::none_of(info.calibration.tare, [](float tare) { return tare != 0; });
+  state_->session.record(path);
 }
 
-void LivePlayer::stop_recording() {
-  std::unique_ptr<LiveSink> sink;
-  {
-    const std::scoped_lock lock(state_->recording_mutex);
-    sink = std::move(state_->recording);
-  }
-  if (sink == nullptr) return;
-  if (state_->finishing.valid()) state_->finishing.wait();
-  state_->finishing =
-      std::async(std::launch::async, [this, finished = std::shared_ptr(std::move(sink))] {
-        finished->finish();
-        const LiveSinkStatistics statistics = finished->statistics();
-        state_->tell(fmt::format("recorded {}: {}", recorded_words(statistics), finished->name()));
-      });
-}
+void LivePlayer::stop_recording() { state_->session.stop_recording(); }
 
 std::string recorded_words(const LiveSinkStatistics& recorded) {
   std::string words = fmt::format("{} frames", recorded.frames);
@@ -427,22 +328,18 @@ std::string recorded_words(const LiveSinkStatistics& recorded) {
 }
 
 LiveStatus LivePlayer::status() const {
+  LiveSession& session = state_->session;
   LiveStatus status;
-  {
-    const std::scoped_lock lock(state_->mutex);
-    status.stream = state_->health;
-    status.message = state_->message;
-    status.messages = state_->messages;
-  }
-  status.sensels = state_->watch.health();
-  status.solved = state_->solved;
-  status.silent_s = live_seconds(live_now() - state_->last_arrival.load());
+  status.health = session.health();
+  status.health.solved = state_->solved;  // and on display
   status.ended = state_->ended;
-  status.taring = state_->taring;
-  const std::scoped_lock lock(state_->recording_mutex);
-  if (state_->recording == nullptr) return status;
-  status.recording = state_->recording->name();
-  status.recorded = state_->recording->statistics();
+  status.taring = session.is_taring();
+  status.recording = session.recording();
+  for (const LiveSession::Sink& sink : session.sinks()) status.recorded = sink.statistics;
+  const std::scoped_lock lock(state_->mutex);
+  state_->take_events();
+  status.message = state_->message;
+  status.messages = state_->messages;
   return status;
 }
 

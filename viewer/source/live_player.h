@@ -7,18 +7,14 @@
 #include <string>
 
 #include "pillarfield/live.h"
-#include "pillarfield/sensel_watch.h"
 #include "viewer/source/player.h"
 
 namespace pillarfield::viewer {
 
 /// The state of a sensor.
 struct LiveStatus {
-  StreamHealth stream;
-  SenselHealth sensels;
-  std::uint64_t solved = 0;
-  double silent_s = 0;  ///< since the last frame arrived
-  bool ended = false;   ///< no frame will follow
+  HealthReport health;
+  bool ended = false;  ///< no frame will follow
   bool taring = false;
   std::string recording;             ///< file; empty: none
   LiveSinkStatistics recorded = {};  ///< of that file

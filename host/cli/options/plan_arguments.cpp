@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/options/shared_arguments.h"
-#include "cli/pace/frames.h"
+#include "cli/stream/replay.h"
 #include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"

@@ -77,11 +77,9 @@ SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
 }
 
 LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, const Device& device) {
-  LiveSinkInfo info = sink_info(plan, device.info().name, options.source);
+  LiveSinkInfo info = live_sink_info(plan, device.info().name, options.source, options.contacts);
   info.replace = options.replace;
   info.allowed_origins = options.allowed_origins;
-  info.forces.contacts = options.contacts;
-  set_sensor(*info.forces.contacts, plan);
   return info;
 }
 

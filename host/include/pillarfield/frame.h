@@ -34,6 +34,9 @@ struct SenselBlock {
 /// rows overlap.
 void check(const FrameView& frame, const Skin& skin, SenselType type, std::string_view where);
 
+/// Copies the readings to `to`, rows without gaps.
+void copy_readings(const FrameView& frame, std::byte* to);
+
 /// One frame of readings that owns its memory. Its rows are dense, its readings start at zero, and
 /// its memory starts on a page boundary, so that a device that shares the host's memory reads it in
 /// place.

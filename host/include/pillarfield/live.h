@@ -90,10 +90,6 @@ struct LiveSinkInfo {
   std::vector<std::string> allowed_origins = {};
 };
 
-/// What the plan says of a stream, without contacts. `device` and `source` are names.
-[[nodiscard]] LiveSinkInfo sink_info(const SolverPlan& plan, const std::string& device,
-                                     const std::string& source);
-
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON
 /// of contacts and total), `foxglove:[ADDRESS:]PORT` (a WebSocket server), a .mcap file, or any
 /// file of create_force_sink() (docs/streams.md). Throws Error for another target, or one that

@@ -1,7 +1,5 @@
 #include "streams/sink/frame_copy.h"
 
-#include <cstring>
-
 #include "solve/result_planes.h"
 
 namespace pillarfield {
@@ -83,13 +81,8 @@ void FrameCopy::copy_forces(const ForceFieldView& forces, bool all_planes) {
 }
 
 void FrameCopy::copy_readings(const FrameView& readings) {
-  const std::size_t row_bytes = size_of(readings.type) * readings.cols;
-  const std::size_t stride = size_of(readings.type) * readings.row_stride;
-  readings_.resize(row_bytes * readings.rows);
-  const auto* const source = static_cast<const std::byte*>(readings.data);
-  for (std::size_t row = 0; row < readings.rows; ++row) {
-    std::memcpy(readings_.data() + row * row_bytes, source + row * stride, row_bytes);
-  }
+  readings_.resize(std::size_t{readings.rows} * readings.cols * size_of(readings.type));
+  pillarfield::copy_readings(readings, readings_.data());
   frame_.readings = {readings_.data(), readings.type, readings.rows, readings.cols, readings.cols};
 }
 

@@ -103,7 +103,7 @@ struct LiveFixture {
   void send(std::uint8_t reading, int count = 1) {
     sent += static_cast<std::uint64_t>(count);
     for (int i = 0; i < count; ++i) wire->send(reading);
-    wait_until([&] { return player->status().solved == sent; });
+    wait_until([&] { return player->status().health.solved == sent; });
   }
   ShownField newest() const {
     std::optional<ShownField> newest;
@@ -132,7 +132,7 @@ TEST(LivePlayer, SolvesEveryFrameAndShowsTheNewest) {
   ASSERT_EQ(points.size(), 101U);
   EXPECT_FLOAT_EQ(points.front().normal, 2);
   EXPECT_FLOAT_EQ(points.back().normal, 4);
-  EXPECT_EQ(live.player->status().stream.lost, 3U);
+  EXPECT_EQ(live.player->status().health.stream.lost, 3U);
   EXPECT_EQ(live.player->state().frames, 0U);
 }
 
@@ -237,10 +237,10 @@ TEST(LivePlayer, ASensorMayStopAndEnd) {
   LiveFixture live;
   live.send(100);
   std::this_thread::sleep_for(std::chrono::milliseconds(120));
-  EXPECT_GT(live.player->status().silent_s, 0.1);
+  EXPECT_GT(live.player->status().health.since_frame_s, 0.1);
   const auto before = std::chrono::steady_clock::now();
   live.send(100);
-  const double silent_s = live.player->status().silent_s;
+  const double silent_s = live.player->status().health.since_frame_s;
   const std::chrono::duration<double> since = std::chrono::steady_clock::now() - before;
   EXPECT_LE(silent_s, since.count());
   EXPECT_FALSE(live.player->status().ended);

@@ -116,10 +116,10 @@ void live_transport(const Command& command, LiveControl& live) {
   const std::string time =
       state.field ? fmt::format("{:.2f} s   frame {}", state.field->time_s, state.field->index + 1)
                   : "";
-  const std::string words = status.ended                       ? "ended"
-                            : status.silent_s > kSilentSeconds ? silent_words(status)
-                            : playing                          ? "live"
-                                                               : "frozen";
+  const std::string words = status.ended                                   ? "ended"
+                            : status.health.since_frame_s > kSilentSeconds ? silent_words(status)
+                            : playing                                      ? "live"
+                                                                           : "frozen";
   text_in(fmt::format("{}   {}", words, time), 10 * gap, 0);
   const float side = std::round(ImGui::GetFontSize() * 2);
   ImGui::SameLine(ImGui::GetWindowWidth() - side - ImGui::GetStyle().WindowPadding.x);

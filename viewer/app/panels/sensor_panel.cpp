@@ -16,9 +16,9 @@ void count_line(std::vector<ShownValue>& lines, const char* label, std::uint64_t
 
 /// Rate and losses; counts that are zero are left out, but for lost frames.
 std::vector<ShownValue> health_lines(const LiveStatus& status) {
-  const StreamHealth& stream = status.stream;
+  const StreamHealth& stream = status.health.stream;
   std::vector<ShownValue> lines{{"rate", fmt::format("{:.1f}", stream.rate_hz), {}, "Hz"},
-                                {"frames", fmt::format("{}", status.solved), {}, ""},
+                                {"frames", fmt::format("{}", status.health.solved), {}, ""},
                                 {"lost", fmt::format("{}", stream.lost), {}, ""}};
   count_line(lines, "program too late", stream.overrun);
   count_line(lines, "incomplete", stream.incomplete);
@@ -28,22 +28,22 @@ std::vector<ShownValue> health_lines(const LiveStatus& status) {
   count_line(lines, "invalid", stream.invalid);
   count_line(lines, "restarts", stream.restarts);
   count_line(lines, "clock jumps", stream.clock_jumps);
-  count_line(lines, "dead sensels", status.sensels.dead);
-  count_line(lines, "stuck sensels", status.sensels.stuck);
-  count_line(lines, "drifting sensels", status.sensels.drifting);
+  count_line(lines, "dead sensels", status.health.dead);
+  count_line(lines, "stuck sensels", status.health.stuck);
+  count_line(lines, "drifting sensels", status.health.drifting);
   return lines;
 }
 
 std::string state_words(const LiveStatus& status) {
   if (status.ended) return "the source has ended";
-  if (status.silent_s > kSilentSeconds) return silent_words(status);
-  return fmt::format("newest frame {:.0f} ms old", 1e3 * status.silent_s);
+  if (status.health.since_frame_s > kSilentSeconds) return silent_words(status);
+  return fmt::format("newest frame {:.0f} ms old", 1e3 * status.health.since_frame_s);
 }
 
 }  // namespace
 
 std::string silent_words(const LiveStatus& status) {
-  return fmt::format("no frames for {:.0f} s", status.silent_s);
+  return fmt::format("no frames for {:.0f} s", status.health.since_frame_s);
 }
 
 void sensor_panel(const Command& command) {
@@ -67,7 +67,8 @@ void sensor_panel(const Command& command) {
     const std::string name = std::filesystem::path(status.recording).filename().string();
     faint_text(style, fmt::format("{}: {}", name, recorded_words(status.recorded)).c_str());
   }
-  if (!status.stream.mismatch.empty()) faint_text(style, status.stream.mismatch.c_str());
+  if (!status.health.stream.mismatch.empty())
+    faint_text(style, status.health.stream.mismatch.c_str());
   value_table(style, health_lines(status));
 }
 

@@ -71,12 +71,13 @@ std::string plural(std::uint64_t count, const char* what) {
 /// What a user wants to know of a sensor.
 std::string sensor_words(const LiveStatus& status) {
   if (status.ended) return "the source has ended";
-  const std::string& mismatch = status.stream.mismatch;
-  if (status.silent_s > kSilentSeconds) {
+  const std::string& mismatch = status.health.stream.mismatch;
+  if (status.health.since_frame_s > kSilentSeconds) {
     return silent_words(status) + (mismatch.empty() ? "" : ": " + mismatch);
   }
-  std::string words = fmt::format("{:.0f} Hz", status.stream.rate_hz);
-  if (status.stream.lost > 0) words += "   " + plural(status.stream.lost, "frame") + " lost";
+  std::string words = fmt::format("{:.0f} Hz", status.health.stream.rate_hz);
+  if (status.health.stream.lost > 0)
+    words += "   " + plural(status.health.stream.lost, "frame") + " lost";
   if (!status.recording.empty()) {
     words += "   recording " + recorded_words(status.recorded);
   }

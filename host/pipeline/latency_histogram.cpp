@@ -1,9 +1,9 @@
-#include "cli/stream/latency_histogram.h"
+#include "pipeline/latency_histogram.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace pillarfield::cli {
+namespace pillarfield {
 
 void LatencyHistogram::add(std::chrono::nanoseconds latency) {
   const double ms = 1e-6 * static_cast<double>(latency.count());
@@ -13,8 +13,8 @@ void LatencyHistogram::add(std::chrono::nanoseconds latency) {
   worst_ms_ = std::max(worst_ms_, ms);
 }
 
-std::optional<double> LatencyHistogram::quantile_ms(double fraction) const {
-  const double wanted = std::max(1.0, std::ceil(fraction * static_cast<double>(frames_)));
+std::optional<double> LatencyHistogram::quantile_ms(double fraction, std::uint64_t lost) const {
+  const double wanted = std::max(1.0, std::ceil(fraction * static_cast<double>(frames_ + lost)));
   std::uint64_t count = 0;
   for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
     count += bins_.at(bin);
@@ -25,4 +25,4 @@ std::optional<double> LatencyHistogram::quantile_ms(double fraction) const {
   return std::nullopt;
 }
 
-}  // namespace pillarfield::cli
+}  // namespace pillarfield

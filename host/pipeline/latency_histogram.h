@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace pillarfield::cli {
+namespace pillarfield {
 
 /// Counts latencies in 100 bins per decade, from 1 microsecond to 100 s; quantiles are exact to
 /// 2.4 %.
@@ -13,12 +13,10 @@ class LatencyHistogram {
  public:
   void add(std::chrono::nanoseconds latency);
   void clear() { *this = {}; }
-  /// Counts `frames` as later than all others.
-  void add_lost(std::uint64_t frames) { frames_ += frames; }
 
-  /// The latency in ms that at least `fraction` (0..1) of the frames did not exceed; unset without
-  /// frames, and where it is that of a lost one.
-  [[nodiscard]] std::optional<double> quantile_ms(double fraction) const;
+  /// The latency in ms that at least `fraction` (0..1) of the frames did not exceed, among them
+  /// `lost` ones that are later than all others; unset without frames, and for a lost one.
+  [[nodiscard]] std::optional<double> quantile_ms(double fraction, std::uint64_t lost = 0) const;
   [[nodiscard]] double worst_ms() const { return worst_ms_; }
 
  private:
@@ -30,4 +28,4 @@ class LatencyHistogram {
   double worst_ms_ = 0;
 };
 
-}  // namespace pillarfield::cli
+}  // namespace pillarfield
