@@ -91,6 +91,7 @@ void PacedStream::sleep(nanoseconds now, nanoseconds timeout) {
 }
 
 Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
+  const nanoseconds begun = clock_->now();
   for (bool slept = false;;) {
     if (ahead_is_ == Arrival::timed_out) {
       ahead_is_ = stream_->next(ahead_, timeout);
@@ -114,6 +115,8 @@ Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
       ahead_is_ = Arrival::timed_out;
       if (pace_.drop_after && now - due_ > *pace_.drop_after) {
         ++dropped_;
+        // Where reading takes longer than a period, all are dropped: let the caller look around.
+        if (now - begun > timeout) return Arrival::timed_out;
         continue;
       }
       std::swap(frame, ahead_);
