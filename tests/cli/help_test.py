@@ -109,8 +109,7 @@ class WrongCommandLines(CommandTest):
         for fault, *arguments in (
                 ("no command", ), ("no command", "calibrate"), ("INPUT", "solve"),
                 ("--output", "solve", "a"), ("one argument too many", *solve, "c"),
-                ("--seed", "simulate", "--seed", "x"), ("--segment-point", *solve,
-                "--segment-point", 0), ("1.1", *solve, "--segment-point", 1.1),
+                ("--seed", "simulate", "--seed", "x"),
                 ("much", *solve, "--threshold", "much"),
                 ("--minimum-pillars requires --contacts", *solve, "--minimum-pillars", 4),
                 ("--friction", *solve, "--friction", 0.05), ("20", *solve, "--friction", 20),
