@@ -40,7 +40,7 @@ class Distributed(unittest.TestCase):
         cls.recording = WORK / "rec.h5"
         make_recording(cls.recording)
         pf.distributed.solve_part(cls.recording, WORK / "serial.h5", 1, 1, **PLAN)
-        pf.distributed.join(WORK / "serial.h5", copy=True)
+        pf.distributed.join(WORK / "serial.h5", overwrite=True)
         cls.serial = datasets(WORK / "serial.h5")
 
     def assert_serial(self, output):

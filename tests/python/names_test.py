@@ -77,7 +77,7 @@ class Values(unittest.TestCase):
         pf.save_recording(WORK / "rec.h5", simulation, overwrite=True)
         options = {"estimator": "contact", "noise_counts": 0.5}
         pf.distributed.solve_part(WORK / "rec.h5", WORK / "out.h5", 1, 1, contacts=True, **options)
-        pf.distributed.join(WORK / "out.h5", copy=True, overwrite=True)
+        pf.distributed.join(WORK / "out.h5", overwrite=True)
         contacts = pf.solve(WORK / "rec.h5", contacts=True, **options).contacts
         tested = set()
         with h5py.File(WORK / "out.h5") as file:
