@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/extension.h"
+#include "io/file_source.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/contact_hdf5_tables.h"
