@@ -45,7 +45,7 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
 TEST(KernelSource, HasNoConstantThatIsNotFinite) {
   SolverPlan plan = bare_plan(8, 32, SenselType::u8);
   plan.skin.counts_per_newton = 0;
-  EXPECT_THROW(kernel_source(plan, 16), Error);
+  EXPECT_THROW(static_cast<void>(kernel_source(plan, 16)), Error);
 }
 
 TEST(KernelSource, EveryOptionOfAPlanIsAStage) {
