@@ -83,6 +83,7 @@ struct LiveSession::State final : FrameStream, ForceSink {
   SenselWatch watch;
   std::atomic<bool> paused = false;
 
+  std::mutex record_mutex;
   mutable std::mutex mutex;  ///< guards all that follows
   LiveSinkInfo info;
   std::optional<TareRequest> tare_request;
@@ -247,6 +248,8 @@ void LiveSession::set_paused(bool paused) { state_->paused = paused; }
 bool LiveSession::is_paused() const { return state_->paused; }
 
 void LiveSession::record(const std::filesystem::path& path) {
+  // One at a time; the file is created without the lock that frames need.
+  const std::scoped_lock alone(state_->record_mutex);
   LiveSinkInfo info;
   {
     const std::scoped_lock lock(state_->mutex);

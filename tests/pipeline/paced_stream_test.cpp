@@ -202,6 +202,37 @@ TEST_F(PacedStreamTest, AnImpossibleRateDropsWhatCannotBeSolvedAndKeepsLatencies
   EXPECT_EQ(ring_.most_in_flight, 2);
 }
 
+/// Frames that take longer to read than they last.
+class Slow final : public FrameStream {
+ public:
+  explicit Slow(FakeClock& clock) : clock_(clock) {}
+  [[nodiscard]] const Skin& skin() const override { return kSkin; }
+  [[nodiscard]] SenselType sensel_type() const override { return SenselType::u8; }
+  [[nodiscard]] Arrival next(StreamedFrame& frame, Nanoseconds) override {
+    EXPECT_LT(next_, 1000U) << "no end in sight";
+    if (next_ == 1000) return Arrival::ended;
+    frame.sequence = next_++;
+    clock_.advance_to(clock_.now() + milliseconds(10));
+    return Arrival::arrived;
+  }
+
+ private:
+  FakeClock& clock_;
+  std::uint64_t next_ = 0;
+};
+
+TEST_F(PacedStreamTest, ReadingThatTakesLongerThanAPeriodLeavesTheCallerInterruptible) {
+  const auto stream = paced_stream(std::make_unique<Slow>(*clock_), pace_, clock_);
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  EXPECT_EQ(stream->next(frame, milliseconds(50)), Arrival::arrived);
+  for (int call = 0; call < 5; ++call) {
+    const Nanoseconds before = clock_->now();
+    EXPECT_EQ(stream->next(frame, milliseconds(50)), Arrival::timed_out);
+    EXPECT_LE(clock_->now() - before, milliseconds(70));
+  }
+  EXPECT_GT(stream->health().lost, 20U);
+}
+
 TEST_F(PacedStreamTest, ASleepThatEndsLateIsPartOfTheLatency) {
   clock_->wake = [](Nanoseconds, Nanoseconds time) { return time + microseconds(70); };
   run();
