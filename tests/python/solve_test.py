@@ -211,6 +211,20 @@ class Memory(unittest.TestCase):
         self.assertGreater(during, 100)
 
 
+    def test_threads_share_a_recording(self):
+        WORK.mkdir(parents=True, exist_ok=True)
+        path = WORK / "shared.h5"
+        pf.save_recording(path, pf.simulate(skins.scene(100)), overwrite=True)
+        code = ("import sys, threading, pillarfield as pf\n"
+                "recording = pf.open(sys.argv[1])\n"
+                "def work():\n"
+                "    for _ in range(40): pf.solve(recording, baseline_time_s=1)\n"
+                "threads = [threading.Thread(target=work) for _ in range(3)]\n"
+                "for thread in threads: thread.start()\n"
+                "for thread in threads: thread.join()\n")
+        subprocess.run([sys.executable, "-c", code, path], check=True, timeout=600)
+
+
 class Errors(unittest.TestCase):
     def test_text_place_and_mend(self):
         with self.assertRaises(pf.Error) as caught:
