@@ -44,8 +44,8 @@ StepFrames step_frames(Frames& frames) {
 /// The pressures of all frames of each source.
 std::vector<PressureLog> logs_of(const SomeFrames& sources,
                                  const std::vector<std::vector<double>>& pressures_kpa) {
-  const py::gil_scoped_release
-      unlocked;  // Before `alone`, whose holder may wait for Python's lock.
+  // Its holder may wait for Python's lock.
+  const py::gil_scoped_release unlocked;
   std::vector<PressureLog> logs;
   for (std::size_t i = 0; i < std::min(sources.size(), pressures_kpa.size()); ++i) {
     Frames& frames = sources[i];

@@ -163,8 +163,8 @@ SolverPlan plan_of(Frames& frames, const Skin& skin, const CalibrationOrPath& ca
   plan.skin = skin;
   plan.sensel_type = frames.source->sensel_type();
   return plan_with(std::move(plan), calibration, scene, given, [&] {
-    const py::gil_scoped_release
-        unlocked;  // Before `alone`, whose holder may wait for Python's lock.
+    // Its holder may wait for Python's lock.
+    const py::gil_scoped_release unlocked;
     const std::lock_guard alone(frames.alone);
     return frame_interval_of(*frames.source, "frames");
   });
