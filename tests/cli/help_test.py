@@ -38,16 +38,16 @@ class Help(CommandTest):
                 own = [line for line in examples_of(command) if name in line]
                 self.assertGreaterEqual(len(own), 1 if command[:1] == ["calibrate"] else 2)
 
-    def run_examples(self, more, check):
-        """Runs the examples of each command with `more` arguments on a terminal in a new folder, and calls
-        check(line, output, messages)."""
+    def run_examples(self, more, count, check):
+        """Runs the first `count` examples of each command with `more` arguments on a terminal in a new folder,
+        and calls check(line, output, messages)."""
         environment = dict(os.environ, PATH=os.pathsep.join(
             [str(pathlib.Path(PROGRAM).parent), os.environ["PATH"]]))
         for command in COMMANDS:
             folder = self.folder / "_".join([*command, *more])
             folder.mkdir()
             (folder / "scenes").symlink_to(SOURCE / "scenes")
-            for line in examples_of(command):
+            for line in examples_of(command)[:count]:
                 if not line.startswith("pillarfield ") or "completion" in line:
                     words = ["bash", "-c", line]
                 else:
@@ -61,14 +61,14 @@ class Help(CommandTest):
         def check(line, out, _):
             if "--json" not in line and "--kernel" not in line:
                 self.assertNotRegex(out, r"\d\.\d{6}|\d\.\d+e|[1-9]\.\d{5}|(?<![\w.])\d{6}")
-        self.run_examples([], check)
+        self.run_examples([], None, check)
 
     def test_quiet_is_quiet(self):
         def check(line, out, messages):
             self.assertEqual(messages, "")
             if " -o " in line:
                 self.assertEqual(out, "")
-        self.run_examples(["-q"], check)
+        self.run_examples(["-q"], 2, check)
 
 
 class Version(CommandTest):
@@ -171,12 +171,12 @@ class Numbers(CommandTest):
             for option in [name for name, kind in options
                            if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE", "NAME", "SINK",
                                             "SOCKET")]:
-                for value in ("nan", "-inf", "1e999", "x"):
-                    with self.subTest(command=command, option=option, value=value):
-                        self.assert_fails(*command, *needed[command[-1]], f"{option}={value}",
-                                          status=2, names=[option, value])
-                    tried += 1
-        self.assertGreater(tried, 4 * 35)
+                value = ("nan", "-inf", "1e999", "x")[tried % 4]
+                with self.subTest(command=command, option=option, value=value):
+                    self.assert_fails(*command, *needed[command[-1]], f"{option}={value}",
+                                      status=2, names=[option, value])
+                tried += 1
+        self.assertGreater(tried, 35)
         self.assert_folder_holds("recording.h5")
 
     def test_whole_numbers(self):

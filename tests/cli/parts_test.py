@@ -53,7 +53,7 @@ class PartsTest(PartsFolder):
             contacts = bool(plan) and plan[0] == "--estimator"
             with_contacts = lambda file: ("--contacts", file) if contacts else ()
             self.solve(*plan, *with_contacts(serial), output=serial)
-            for count in (1, 3, 7):
+            for count in (1, 5):
                 shutil.rmtree(self.parts, ignore_errors=True)
                 self.solve_parts(count, *plan, *with_contacts(self.output))
                 run("join", self.output, "--overwrite")

@@ -129,13 +129,13 @@ TEST(FilteredReadings, AreThoseThatWereWritten) {
   const std::vector<std::vector<hsize_t>> chunks = {
       {1, kRows, kCols}, {4, kRows, kCols}, {3, 4, 3}, {11, 2, 10}, {5, 9, 16}, {64, 1, 1}};
   for (std::size_t filter = 0; filter < std::size(kFilters); ++filter) {
-    for (const auto& chunk : chunks) {
+    for (std::size_t number = 0; number < chunks.size(); ++number) {
+      const auto& chunk = chunks[number];
       SCOPED_TRACE(testing::Message() << "filters " << filter << ", chunks of " << chunk[0] << " x "
                                       << chunk[1] << " x " << chunk[2]);
-      for (const hid_t stored : {H5T_STD_U16LE, H5T_STD_U16BE}) {
-        write_recording(path, chunk, stored, kFilters[filter], write_all);
-        expect_frames(path, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 3, 0, 10});
-      }
+      const hid_t stored = (filter + number) % 2 == 0 ? H5T_STD_U16LE : H5T_STD_U16BE;
+      write_recording(path, chunk, stored, kFilters[filter], write_all);
+      expect_frames(path, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 3, 0, 10});
     }
   }
 }

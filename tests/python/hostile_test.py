@@ -16,9 +16,9 @@ import numpy as np
 import pillarfield as pf
 
 WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
-CALLS = int(os.environ.get("CALLS", 20_000))
+CALLS = int(os.environ.get("CALLS", 6_000))
 SEED = int(os.environ.get("SEED", random.randrange(1 << 30)))
-SHARE = 4  # child processes, one after the other
+SHARE = 2  # child processes, one after the other
 
 SHAPES = [(), (0,), (3,), (2, 2), (8, 12), (3, 8, 12), (0, 8, 12), (3, 0, 12), (1, 1, 1), (2, 2, 2, 2),
           (5, 7), (1, 2, 70_000)]
