@@ -7,26 +7,25 @@ if(NOT PILLARFIELD_CLANG)
   return()
 endif()
 
-set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
-  -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
-  -DPF_TARE_PLANE=0 -DPF_GAIN_PLANE=1 -DPF_DEAD_ZONE_PLANE=2 -DPF_NOISE_PLANE=3 -DPF_MASK_PLANE=4
-  -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_POWER_LARGEST=1.0f -DPF_BASELINE)
+# The constants of the stages, from their table.
+file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/../kernels/frame/stage_table.h" lint_constants REGEX "X\\([a-z_]+, [a-z].*(exact|above|from|per_count|fraction),")
+list(TRANSFORM lint_constants REPLACE ".*X\\(([a-z_]+),.*" "-DPF_VALUE_\\1=1.0f")
+list(TRANSFORM lint_constants REPLACE "=1.0f" "=1" OUTPUT_VARIABLE lint_whole_constants)
+set(lint_all_stages -DPF_RANGE -DPF_SATURATION -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
+  -DPF_MASK -DPF_PARITY_TEST -DPF_ANGLES -DPF_UNCERTAINTY -DPF_NOISE -DPF_POWER_LAW -DPF_BASELINE
+  -DPF_TARE_PLANE=0 -DPF_GAIN_PLANE=1 -DPF_DEAD_ZONE_PLANE=2 -DPF_NOISE_PLANE=3 -DPF_MASK_PLANE=4)
 set(lint_effects -DPF_WIRES -DPF_TILE_ROWS=64 -DPF_TILE_COLS=60 -DPF_ROW_PER_COUNT=1.0f
-  -DPF_COLUMN_PER_COUNT=1.0f -DPF_IDLE_PER_COUNT=1.0f -DPF_CURVE -DPF_CURVE_PER_COUNT=1.0f -DPF_CURVE_ROOT=1 "-DPF_CURVE_COEFFICIENTS={1.0f}"
-  -DPF_LEAK -DPF_LEAK_SELF=1.0f -DPF_LEAK_INSIDE=1.0f -DPF_LEAK_ACROSS=1.0f -DPF_LEAK_BOTH_INSIDE=1.0f
-  -DPF_LEAK_MIXED=1.0f -DPF_LEAK_BOTH_ACROSS=1.0f -DPF_MEMORY -DPF_MEMORY_PLANE=7 -DPF_PLAYS=4 -DPF_CREEPS=2
+  -DPF_COLUMN_PER_COUNT=1.0f -DPF_IDLE_PER_COUNT=1.0f -DPF_CURVE -DPF_CURVE_PER_COUNT=1.0f -DPF_CURVE_ROOT=1
+  "-DPF_CURVE_COEFFICIENTS={1.0f}" -DPF_LEAK -DPF_MEMORY -DPF_MEMORY_PLANE=7 -DPF_PLAYS=4 -DPF_CREEPS=2
   "-DPF_PLAY_WIDTHS={1.0f, 2.0f, 3.0f, 4.0f}" "-DPF_PLAY_WEIGHTS={1.0f}" "-DPF_CREEP_RATES={1.0f, 0.5f}" "-DPF_CREEP_DECAYS={1.0f}"
-  "-DPF_CREEP_WEIGHTS={1.0f}" -DPF_SHEAR_COEFFICIENT -DPF_PER_COEFFICIENT_X=1.0f -DPF_PER_COEFFICIENT_Y=1.0f
-  -DPF_RESIDUAL -DPF_RESIDUAL_RELATIVE=1.0f -DPF_RESIDUAL_VARIANCE=1.0f -DPF_RELATIVE_MARGIN=1.0f
-  -DPF_POWER_LARGEST=1.0f -DPF_PILLAR_LEAK -DPF_PILLAR_LEAK_SELF=1.0f
-  -DPF_PILLAR_LEAK_EDGE=1.0f -DPF_PILLAR_LEAK_CORNER=1.0f -DPF_LEAN=1.0f)
+  "-DPF_CREEP_WEIGHTS={1.0f}" -DPF_SHEAR_COEFFICIENT -DPF_RESIDUAL -DPF_PILLAR_LEAK -DPF_LEAN)
 list(APPEND lint_all_stages -DPF_BEND -DPF_BEND_X_PLANE=10 -DPF_BEND_Y_PLANE=11 -DPF_BEND_XY_PLANE=12)
 set(lint_skipping -DPF_SKIP_IDLE -DPF_ACTIVATION=1 -DPF_ACTIVATION_CUT=1.0f -DPF_ACTIVATION_STEP=1.0f
   -DPF_ACTIVATION_LOWEST=0.0f -DPF_ACTIVATION_HIGHEST=1.0f -DPF_ACTIVATION_NEVER=1.0f)
 
 set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
   -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
-  -Wno-unused-function -Werror -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f)
+  -Wno-unused-function -Werror)
 
 set(lint_commands "")
 foreach(sensel uchar ushort float)
@@ -34,14 +33,14 @@ foreach(sensel uchar ushort float)
     foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5"
         "${lint_effects};${lint_skipping}" "${lint_effects};-DPF_WIRES_AFTER_TARE;-DPF_IDLE_LOAD=1.0f;${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        -DPF_THRESHOLD=1.0f -DPF_MARGIN=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
+        ${lint_constants} ${stages} ${all_kernels})
     endforeach()
   endforeach()
 endforeach()
 foreach(lanes 2 4 8 16)
-  foreach(stages "" "${lint_skipping};-DPF_FULL_SCALE=255;-DPF_PARITY_TOLERANCE=1")
+  foreach(stages "" "${lint_skipping};-DPF_SATURATION;-DPF_PARITY_TEST")
     list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=uchar -DPF_LANES=${lanes}
-      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_MARGIN=1 -DPF_SEGMENT_POINT=3 ${stages} ${all_kernels})
+      -DPF_WHOLE=4 ${lint_whole_constants} ${stages} ${all_kernels})
   endforeach()
 endforeach()
 set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")

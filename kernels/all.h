@@ -28,6 +28,7 @@
 #if !defined(PF_WHOLE) && (!defined(__cplusplus) || PF_PRECISION == 32)
 #include "frame/wire_sweep.h"
 #endif
+#include "frame/stage_table.h"
 #include "frame/stages.h"
 #ifndef __cplusplus
 #include "frame/load_store.h"

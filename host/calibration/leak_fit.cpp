@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/pillar_maths.h"
+
 namespace pillarfield {
 namespace {
 
@@ -19,14 +21,11 @@ NeighbourSums neighbour_sums(const SenselPatch& v) {
   };
   for (std::size_t row = 0; row < kPatchSide; ++row) {
     for (std::size_t col = 0; col < kPatchSide; ++col) {
-      // Even rows and columns have their partner below and right of them; 0 − 1 is off the patch.
-      const bool even_row = row % 2 == 0;
-      const bool even_col = col % 2 == 0;
+      const auto in_v = static_cast<std::size_t>(double_precision::inward(static_cast<int>(row)));
+      const auto in_h = static_cast<std::size_t>(double_precision::inward(static_cast<int>(col)));
       const std::size_t i = row * kPatchSide + col;
-      sums.inside.at(i) =
-          at(even_row ? row + 1 : row - 1, col) + at(row, even_col ? col + 1 : col - 1);
-      sums.across.at(i) =
-          at(even_row ? row - 1 : row + 1, col) + at(row, even_col ? col - 1 : col + 1);
+      sums.inside.at(i) = at(row + in_v, col) + at(row, col + in_h);
+      sums.across.at(i) = at(row - in_v, col) + at(row, col - in_h);  // 0 - 1 is off the patch.
     }
   }
   return sums;

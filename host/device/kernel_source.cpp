@@ -12,7 +12,6 @@
 #include "device/sensel_macro.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
-#include "skin/force_scale.h"
 #include "solve/activation_thresholds.h"
 #include "solve/sensor_corrections.h"
 #include "solve/stages.h"
@@ -67,24 +66,28 @@ bool is_whole(const SolverPlan& plan) {
          whole_segment_point(plan);
 }
 
-/// A limit in counts. In a whole-number program it is rounded so that comparisons do not change.
-class CountsMacro {
- public:
-  explicit CountsMacro(bool whole) : whole_(whole) {}
-  /// For x > value.
-  [[nodiscard]] std::string above(double value) const { return text(value, std::floor); }
-  /// For x >= value, and x > -value.
-  [[nodiscard]] std::string from(double value) const { return text(value, std::ceil); }
+/// A limit in counts in a program of whole numbers, rounded so that comparisons do not change.
+std::string whole_limit(double value, double (*round)(double)) {
+  const double units = kUnitsPerCount * std::min<double>(static_cast<float>(value), kManyCounts);
+  return fmt::format("{}", static_cast<int>(round(units)));
+}
 
- private:
-  [[nodiscard]] std::string text(double value, double (*round)(double)) const {
-    if (!whole_) return hex_float(value);
-    const double units = kUnitsPerCount * std::min<double>(static_cast<float>(value), kManyCounts);
-    return fmt::format("{}", static_cast<int>(round(units)));
+std::string text_of(const StageConstant& constant, const SolverPlan& plan, bool whole) {
+  if (!whole) return hex_float(constant.value);
+  switch (constant.kind) {
+    case ConstantKind::exact:
+      break;
+    case ConstantKind::above:
+      return whole_limit(constant.value, std::floor);
+    case ConstantKind::from:
+      return whole_limit(constant.value, std::ceil);
+    case ConstantKind::per_count:
+      return hex_float(constant.value / kUnitsPerCount);
+    case ConstantKind::fraction:
+      return fmt::format("{}", *whole_segment_point(plan));
   }
-
-  bool whole_;
-};
+  return hex_float(constant.value);
+}
 
 /// The values of an array as an initialiser.
 template <std::size_t count>
@@ -92,16 +95,6 @@ std::string hex_list(const float (&values)[count]) {
   std::string list;
   for (const float value : values) list += (list.empty() ? "{" : ", ") + hex_float(value);
   return list + "}";
-}
-
-void define_leak(const SenselLeak& leak, Definitions& all) {
-  const auto taps = leak_taps(leak);
-  all["PF_LEAK_SELF"] = hex_float(taps.self);
-  all["PF_LEAK_INSIDE"] = hex_float(taps.inside);
-  all["PF_LEAK_ACROSS"] = hex_float(taps.across);
-  all["PF_LEAK_BOTH_INSIDE"] = hex_float(taps.both_inside);
-  all["PF_LEAK_MIXED"] = hex_float(taps.mixed);
-  all["PF_LEAK_BOTH_ACROSS"] = hex_float(taps.both_across);
 }
 
 void define_memory(const SenselMemory& memory, double frame_interval_s, Definitions& all) {
@@ -123,20 +116,7 @@ void define_wires(const WireCrosstalk& wires, Definitions& all) {
   all["PF_IDLE_PER_COUNT"] = hex_float(wires.idle_per_count);
 }
 
-void define_pillar_leak(const PillarLeak& leak, Definitions& all) {
-  const PillarTaps taps = pillar_leak_taps(leak);
-  all["PF_PILLAR_LEAK_SELF"] = hex_float(taps.self);
-  all["PF_PILLAR_LEAK_EDGE"] = hex_float(taps.edge);
-  all["PF_PILLAR_LEAK_CORNER"] = hex_float(taps.corner);
-}
-
-void define_residual(const ResidualError& residual, Definitions& all) {
-  all["PF_RESIDUAL_RELATIVE"] = hex_float(residual.relative);
-  all["PF_RESIDUAL_VARIANCE"] = hex_float(residual.offset_counts * residual.offset_counts);
-  all["PF_RELATIVE_MARGIN"] = hex_float(region_margin(residual.relative));
-}
-
-/// Adds the constants of a real sensor's effects.
+/// Adds the models of a real sensor's effects.
 void define_effects(const SolverPlan& plan, Definitions& all) {
   const SensorEffects& effects = plan.calibration.effects;
   if (!effects.curve.empty()) {
@@ -145,50 +125,24 @@ void define_effects(const SolverPlan& plan, Definitions& all) {
     all["PF_CURVE_PER_COUNT"] = hex_float(curve.per_count);
     all["PF_CURVE_ROOT"] = fmt::format("{}", curve.root);
   }
-  if (effects.shear_coefficient) {
-    all["PF_PER_COEFFICIENT_X"] = hex_float(1 / effects.shear_coefficient->x);
-    all["PF_PER_COEFFICIENT_Y"] = hex_float(1 / effects.shear_coefficient->y);
-  }
-  if (effects.sensel_leak) define_leak(*effects.sensel_leak, all);
   if (effects.memory) define_memory(*effects.memory, plan.frame_interval_s, all);
   if (effects.wires) define_wires(*effects.wires, all);
-  if (effects.residual) define_residual(*effects.residual, all);
-  if (effects.pillar_leak) define_pillar_leak(*effects.pillar_leak, all);
-  if (effects.arm_mm) all["PF_LEAN"] = hex_float(plan.skin.pillar_pitch_mm() / *effects.arm_mm);
 }
 
-/// Adds the stages and constants of a plan; `whole`: in whole numbers.
+/// The stages and constants of a plan; `whole`: in whole numbers.
 Definitions definitions(const SolverPlan& plan, bool whole) {
-  const Skin& skin = plan.skin;
-  const ForceScale scale = force_scale(skin.counts_per_newton);
-  const int units_per_count = whole ? kUnitsPerCount : 1;
-  const CountsMacro counts(whole);
   Definitions all;
   for (const Stage& stage : stages_of(plan)) {
-    if (stage.macro != nullptr) all[stage.macro] = "";
+    if (stage.has_macro()) all[stage.macro] = "";
   }
-  const auto set = [&all](const char* stage, const std::string& value) {
-    if (const auto found = all.find(stage); found != all.end()) found->second = value;
-  };
-  set("PF_SENSEL", sensel_macro(plan.sensel_type));
-  set("PF_LARGEST_READING", hex_float(kMaxCounts));
-  set("PF_FULL_SCALE", counts.from(skin.full_scale_counts.value_or(0)));
-  set("PF_THRESHOLD", counts.above(skin.threshold_counts));
-  set("PF_PARITY_TOLERANCE", counts.above(plan.parity_tolerance_counts.value_or(0)));
-  set("PF_UNCERTAINTY", hex_float(reading_noise(plan)));
-  if (skin.power_law) {
-    all["PF_POWER_EXPONENT"] = hex_float(skin.power_law->exponent);
-    all["PF_POWER_REFERENCE"] = hex_float(skin.power_law->reference_counts);
-    all["PF_POWER_LARGEST"] = hex_float(kMaxCounts);
+  for (const StageConstant& constant : stage_constants(plan)) {
+    if (!constant.is_needed) continue;
+    all[std::string("PF_VALUE_") + constant.name] = text_of(constant, plan, whole);
   }
+  all["PF_SENSEL"] = sensel_macro(plan.sensel_type);
   define_effects(plan, all);
   if (whole) all["PF_WHOLE"] = fmt::format("{}", kUnitsPerCount);
   if (plan.uncertainty && !plan.calibration.noise.empty()) all["PF_NOISE"] = "";
-  all["PF_SHEAR_SCALE"] = hex_float(scale.shear / units_per_count);
-  all["PF_NORMAL_SCALE"] = hex_float(scale.normal / units_per_count);
-  all["PF_SEGMENT_POINT"] =
-      whole ? fmt::format("{}", *whole_segment_point(plan)) : hex_float(plan.segment_point);
-  all["PF_MARGIN"] = counts.from(region_margin(plan));
   return all;
 }
 

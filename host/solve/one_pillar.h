@@ -43,13 +43,14 @@ template <class Real>
 typename PillarTypes<Real>::Stages pillar_stages(const PillarSensor& sensor) {
   typename PillarTypes<Real>::Stages stages{};
   const ForceScale scale = force_scale(sensor.counts_per_newton);
-  stages.range = stages.dead_zone = stages.angles = stages.uncertainty = true;
+  stages.reject_out_of_range = stages.dead_zone = stages.angles = stages.uncertainty = true;
   stages.saturation = sensor.full_scale_counts.has_value();
   stages.largest = static_cast<Real>(kMaxCounts);
   stages.full_scale = static_cast<Real>(sensor.full_scale_counts.value_or(0));
   stages.threshold = static_cast<Real>(sensor.threshold_counts);
   stages.margin = static_cast<Real>(region_margin(sensor.noise_counts));
-  stages.scale = {static_cast<Real>(scale.shear), static_cast<Real>(scale.normal)};
+  stages.shear_scale = static_cast<Real>(scale.shear);
+  stages.normal_scale = static_cast<Real>(scale.normal);
   return stages;
 }
 
@@ -75,7 +76,7 @@ PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const Pilla
   };
   PillarEstimate<Real> solution = estimate();
   if (estimator != Estimator::paper) return solution;
-  stages.paper = true;
+  stages.paper_solve = true;
   const PillarEstimate<Real> paper = estimate();
   solution.force = paper.force;
   solution.direction = paper.direction;

@@ -140,7 +140,7 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       *plane = unleaked(*plane, field, stages);
     }
   }
-  std::vector<maths::ShearRatios> ratios(stages.arm ? field.normal.size() : 0);
+  std::vector<maths::ShearRatios> ratios(stages.lean ? field.normal.size() : 0);
   for (std::size_t index = 0; index < ratios.size(); ++index) {
     if (!is_loaded(field, index)) continue;
     const auto [x, y] = pillar_lean(field.view(), index);
@@ -152,7 +152,7 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       const std::size_t index = row * field.cols + col;
       if (!is_loaded(field, index)) continue;
       maths::ShearRatios means{};
-      if (stages.arm) {
+      if (stages.lean) {
         means = {mean_of_ratios(ratios, &maths::ShearRatios::x, field, row, col),
                  mean_of_ratios(ratios, &maths::ShearRatios::y, field, row, col)};
       }

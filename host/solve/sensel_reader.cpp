@@ -9,14 +9,6 @@ namespace pillarfield {
 
 namespace maths = single_precision;
 
-namespace {
-
-/// The part of the neighbours of a sensel that lie in one direction: the offset to the one under
-/// the same pillar, and the opposite one.
-int inward(std::size_t at) { return at % 2 == 0 ? 1 : -1; }
-
-}  // namespace
-
 SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, SensorState* state)
     : calibration_(plan.calibration),
       frame_(frame),
@@ -25,12 +17,6 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
       noise_(static_cast<float>(reading_noise(plan))) {
   const SensorEffects& effects = plan.calibration.effects;
   stages_.curve_polynomial = curve_polynomial(effects.curve).polynomial;
-  if (effects.sensel_leak) {
-    const auto taps = leak_taps(*effects.sensel_leak);
-    const auto real = [](double tap) { return static_cast<float>(tap); };
-    stages_.leak_taps = {real(taps.self),        real(taps.inside), real(taps.across),
-                         real(taps.both_inside), real(taps.mixed),  real(taps.both_across)};
-  }
   if (!calibration_.bend_x.empty()) bend(plan);
   wires_ = WireFactors(plan, frame, tares());
   if (!effects.memory) return;
@@ -95,7 +81,7 @@ maths::Sensel SenselReader::active(maths::Sensel sensel, std::size_t row, std::s
 /// Zero outside the pillars; rows and columns before the first are huge numbers.
 float SenselReader::leak_source(std::size_t row, std::size_t col) const {
   if (row / 2 >= frame_.rows / 2 || col / 2 >= frame_.cols / 2) return 0;
-  const std::size_t beside = col + static_cast<std::size_t>(inward(col));
+  const std::size_t beside = col + static_cast<std::size_t>(maths::inward(static_cast<int>(col)));
   const maths::Sensel sensel = linear(row, col);
   return maths::source_or(sensel, maths::leak_source(sensel, stages_.threshold),
                           maths::leak_source(linear(row, beside), stages_.threshold));
@@ -103,15 +89,13 @@ float SenselReader::leak_source(std::size_t row, std::size_t col) const {
 
 maths::Sensel SenselReader::without_leak(maths::Sensel sensel, std::size_t row,
                                          std::size_t col) const {
-  const auto in_h = static_cast<std::size_t>(inward(col));
-  const auto in_v = static_cast<std::size_t>(inward(row));
-  const auto at = [&](std::size_t down, std::size_t right) {
-    return leak_source(row + down, col + right);
+  const int in_v = maths::inward(static_cast<int>(row));
+  const int in_h = maths::inward(static_cast<int>(col));
+  const auto at = [&](int down, int right) {
+    return leak_source(row + static_cast<std::size_t>(down), col + static_cast<std::size_t>(right));
   };
-  const maths::Neighbours neighbours = {at(0, in_h),     at(in_v, 0),     at(0, -in_h),
-                                        at(-in_v, 0),    at(in_v, in_h),  at(-in_v, in_h),
-                                        at(in_v, -in_h), at(-in_v, -in_h)};
-  return maths::remove_leak(sensel, neighbours, stages_.leak_taps, stages_.threshold);
+  const maths::Neighbours neighbours = PF_NEIGHBOURS(at, in_v, in_h);
+  return maths::remove_leak(sensel, neighbours, maths::leak_taps(stages_), stages_.threshold);
 }
 
 maths::Pillar SenselReader::recalled(const maths::Pillar& pillar, std::size_t index) {

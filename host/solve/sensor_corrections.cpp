@@ -16,12 +16,6 @@ constexpr double kLeastTerm = 1e-9;
 
 using Patch = std::vector<double>;
 
-/// Leak from the sensel at `at` to its neighbour at `to` in the same row or column: inside a
-/// pillar, which begins at even places, or across.
-double leak_between(const SenselLeak& leak, int at, int to) {
-  return std::min(at, to) % 2 == 0 ? leak.inside : leak.across;
-}
-
 /// The patch repeats.
 std::size_t place_of(int row, int col) {
   constexpr std::size_t kRowLength = kPatch;
@@ -35,8 +29,8 @@ double at(const Patch& patch, int row, int col) { return patch[place_of(row, col
 double sensel_receives(const Patch& from, int row, int col, const SenselLeak& leak) {
   double sum = 0;
   for (const int step : {-1, 1}) {
-    sum += leak_between(leak, row + kPatch, row + kPatch + step) * at(from, row + step, col);
-    sum += leak_between(leak, col + kPatch, col + kPatch + step) * at(from, row, col + step);
+    sum += leak_from(leak, row, step) * at(from, row + step, col);
+    sum += leak_from(leak, col, step) * at(from, row, col + step);
   }
   return sum;
 }

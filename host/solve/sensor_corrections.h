@@ -20,6 +20,11 @@ inline constexpr double kCurveReach = 1.25;
 /// The reading at which the polynomial gives `load`, >= 0 counts.
 [[nodiscard]] double reading_at(const single_precision::CurvePolynomial& curve, double load);
 
+/// The leak to the sensel in row or column `at` from its neighbour `step` (-1 or 1) beside it.
+[[nodiscard]] inline double leak_from(const SenselLeak& leak, int at, int step) {
+  return step == double_precision::inward(at) ? leak.inside : leak.across;
+}
+
 /// The inverse of a leak, cut to 3 x 3 sensels; a uniform field keeps its exact inverse
 /// (docs/derivations/sensor_effects.md, E3).
 [[nodiscard]] double_precision::LeakTaps leak_taps(const SenselLeak& leak);

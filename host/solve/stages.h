@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pillarfield/solver_plan.h"
@@ -12,17 +14,36 @@ enum class StagePlace : std::uint8_t {
   host,    ///< after the device: reads the frame's results
 };
 
-/// A stage of the solve.
+/// A stage of the solve, in kernels/frame/stage_table.h.
 struct Stage {
   const char* name = nullptr;
-  const char* macro = nullptr;  ///< defined where the stage is named; null: the stage always runs
+  const char* macro = nullptr;  ///< defined where the stage is named, or "none"
   bool (*is_named)(const SolverPlan& plan) = nullptr;
   StagePlace place = StagePlace::pillar;
   bool has_memory = false;  ///< keeps state from frame to frame; frames are solved in their order
+
+  [[nodiscard]] bool has_macro() const;
 };
+
+/// All stages, in order.
+[[nodiscard]] std::span<const Stage> all_stages();
 
 /// The stages that a plan names, in order.
 [[nodiscard]] std::vector<Stage> stages_of(const SolverPlan& plan);
+
+/// How a constant is written in a program of whole numbers: kernels/frame/stage_table.h.
+enum class ConstantKind : std::uint8_t { exact, above, from, per_count, fraction };
+
+/// A constant of the stages.
+struct StageConstant {
+  const char* name;
+  bool is_needed;  ///< by the stages that the plan names
+  ConstantKind kind;
+  double value;
+};
+
+/// The constants of a plan, in the order of kernels/frame/stage_table.h.
+[[nodiscard]] std::vector<StageConstant> stage_constants(const SolverPlan& plan);
 
 /// True if frames must be solved in their order on the device.
 [[nodiscard]] bool has_memory_on_device(const SolverPlan& plan);

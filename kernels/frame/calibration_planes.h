@@ -101,7 +101,7 @@ PF_INLINE SenselPair finish_sensels(SenselPair pair, Calibration calibration, Pl
 PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration, Place place) {
   const CountsPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, place);
-  RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
+  RealPair noise = {PF_VALUE(Real, noise), PF_VALUE(Real, noise)};
 #ifdef PF_NOISE
   noise =
       load_plane(PF_PLANE_OF(calibration, float, PF_NOISE_PLANE) + offset_of(calibration, place));

@@ -106,8 +106,8 @@ PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int 
   const Real corners =
       (load_near(plane, layout, row, -1, col - 1) + load_near(plane, layout, row, -1, col + 1)) +
       (load_near(plane, layout, row, 1, col - 1) + load_near(plane, layout, row, 1, col + 1));
-  return pillar_without_leak(own, edges, corners, (Real)(PF_PILLAR_LEAK_SELF),
-                             (Real)(PF_PILLAR_LEAK_EDGE), (Real)(PF_PILLAR_LEAK_CORNER));
+  return pillar_without_leak(own, edges, corners, PF_VALUE(Real, pillar_leak_self),
+                             PF_VALUE(Real, pillar_leak_edge), PF_VALUE(Real, pillar_leak_corner));
 }
 
 /* Forces as solve_frame left them in the scratch memory, to the planes of the result. A work-item

@@ -6,8 +6,8 @@
 
 #define PF_TILE_PARTS ((PF_TILE_COLS + PF_WIRE_PARTS - 1) / PF_WIRE_PARTS * PF_WIRE_PARTS)
 
-#ifdef PF_LARGEST_READING
-#define PF_IN_RANGE(type, reading) (fabs(reading) <= (type)(PF_LARGEST_READING))
+#ifdef PF_RANGE
+#define PF_IN_RANGE(type, reading) (fabs(reading) <= PF_VALUE(type, largest))
 #else
 #define PF_IN_RANGE(type, reading) ((type)(0.0f) == (type)(0.0f))
 #endif

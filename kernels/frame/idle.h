@@ -47,9 +47,9 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
 }
 #endif
 
-#ifdef PF_LARGEST_READING
+#ifdef PF_RANGE
 #define PF_IS_ACTIVE(reading, threshold) \
-  (!((reading) < (threshold)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
+  (!((reading) < (threshold)) || (reading) < (PF_SENSEL)(-(PF_VALUE_largest)))
 #else
 #define PF_IS_ACTIVE(reading, threshold) ((reading) >= (threshold))
 #endif
@@ -72,7 +72,7 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
   PF_IS_ACTIVE(PF_READING(raw + row * row_stride, i), PF_THRESHOLD_AT(row, i))
 #if PF_LANES == 1
   return !(PF_ACTIVE(0, 0) || PF_ACTIVE(0, 1) || PF_ACTIVE(1, 0) || PF_ACTIVE(1, 1));
-#elif defined(PF_ACTIVATION) && !defined(PF_LARGEST_READING)
+#elif defined(PF_ACTIVATION) && !defined(PF_RANGE)
   /* One threshold for all sensels, and no NaN: comparing the largest reading suffices. */
   global const PF_SENSEL* const below_raw = raw + row_stride;
   const PF_LANE_TYPE(PF_SENSEL) above = max(PF_READING(raw, 0), PF_READING(raw, 1));

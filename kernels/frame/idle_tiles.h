@@ -42,7 +42,7 @@ typedef struct {
 #define PF_SENSELS_AT(place) PF_LOAD_WHOLE(PF_SENSEL, place)
 #define PF_REALS_OF(readings) PF_TO_REAL(readings)
 #endif
-#ifdef PF_LARGEST_READING
+#ifdef PF_RANGE
 typedef Real SenselLanes;
 #define PF_READINGS_AT(place) PF_REALS_OF(PF_SENSELS_AT(place))
 #else
@@ -67,9 +67,9 @@ typedef struct {
 } LaneRange;
 
 PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
-#ifdef PF_LARGEST_READING
+#ifdef PF_RANGE
   const Real size = fabs(reading);
-  const Real distance = size <= (Real)(PF_LARGEST_READING) ? threshold - reading : (Real)(-1.0f);
+  const Real distance = size <= PF_VALUE(Real, largest) ? threshold - reading : (Real)(-1.0f);
   range.largest = size > range.largest ? size : range.largest;
 #else
   const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
@@ -193,8 +193,8 @@ PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise)
   const Real counts = PF_REALS_OF(reading);
   const Mask idle =
       counts + PF_LOAD_OF(counts) * rise <= PF_REALS_OF(threshold) - (Real)(PF_ACTIVATION_STEP);
-#ifdef PF_LARGEST_READING
-  return idle && fabs(counts) <= (Real)(PF_LARGEST_READING);
+#ifdef PF_RANGE
+  return idle && fabs(counts) <= PF_VALUE(Real, largest);
 #else
   return idle;
 #endif

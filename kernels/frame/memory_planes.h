@@ -29,7 +29,7 @@ PF_INLINE void prefetch_states(Calibration calibration, Block block) {
 
 /* Removes hysteresis and creep from a block's sensels, and updates their states. */
 PF_INLINE Pillar recall_block(Pillar pillar, Calibration calibration, Block block) {
-  const Real threshold = (Real)(PF_THRESHOLD);
+  const Real threshold = PF_VALUE(Real, threshold);
   if (!any_lane(is_touched_pillar(pillar, threshold))) return pillar;
   const MemoryModel model = memory_model();
   const uint row = block.top.row / 2;

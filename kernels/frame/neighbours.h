@@ -12,7 +12,7 @@ typedef struct {
 
 /* What one row of sensels under PF_LANES pillars leaks. */
 PF_INLINE RealPair leak_sources(global const PF_SENSEL* raw, Calibration calibration, Place place) {
-  const Real threshold = (Real)(PF_THRESHOLD);
+  const Real threshold = PF_VALUE(Real, threshold);
   const SenselPair pair = read_linear(raw, calibration, place);
   const Real left = leak_source(pair.left, threshold);
   const Real right = leak_source(pair.right, threshold);
@@ -150,34 +150,20 @@ PF_INLINE Surroundings surroundings_of(Block block, Input input) {
 
 #endif
 
-PF_INLINE LeakTaps leak_taps(void) {
-  LeakTaps taps;
-  taps.self = (Real)(PF_LEAK_SELF);
-  taps.inside = (Real)(PF_LEAK_INSIDE);
-  taps.across = (Real)(PF_LEAK_ACROSS);
-  taps.both_inside = (Real)(PF_LEAK_BOTH_INSIDE);
-  taps.mixed = (Real)(PF_LEAK_MIXED);
-  taps.both_across = (Real)(PF_LEAK_BOTH_ACROSS);
-  return taps;
+/* V of the neighbours of the sensel in row `row` and column `col` of the pillars. */
+PF_INLINE Neighbours neighbours_of(Surroundings around, int row, int col) {
+#define PF_AT(down, right) around.at[row + 1 + (down)][col + 1 + (right)]
+  const Neighbours neighbours = PF_NEIGHBOURS(PF_AT, inward(row), inward(col));
+#undef PF_AT
+  return neighbours;
 }
 
 /* Removes what the upper (side 0) or lower (side 1) sensels of PF_LANES pillars receive. */
-PF_INLINE SenselPair without_leak(SenselPair pair, Surroundings around, uint side) {
-  const Real threshold = (Real)(PF_THRESHOLD);
-  const uint row = side == 0 ? 1 : 2;
-  const uint in = side == 0 ? 2 : 1;
-  const uint out = side == 0 ? 0 : 3;
-#define PF_NEIGHBOURS(col, in_col, out_col)                                                   \
-  {                                                                                           \
-    around.at[row][in_col], around.at[in][col], around.at[row][out_col], around.at[out][col], \
-        around.at[in][in_col], around.at[out][in_col], around.at[in][out_col],                \
-        around.at[out][out_col]                                                               \
-  }
-  const Neighbours left = PF_NEIGHBOURS(1, 2, 0);
-  const Neighbours right = PF_NEIGHBOURS(2, 1, 3);
-#undef PF_NEIGHBOURS
-  pair.left = remove_leak(pair.left, left, leak_taps(), threshold);
-  pair.right = remove_leak(pair.right, right, leak_taps(), threshold);
+PF_INLINE SenselPair without_leak(SenselPair pair, Surroundings around, int side) {
+  const Real threshold = PF_VALUE(Real, threshold);
+  const LeakTaps taps = leak_taps(0);
+  pair.left = remove_leak(pair.left, neighbours_of(around, side, 0), taps, threshold);
+  pair.right = remove_leak(pair.right, neighbours_of(around, side, 1), taps, threshold);
   return pair;
 }
 

@@ -1,41 +1,18 @@
 /* Solves a frame: readings in, forces and status bytes out. This file indexes, loads and stores;
  * the mathematics is in pillar/, the order of the stages in stages.h.
  *
- * The host defines the plan's stages and constants in the first lines of the program:
+ * The host defines the plan's stages and constants (stage_table.h) in the first lines of the
+ * program, constants as PF_VALUE_ and their names, and beside them:
  *
  *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8 or 16
  *   PF_SENSEL                       uchar, ushort or float
  *   PF_WHOLE                        counts are whole numbers of 1 / PF_WHOLE counts: portable.h
- *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count, or per that unit (ForceScale)
- *   PF_THRESHOLD                    counts
- *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
- *   PF_FULL_SCALE                   counts; stage: saturation
- *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: read the calibration plane of that name,
- *   PF_TARE_PLANE, ...              whose index is this
- *   PF_POWER_EXPONENT               stage: linearises readings by a power law, with
- *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
- *   PF_WIRES                        stage: row and column crosstalk (find_wires.cl)
- *   PF_CURVE                        stage: linearises readings by a polynomial;
+ *   PF_TARE_PLANE, ...              indices of the calibration planes
  *   PF_CURVE_COEFFICIENTS           in braces, and
  *   PF_CURVE_PER_COUNT, ..._ROOT    members of CurvePolynomial
- *   PF_LEAK                         stage: removes the leak between sensels (neighbours.h);
- *   PF_LEAK_SELF, ...               members of LeakTaps
- *   PF_MEMORY                       stage: removes hysteresis and creep (memory_planes.h);
  *   PF_PLAYS, PF_CREEPS             states of a sensel
  *   PF_PLAY_WIDTHS, ...             members of MemoryModel, in braces
- *   PF_SHEAR_COEFFICIENT            stage: divides the shear by c_x and c_y, with
- *   PF_PER_COEFFICIENT_X, ..._Y     1 / c_x and 1 / c_y
- *   PF_RESIDUAL                     stage: what calibration leaves; constants of stages.h
- *   PF_PILLAR_LEAK, PF_LEAN         stages: correct_forces.cl
- *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
- *   PF_SEGMENT_POINT                segment point, in (0, 1]; with
- *                                   PF_WHOLE the number n of 1 - 1 / 2^n
- *   PF_MARGIN                       margin, counts (docs/derivations/direct_solve.md, D9)
- *   PF_PARITY_TOLERANCE             counts; stage: the parity test
- *   PF_ANGLES                       stage: writes magnitude, theta and phi too
- *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: writes uncertainty
- *   PF_NOISE                        with PF_UNCERTAINTY: reads the noise from its plane instead
- *   PF_BASELINE                     stage: follow_baseline.cl
+ *   PF_NOISE                        with PF_UNCERTAINTY: reads the noise from its plane
  *   PF_STREAM                       results bypass the caches: load_store.h
  *   PF_SKIP_IDLE                    skips idle blocks: idle.h
  *   PF_ACTIVATION_PLANE, or PF_ACTIVATION     activation thresholds: one per sensel, or one
@@ -93,7 +70,7 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
   const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
-#if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_FULL_SCALE) || defined(PF_LARGEST_READING))
+#if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE))
   const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
                        is_invalid(pillar.s4);
   if (!any_lane(invalid)) {

@@ -1,8 +1,7 @@
-/* The stages of the solve, in their one order, for the device and, as C++, for the host, which
- * lists them in host/solve/stages.cpp.
+/* The stages of the solve, for the device and, as C++, for the host.
  *
  * A program defines the macro of each stage that its plan names; other stages are not compiled. C++
- * compiles all of them and tests PF_NAMED at run time.
+ * compiles all of them and tests PF_NAMED at run time. stage_table.h lists stages and constants.
  *
  * Where a new stage goes:
  * - Correction of one sensel: in correct_sensel, its effect on noise in corrected_noise. A
@@ -13,91 +12,47 @@
  * or after it (correct_forces.cl, follow_baseline.cl).
  * - Stage with state: planes of states that solve_frame.cl updates (memory.h), or a plane that an
  *   entry point updates for the next frame. Frames then wait for each other on the device.
- * The host's table gives the kind of each stage. Idle blocks are skipped: activation_thresholds()
- * and threshold_of_sensel() must include a stage that moves small readings across the threshold. */
+ * Idle blocks are skipped: activation_thresholds() and threshold_of_sensel() must include a stage
+ * that moves small readings across the threshold. */
 
 #ifdef __cplusplus
 #define PF_NAMED(stage) stages.stage
-#define PF_LARGEST_READING stages.largest
+#define PF_VALUE(type, name) PF_CONSTANT(type, stages.name)
+#define PF_RANGE
 #define PF_MASK
-#define PF_FULL_SCALE stages.full_scale
+#define PF_SATURATION
 #define PF_WIRES
 #define PF_AFTER_TARE stages.wires_after_tare
 #define PF_WIRES_ACT(after_tare) (stages.wires && stages.wires_after_tare == (after_tare))
 #define PF_TARE
 #define PF_GAIN
+#define PF_POWER_LAW
 #define PF_CURVE
 #define PF_LEAK
-#define PF_MEMORY
-#define PF_SHEAR_COEFFICIENT
-#define PF_PER_COEFFICIENT_X stages.per_coefficient_x
-#define PF_PER_COEFFICIENT_Y stages.per_coefficient_y
-#define PF_RESIDUAL
-#define PF_PILLAR_LEAK
-#define PF_LEAN stages.lean
-#define PF_RESIDUAL_RELATIVE stages.residual_relative
-#define PF_RESIDUAL_VARIANCE stages.residual_variance
-#define PF_RELATIVE_MARGIN stages.relative_margin
-#define PF_POWER_EXPONENT stages.exponent
-#define PF_POWER_REFERENCE stages.reference
-#define PF_POWER_LARGEST stages.largest
-#define PF_THRESHOLD stages.threshold
 #define PF_DEAD_ZONE
-#define PF_SHEAR_SCALE stages.scale.shear
-#define PF_NORMAL_SCALE stages.scale.normal
-#define PF_SEGMENT_POINT stages.segment_point
 #define PF_PAPER
-#define PF_MARGIN stages.margin
-#define PF_PARITY_TOLERANCE stages.parity_tolerance
+#define PF_SHEAR_COEFFICIENT
+#define PF_RESIDUAL
+#define PF_PARITY_TEST
 #define PF_ANGLES
 #define PF_UNCERTAINTY
+#define PF_PILLAR_LEAK
+#define PF_LEAN
 
 /* The stages that a plan names, and their constants. */
 typedef struct {
-  bool range;
-  bool mask;
-  bool saturation;
-  bool wires;
-  bool wires_after_tare;
-  bool tare;
-  bool gain;
-  bool power_law;
-  bool curve;
-  bool leak;
-  bool memory;
-  bool dead_zone;
-  bool shear_coefficient;
-  bool residual;
-  bool pillar_leak;
-  bool arm;
-  bool paper;
-  bool parity_test;
-  bool angles;
-  bool uncertainty;
-  Real largest; /* counts, as those that follow */
-  Real full_scale;
-  Real exponent;
-  Real reference;
-  Real threshold;
-  Real segment_point;
-  Real margin;
-  Real parity_tolerance;
-  ForceScale scale;
+#define PF_MEMBER(name, macro, place, state, named) bool name;
+  PF_STAGES(PF_MEMBER)
+#undef PF_MEMBER
+#define PF_MEMBER(name, needed, kind, value) Real name;
+  PF_STAGE_CONSTANTS(PF_MEMBER)
+#undef PF_MEMBER
   CurvePolynomial curve_polynomial;
-  LeakTaps leak_taps;
   MemoryModel memory_model;
-  Real per_coefficient_x; /* 1 / c_x */
-  Real per_coefficient_y;
-  Real residual_relative;
-  Real residual_variance; /* counts^2 */
-  Real relative_margin;   /* of the largest reading */
-  Real pillar_leak_self;  /* weights of the inverse */
-  Real pillar_leak_edge;
-  Real pillar_leak_corner;
-  Real lean; /* pitch over arm */
 } Stages;
 #else
 #define PF_NAMED(stage) 1
+#define PF_VALUE(type, name) PF_CONSTANT(type, PF_VALUE_##name)
 #ifdef PF_WIRES_AFTER_TARE
 #define PF_AFTER_TARE 1
 #else
@@ -121,14 +76,14 @@ typedef struct {
 /* Classifies a raw reading as missing or saturated, before calibration. */
 PF_INLINE Sensel validate_reading(Counts raw, Counts good, Stages stages) {
   Sensel sensel = raw_sensel(raw);
-#ifdef PF_LARGEST_READING
-  if (PF_NAMED(range)) sensel = reject_out_of_range(sensel, PF_CONSTANT(Real, PF_LARGEST_READING));
+#ifdef PF_RANGE
+  if (PF_NAMED(reject_out_of_range)) sensel = reject_out_of_range(sensel, PF_VALUE(Real, largest));
 #endif
 #ifdef PF_MASK
   if (PF_NAMED(mask)) sensel = apply_mask(sensel, good);
 #endif
-#ifdef PF_FULL_SCALE
-  if (PF_NAMED(saturation)) sensel = mark_saturated(sensel, PF_CONSTANT(Counts, PF_FULL_SCALE));
+#ifdef PF_SATURATION
+  if (PF_NAMED(saturation)) sensel = mark_saturated(sensel, PF_VALUE(Counts, full_scale));
 #endif
   return sensel;
 }
@@ -171,11 +126,10 @@ PF_INLINE Sensel gained_sensel(Counts raw, Correction at, Stages stages) {
 /* Applies the stages of a sensel before its neighbours count: a valid reading is V. */
 PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = gained_sensel(raw, at, stages);
-#ifdef PF_POWER_EXPONENT
+#ifdef PF_POWER_LAW
   if (PF_NAMED(power_law)) {
-    sensel =
-        apply_power_law(sensel, PF_CONSTANT(Real, PF_POWER_EXPONENT),
-                        PF_CONSTANT(Real, PF_POWER_REFERENCE), PF_CONSTANT(Real, PF_POWER_LARGEST));
+    sensel = apply_power_law(sensel, PF_VALUE(Real, exponent), PF_VALUE(Real, reference),
+                             PF_VALUE(Real, largest));
   }
 #endif
 #ifdef PF_CURVE
@@ -184,9 +138,18 @@ PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
   return sensel;
 }
 
+#ifdef PF_LEAK
+PF_INLINE LeakTaps leak_taps(Stages stages) {
+  const LeakTaps taps = {PF_VALUE(Real, leak_self),   PF_VALUE(Real, leak_inside),
+                         PF_VALUE(Real, leak_across), PF_VALUE(Real, leak_both_inside),
+                         PF_VALUE(Real, leak_mixed),  PF_VALUE(Real, leak_both_across)};
+  return taps;
+}
+#endif
+
 /* Decides whether a sensel with the reading V is usable, and applies the stages after that. */
 PF_INLINE Sensel active_sensel(Sensel sensel, Correction at, Stages stages) {
-  sensel = classify(sensel, PF_CONSTANT(Counts, PF_THRESHOLD));
+  sensel = classify(sensel, PF_VALUE(Counts, threshold));
 #ifdef PF_DEAD_ZONE
   if (PF_NAMED(dead_zone)) sensel = fill_dead_zone(sensel, at.dead_zone);
 #endif
@@ -207,11 +170,10 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) noise = noise * at.gain;
 #endif
-#ifdef PF_POWER_EXPONENT
+#ifdef PF_POWER_LAW
   if (PF_NAMED(power_law)) {
     noise = noise * power_law_slope(gained_sensel(raw, at, stages).reading,
-                                    PF_CONSTANT(Real, PF_POWER_EXPONENT),
-                                    PF_CONSTANT(Real, PF_POWER_REFERENCE));
+                                    PF_VALUE(Real, exponent), PF_VALUE(Real, reference));
   }
 #endif
 #ifdef PF_CURVE
@@ -227,12 +189,11 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
 #ifdef PF_UNCERTAINTY
 /* Deviations with the residual as if it were common to the sensels of a pillar (E9). */
 PF_INLINE Force with_common_residual(Force deviations, Force force, Stages stages) {
-  const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE);
+  const Real relative = PF_VALUE(Real, residual_relative);
   deviations.shear_x = plain_length_2(deviations.shear_x, relative * force.shear_x);
   deviations.shear_y = plain_length_2(deviations.shear_y, relative * force.shear_y);
   deviations.normal = plain_length_2(deviations.normal, relative * force.normal);
-  const Real offset =
-      sqrt(PF_CONSTANT(Real, PF_RESIDUAL_VARIANCE)) * PF_CONSTANT(Real, PF_NORMAL_SCALE);
+  const Real offset = sqrt(PF_VALUE(Real, residual_variance)) * PF_VALUE(Real, normal_scale);
   deviations.normal = plain_length_2(deviations.normal, offset + offset);
   return deviations;
 }
@@ -240,7 +201,7 @@ PF_INLINE Force with_common_residual(Force deviations, Force force, Stages stage
 
 /* Noise of a sensel with the relative part of what calibration leaves, counts (E9). */
 PF_INLINE Real with_residual(Real noise, Sensel sensel, Stages stages) {
-  const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE) * sensel.reading;
+  const Real relative = PF_VALUE(Real, residual_relative) * sensel.reading;
   return sqrt(noise * noise + relative * relative);
 }
 #endif
@@ -260,22 +221,22 @@ typedef struct {
 PF_INLINE Force estimate_force(Pillar pillar, Diagonals diagonals, ParitySum sum, ForceScale scale,
                                Stages stages) {
 #ifdef PF_PAPER
-  if (PF_NAMED(paper)) return paper_force(pillar, diagonals, sum, scale);
+  if (PF_NAMED(paper_solve)) return paper_force(pillar, diagonals, sum, scale);
 #endif
   return direct_force(diagonals, sum, scale);
 }
 
 PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stages stages) {
-  Counts margin = PF_CONSTANT(Counts, PF_MARGIN);
+  Counts margin = PF_VALUE(Counts, margin);
 #ifdef PF_RESIDUAL
   if (PF_NAMED(residual)) {
-    margin = margin + PF_CONSTANT(Real, PF_RELATIVE_MARGIN) * largest_reading(pillar);
+    margin = margin + PF_VALUE(Real, relative_margin) * largest_reading(pillar);
   }
 #endif
   Bits status = direct_status(pillar, diagonals, sum, margin);
-#ifdef PF_PARITY_TOLERANCE
+#ifdef PF_PARITY_TEST
   if (PF_NAMED(parity_test)) {
-    const Mask contradictory = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
+    const Mask contradictory = fails_parity(pillar, sum, PF_VALUE(Counts, parity_tolerance));
     status = status | (bits_of(contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
   }
 #endif
@@ -285,8 +246,8 @@ PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stag
 #ifdef PF_SHEAR_COEFFICIENT
 /* Divides the shear of a pillar with c = 1 by the coefficients (E2). */
 PF_INLINE Force per_coefficient(Force force, Stages stages) {
-  force.shear_x = force.shear_x * PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
-  force.shear_y = force.shear_y * PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+  force.shear_x = force.shear_x * PF_VALUE(Real, per_coefficient_x);
+  force.shear_y = force.shear_y * PF_VALUE(Real, per_coefficient_y);
   return force;
 }
 #endif
@@ -307,9 +268,9 @@ PF_INLINE ShearWeights shear_weights(Stages stages) {
 
 /* Solves a pillar from corrected sensels; `noise` is their noise after correction. */
 PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
-  const ForceScale scale = {PF_CONSTANT(Real, PF_SHEAR_SCALE), PF_CONSTANT(Real, PF_NORMAL_SCALE)};
+  const ForceScale scale = {PF_VALUE(Real, shear_scale), PF_VALUE(Real, normal_scale)};
   const Diagonals diagonals = pillar_diagonals(pillar);
-  const ParitySum sum = parity_sum(diagonals, PF_CONSTANT(Fraction, PF_SEGMENT_POINT));
+  const ParitySum sum = parity_sum(diagonals, PF_VALUE(Fraction, segment_point));
   Solution solution;
   solution.force = estimate_force(pillar, diagonals, sum, scale, stages);
 #ifdef PF_SHEAR_COEFFICIENT
@@ -332,7 +293,7 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
     }
 #endif
     solution.deviations =
-        force_deviations(pillar, diagonals, sum, noise, PF_CONSTANT(Real, PF_SEGMENT_POINT), scale);
+        force_deviations(pillar, diagonals, sum, noise, PF_VALUE(Real, segment_point), scale);
 #ifdef PF_SHEAR_COEFFICIENT
     if (PF_NAMED(shear_coefficient)) {
       solution.deviations = per_coefficient(solution.deviations, stages);
@@ -359,10 +320,10 @@ PF_INLINE Bits flag_other_region(Solution solution, Real margin_x, Real margin_y
   Real shear_y = along * solution.force.shear_y;
 #ifdef PF_SHEAR_COEFFICIENT
   if (PF_NAMED(shear_coefficient)) {
-    shear_x = shear_x / PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
-    shear_y = shear_y / PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
-    margin_x = margin_x / PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
-    margin_y = margin_y / PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+    shear_x = shear_x / PF_VALUE(Real, per_coefficient_x);
+    shear_y = shear_y / PF_VALUE(Real, per_coefficient_y);
+    margin_x = margin_x / PF_VALUE(Real, per_coefficient_x);
+    margin_y = margin_y / PF_VALUE(Real, per_coefficient_y);
   }
 #endif
   const Real margin = (margin_x + margin_y) * (along + along);
@@ -386,9 +347,8 @@ PF_INLINE Bits flag_other_region(Solution solution, Real margin_x, Real margin_y
 /* The ratios of a pillar that leans by `x` and `y`. Four sensels whose noise is a quarter of the
  * threshold have this noise in each component. */
 PF_INLINE ShearRatios shear_ratios(Force force, Bits status, Lean x, Lean y, Stages stages) {
-  const Real pitch_over_arm = PF_CONSTANT(Real, PF_LEAN);
-  const Real noise =
-      PF_REAL(0.5) * PF_CONSTANT(Real, PF_THRESHOLD) * PF_CONSTANT(Real, PF_SHEAR_SCALE);
+  const Real pitch_over_arm = PF_VALUE(Real, pitch_over_arm);
+  const Real noise = PF_REAL(0.5) * PF_VALUE(Real, threshold) * PF_VALUE(Real, shear_scale);
   const Mask informs = at_least_three(status) && !mask_of(status & PF_BITS(PF_STATUS_INCONSISTENT));
   ShearRatios ratios;
   ratios.x = shear_ratio(force.shear_x, force.normal, x, pitch_over_arm, noise, informs);
@@ -408,7 +368,7 @@ PF_INLINE Solution correct_solution(Solution solution, ShearRatios ratios, Stage
   Real moved = PF_REAL(0.0);
 #endif
 #ifdef PF_LEAN
-  if (PF_NAMED(arm)) {
+  if (PF_NAMED(lean)) {
     const Real normal = solution.force.normal;
     const Mask has_ratio = loaded && normal > PF_REAL(0.0);
     const Force before = solution.force;

@@ -1,8 +1,11 @@
 /* Removes the leak between neighbouring sensels by the inverse of SenselLeak, cut to the 3 x 3
  * sensels around (docs/derivations/sensor_effects.md, E3). */
 
-/* Weights of a sensel and of its eight neighbours. A neighbour is inside if it lies under the same
- * pillar in that direction, else across. */
+/* The offset from a row or column of sensels to the one under the same pillar. A neighbour in that
+ * direction is inside; one in the opposite direction, under another pillar, is across. */
+static inline int inward(int at) { return (at & 1) == 0 ? 1 : -1; }
+
+/* Weights of a sensel and of its eight neighbours. */
 typedef struct {
   Real self;
   Real inside;
@@ -23,6 +26,14 @@ typedef struct {
   Real across_inside;
   Real both_across;
 } Neighbours;
+
+/* An initialiser of Neighbours: `at` gives V by offsets down and right, `in_v` and `in_h` are
+ * inward() of the sensel's row and column. */
+#define PF_NEIGHBOURS(at, in_v, in_h)                                                            \
+  {                                                                                              \
+    at(0, in_h), at(in_v, 0), at(0, -(in_h)), at(-(in_v), 0), at(in_v, in_h), at(-(in_v), in_h), \
+        at(in_v, -(in_h)), at(-(in_v), -(in_h))                                                  \
+  }
 
 /* What a sensel leaks: its reading above the threshold. Below, it counts as zero, so that noise
  * does not spread and idle sensels stay idle. */

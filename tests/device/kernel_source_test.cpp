@@ -34,10 +34,9 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
   const std::string source = kernel_source(plan, 16);
   EXPECT_EQ(macro(source, "PF_LANES"), "16");
   EXPECT_EQ(macro(source, "PF_SENSEL"), "uchar");
-  for (const char* stage :
-       {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN", "PF_DEAD_ZONE", "PF_MASK",
-        "PF_PARITY_TOLERANCE", "PF_ANGLES", "PF_PAPER", "PF_UNCERTAINTY", "PF_NOISE",
-        "PF_POWER_EXPONENT", "PF_BASELINE"}) {
+  for (const char* stage : {"PF_RANGE", "PF_SATURATION", "PF_TARE", "PF_GAIN", "PF_DEAD_ZONE",
+                            "PF_MASK", "PF_PARITY_TEST", "PF_ANGLES", "PF_PAPER", "PF_UNCERTAINTY",
+                            "PF_NOISE", "PF_POWER_LAW", "PF_BASELINE"}) {
     EXPECT_EQ(macro(source, stage), "(none)") << stage;
   }
 }
@@ -68,7 +67,7 @@ TEST(KernelSource, EveryOptionOfAPlanIsAStage) {
 TEST(KernelSource, TheMarginIsFiveDeviationsOfThreeReadings) {
   SolverPlan plan = bare_plan(8, 8, SenselType::f32);
   const auto margin = [&] {
-    return std::strtof(macro(kernel_source(plan, 1), "PF_MARGIN").c_str(), nullptr);
+    return std::strtof(macro(kernel_source(plan, 1), "PF_VALUE_margin").c_str(), nullptr);
   };
   EXPECT_EQ(margin(), 0) << "the noise is unknown";
   plan.noise_counts = 2;
@@ -85,13 +84,14 @@ TEST(KernelSource, ConstantsAreExact) {
   plan.skin.threshold_counts = 0.1;
   plan.skin.counts_per_newton = 317;
   const std::string source = kernel_source(plan, 1);
-  EXPECT_EQ(std::strtof(macro(source, "PF_THRESHOLD").c_str(), nullptr), 0.1F);
-  EXPECT_EQ(std::strtof(macro(source, "PF_NORMAL_SCALE").c_str(), nullptr),
+  EXPECT_EQ(std::strtof(macro(source, "PF_VALUE_threshold").c_str(), nullptr), 0.1F);
+  EXPECT_EQ(std::strtof(macro(source, "PF_VALUE_normal_scale").c_str(), nullptr),
             static_cast<float>(1 / (2 * 317.0)));
-  EXPECT_EQ(std::strtof(macro(source, "PF_SEGMENT_POINT").c_str(), nullptr), 0.875F);
+  EXPECT_EQ(std::strtof(macro(source, "PF_VALUE_segment_point").c_str(), nullptr), 0.875F);
   plan.segment_point = 0.9;
-  EXPECT_EQ(std::strtof(macro(kernel_source(plan, 1), "PF_SEGMENT_POINT").c_str(), nullptr), 0.9F);
-  EXPECT_EQ(macro(source, "PF_THRESHOLD").find("0x"), 0U);
+  EXPECT_EQ(std::strtof(macro(kernel_source(plan, 1), "PF_VALUE_segment_point").c_str(), nullptr),
+            0.9F);
+  EXPECT_EQ(macro(source, "PF_VALUE_threshold").find("0x"), 0U);
 }
 
 TEST(KernelSource, WholeNumbersAreThoseOfBareBytes) {

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "solve/sensor_corrections.h"
+
 namespace pillarfield {
 
 void leak_between_sensels(const SenselLeak& leak, std::uint32_t rows, std::uint32_t cols,
@@ -16,11 +18,11 @@ void leak_between_sensels(const SenselLeak& leak, std::uint32_t rows, std::uint3
     }
   }
   for (std::size_t row = 0; row < rows; ++row) {
-    const double above = row % 2 == 0 ? leak.across : leak.inside;
-    const double below = row % 2 == 0 ? leak.inside : leak.across;
+    const double above = leak_from(leak, static_cast<int>(row), -1);
+    const double below = leak_from(leak, static_cast<int>(row), 1);
     for (std::size_t col = 0; col < cols; ++col) {
-      const double left = col % 2 == 0 ? leak.across : leak.inside;
-      const double right = col % 2 == 0 ? leak.inside : leak.across;
+      const double left = leak_from(leak, static_cast<int>(col), -1);
+      const double right = leak_from(leak, static_cast<int>(col), 1);
       const double* at = &source[(row + 1) * width + col + 1];
       v[row * cols + col] +=
           above * *(at - width) + below * at[width] + left * at[-1] + right * at[1];
