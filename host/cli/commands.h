@@ -25,11 +25,6 @@ struct WriteOptions : PrintOptions {
   Replace replace = Replace::results;
 };
 
-struct DeviceOptions {
-  std::string name;  ///< for open_device()
-  Memory memory = Memory::automatic;
-};
-
 struct SimulateOptions : WriteOptions {
   std::string scene;
   std::optional<std::uint32_t> frames;
@@ -47,7 +42,7 @@ struct PartOptions {
 struct SolveOptions : WriteOptions {
   std::string input;
   PlanOptions plan;
-  DeviceOptions device;
+  std::string device;         ///< for open_device()
   std::string contacts_file;  ///< empty: none
   ContactOptions contacts;
   PartOptions part;
@@ -76,7 +71,7 @@ struct StreamOptions : PrintOptions {
   int frames_in_flight = 2;
   ContactOptions contacts;
   PlanOptions plan;
-  DeviceOptions device;
+  std::string device;  ///< for open_device()
 };
 
 /// A line of control for a running stream.

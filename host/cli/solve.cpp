@@ -93,11 +93,6 @@ class Counter final : public ForceSink {
 
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
 
-bool shares_memory(const SolveOptions& options, const Device& device) {
-  return options.device.memory == Memory::shared ||
-         (options.device.memory == Memory::automatic && device.info().shares_memory);
-}
-
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Device& device,
                 const SolveSummary& summary, const std::vector<std::string>& warnings) {
   nlohmann::ordered_json regions;
@@ -109,7 +104,7 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
                                  {"output", options.output},
                                  {"estimator", name_of(plan.estimator)},
                                  {"device", device.info().name},
-                                 {"zero_copy", shares_memory(options, device)},
+                                 {"zero_copy", device.info().shares_memory},
                                  {"stages", kernel_stages(plan)},
                                  {"frames", summary.done.frames},
                                  {"pillar_rows", plan.skin.pillar_rows()},
@@ -150,7 +145,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
   const DeviceInfo& device = solver.info();
   fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.done.frames, "frame"),
              plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
-             shares_memory(options, solver) ? "zero copy" : "staged");
+             device.shares_memory ? "zero copy" : "staged");
   fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million pillars/s\n",
              summary.seconds, rounded(per_second(frames, summary.seconds)),
              per_second(pillars, summary.seconds) / 1e6);
@@ -257,11 +252,10 @@ void solve(const SolveOptions& given) {
       open_frames_with_warnings(options.input, frame_options(options.plan), options.quiet);
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);
-  const Device device = open_device(options.device.name);
+  const Device device = open_device(options.device);
   RangeOptions range;
   range.checkpoints = checkpoints_of(options.part);
-  range.processor = {.memory = options.device.memory,
-                     .frames_in_flight = kFramesInFlight,
+  range.processor = {.frames_in_flight = kFramesInFlight,
                      .on_compiling = terminal_line(options.quiet)};
   if (!options.contacts_file.empty()) range.contacts = options.contacts;
   SolveSummary summary;

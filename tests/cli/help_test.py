@@ -96,7 +96,7 @@ class WrongCommandLines(CommandTest):
                 ("--threshold", *solve, "--thresold=3"), ("--rate", "stream", "a", "--rat", 3),
                 ("direct", *solve, "--estimator", "direckt"), ("linear", "calibrate", "load", "a",
                 "--model", "liner"), ("angles", *solve, "--outputs", "forces,angels"),
-                ("shared", *solve, "--memory", "share"), ("bash", "completion", "bsh")):
+                ("bash", "completion", "bsh")):
             self.assert_fails(*arguments, status=2, names=[f"; did you mean '{meant}'?"])
         for arguments in (["fly"], [*solve, "--helicopter"], [*solve, "--estimator", "magic"]):
             self.assertNotIn("mean", self.assert_fails(*arguments, status=2, names=[arguments[-1]]))
@@ -217,8 +217,8 @@ class Completion(CommandTest):
                          ["--preloaded"])
         self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "eq"), [])
         self.assertEqual(self.complete("pillarfield", "--vers"), ["--version"])
-        self.assertEqual(self.complete("pillarfield", "solve", "a.h5", "--noise", "3", "--mem"),
-                         ["--memory"])
+        self.assertEqual(self.complete("pillarfield", "solve", "a.h5", "--noise", "3", "--dev"),
+                         ["--device"])
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
     def test_zsh(self):

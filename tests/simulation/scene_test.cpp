@@ -64,7 +64,7 @@ leak_across = 0.02
 hysteresis = 0.06
 hysteresis_range_counts = 150
 creep_per_decade = 0.04
-wires = { tile = [32, 16], row_ohm = 50, column_ohm = 40, idle_row_ohm = 60, sensel_ohm = 9000, tares = "offset" }
+wires = { tile = [32, 16], row_ohm = 50, column_ohm = 40, sensel_ohm = 9000, tares = "offset" }
 [surface]
 bend_spread_counts_mm = 100
 path = [{ time_s = 0, curvature_per_mm = [0, 0, 0] }, { time_s = 2, curvature_per_mm = [0.02, 0.01, -0.03] }]
@@ -133,7 +133,7 @@ load_n = 0.5
   EXPECT_EQ(effects.wires->tile_cols, 16U);
   EXPECT_EQ(effects.wires->row_per_count, 50 * (1 / 9e6));
   EXPECT_EQ(effects.wires->column_per_count, 40 * (1 / 9e6));
-  EXPECT_EQ(effects.wires->idle_per_count, 60 * (1 / 9e6));
+  EXPECT_EQ(effects.wires->idle_per_count, 50 * (1 / 9e6));
   EXPECT_EQ(effects.wires->tares, TareOrigin::offset);
   ASSERT_TRUE(scene.bending);
   EXPECT_EQ(scene.bending->spread_counts_mm, 100);
@@ -427,7 +427,6 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "response_curve",
                                    "wires",
                                    "tile",
-                                   "idle_row_ohm",
                                    "tares",
                                    "bend_spread_counts_mm",
                                    "curvature_per_mm"};

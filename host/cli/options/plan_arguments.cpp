@@ -1,5 +1,7 @@
 // Options of sensor, solver, contacts and device, which several commands have, and their plan.
 
+#include <fmt/format.h>
+
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -87,14 +89,17 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
                 "Carry no friction over from earlier frames");
 }
 
-void add_device(CLI::App* command, DeviceOptions& options) {
+void add_device(CLI::App* command, std::string& name) {
   Group device(command, "Device");
-  device.text("--device", options.name, "DEVICE",
+  device.text("--device", name, "DEVICE",
               "OpenCL device, by index or part of its name [the best]; see info --devices");
-  device.choice<Memory>(
-      "--memory", options.memory,
-      {{"auto", Memory::automatic}, {"shared", Memory::shared}, {"staged", Memory::staged}},
-      "shared: zero copy; staged: copied to the device [auto]");
+  command
+      ->add_option_function<std::string>(
+          "--memory",
+          [](const std::string& /*word*/) {
+            fmt::print(stderr, "pillarfield: '--memory' has no effect: the device decides\n");
+          })
+      ->group("");  // a former option, which works in this release only
 }
 
 void add_contacts(CLI::App* command, ContactOptions& options) {

@@ -33,7 +33,7 @@ void add_tare_frames(CLI::App* command, ReadOptions& options);
 void add_sensor(CLI::App* command, PlanOptions& plan);
 void add_solver(CLI::App* command, PlanOptions& plan);
 void add_contacts(CLI::App* command, ContactOptions& options);
-void add_device(CLI::App* command, DeviceOptions& options);
+void add_device(CLI::App* command, std::string& name);
 
 /// Adds a command; its options live as long as the work.
 template <class Options>

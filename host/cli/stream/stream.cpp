@@ -98,10 +98,9 @@ void stream(const StreamOptions& options) {
   const std::unique_ptr<FrameStream> source = opened_source(options);
   if (!source) return;  // Interrupted before a frame came.
   const SolverPlan plan = plan_of(options, *source);
-  const Device device = open_device(options.device.name);
+  const Device device = open_device(options.device);
   Processor processor(device, plan,
-                      {.memory = options.device.memory,
-                       .frames_in_flight = options.frames_in_flight,
+                      {.frames_in_flight = options.frames_in_flight,
                        .start_on_host = !options.summary,
                        .on_compiling = terminal_line(options.quiet)});
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));

@@ -22,10 +22,9 @@ namespace pillarfield {
 struct Wires {
   std::uint32_t tile_rows = 64;  ///< sensels, 2..1024
   std::uint32_t tile_cols = 64;
-  double row_ohm = 0;                  ///< resistance of a driven row
-  double column_ohm = 0;               ///< of a column
-  std::optional<double> idle_row_ohm;  ///< of a row that is not driven; unset: row_ohm
-  double sensel_ohm = 1e4;             ///< resistance of a sensel that reads full scale
+  double row_ohm = 0;       ///< resistance of a row
+  double column_ohm = 0;    ///< of a column
+  double sensel_ohm = 1e4;  ///< resistance of a sensel that reads full scale
   TareOrigin tares = TareOrigin::conductance;
 };
 

@@ -9,7 +9,7 @@ WireCrosstalk per_count(const Wires& wires, const Skin& skin) {
           wires.tile_cols,
           wires.row_ohm * count_siemens,
           wires.column_ohm * count_siemens,
-          wires.idle_row_ohm.value_or(wires.row_ohm) * count_siemens,
+          wires.row_ohm * count_siemens,
           wires.tares};
 }
 

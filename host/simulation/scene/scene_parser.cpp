@@ -162,12 +162,14 @@ std::optional<ShearCoefficient> read_shear_coefficient(TomlSection& section) {
   return both ? std::optional(ShearCoefficient{*both, *both}) : std::nullopt;
 }
 
-std::optional<Wires> read_wires(TomlSection section) {
+std::optional<Wires> read_wires(TomlSection section, Scene& scene) {
   if (!section.is_present()) return std::nullopt;
   Wires wires;
   read_quantities(section, kWireQuantities, wires);
   if (!section.has("sensel_ohm")) section.fail_missing("sensel_ohm", "resistance at full scale");
-  wires.idle_row_ohm = section.number("idle_row_ohm", kIdleRowOhm);
+  if (section.number("idle_row_ohm", kIdleRowOhm)) {
+    scene.warnings.emplace_back("idle_row_ohm has no effect: idle rows have row_ohm");
+  }
   wires.tares = read_name(section, "tares", kTareOrigins).value_or(wires.tares);
   if (const auto tile = section.numbers("tile", 2, kTileSensels)) {
     wires.tile_rows = static_cast<std::uint32_t>((*tile)[0]);
@@ -187,7 +189,7 @@ void read_sensor(TomlSection section, Scene& scene) {
   scene.sensor.hysteresis_range_counts =
       section.number("hysteresis_range_counts", kHysteresisRangeCounts);
   scene.sensor.response_curve = read_response_curve(section);
-  scene.sensor.wires = read_wires(section.table("wires"));
+  scene.sensor.wires = read_wires(section.table("wires"), scene);
   if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
     scene.sensor.adc_bits = static_cast<int>(*bits);
   }
