@@ -140,7 +140,8 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       *plane = unleaked(*plane, field, stages);
     }
   }
-  std::vector<maths::ShearRatios> ratios(stages.lean ? field.normal.size() : 0);
+  if (!stages.lean) return;
+  std::vector<maths::ShearRatios> ratios(field.normal.size());
   for (std::size_t index = 0; index < ratios.size(); ++index) {
     if (!is_loaded(field, index)) continue;
     const auto [x, y] = pillar_lean(field.view(), index);
@@ -151,11 +152,9 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
     for (std::size_t col = 0; col < field.cols; ++col) {
       const std::size_t index = row * field.cols + col;
       if (!is_loaded(field, index)) continue;
-      maths::ShearRatios means{};
-      if (stages.lean) {
-        means = {mean_of_ratios(ratios, &maths::ShearRatios::x, field, row, col),
-                 mean_of_ratios(ratios, &maths::ShearRatios::y, field, row, col)};
-      }
+      const maths::ShearRatios means = {
+          mean_of_ratios(ratios, &maths::ShearRatios::x, field, row, col),
+          mean_of_ratios(ratios, &maths::ShearRatios::y, field, row, col)};
       const maths::Solution before = solution_at(field, index, stages.uncertainty);
       const maths::Solution after = maths::correct_solution(before, means, stages);
       field.status[index] = static_cast<std::uint8_t>(after.status);
