@@ -37,12 +37,12 @@ constexpr Motion kSlipping[kIndenters] = {
     {ContactMotion::spin, 1.7, 0}, {ContactMotion::spin, 1.7, 0},   {ContactMotion::slide, 1.7, 40},
     {ContactMotion::spin, 1.7, 0}, {ContactMotion::slide, 1.7, 140}};
 
-Contact ball(int number, const Motion& motion, double size_mm) {
+ClosedFormContact ball(int number, const Motion& motion, double size_mm) {
   const double cell_mm = size_mm / 4;
   const double x_mm = (number % 4 - 1.5) * cell_mm;
   const double y_mm = (number < 4 ? 1 : -1) * size_mm / 4;
   const double direction = motion.direction_deg * std::numbers::pi / 180;
-  Contact contact;
+  ClosedFormContact contact;
   contact.motion = motion.kind;
   contact.contact_radius_mm =
       size_mm * std::sqrt(kContactFraction / (kIndenters * std::numbers::pi));
@@ -64,7 +64,7 @@ Scene scene_of(Indenters indenters, std::size_t frames) {
   scene.sensor.adc_bits = 8;
   scene.rate_hz = static_cast<double>(frames);
   scene.frames = static_cast<std::uint32_t>(frames);
-  std::vector<Contact> contacts;
+  std::vector<ClosedFormContact> contacts;
   contacts.reserve(kIndenters);
   const double size_mm = scene.skin.sensel_pitch_mm * scene.skin.rows;
   for (int i = 0; i < kIndenters; ++i) {

@@ -128,7 +128,7 @@ modulus_kpa = 300
 rate_hz = 10
 frames = 3
 
-[[body]]
+[[indenter]]
 shape = "sphere"
 radius_mm = 9
 roughness_um = 30

@@ -91,7 +91,7 @@ void read_packets(const std::filesystem::path& path, [[maybe_unused]] const Read
   const StreamHealth health = in_order.finish();
   in_any_order.finish();
   if (health.frames == 0 || health.invalid + parser.invalid() > 0) {
-    throw Error(path.native(), "holds bytes that are no packets", "docs/stream_format.md");
+    throw Error(path.native(), "holds bytes that are not packets", "docs/stream_format.md");
   }
 }
 

@@ -197,7 +197,7 @@ def main():
     if options.target and options.target.isdecimal():
         options.target, options.seconds = None, int(options.target)
     if options.target and options.target not in TARGETS:
-        parser.error(f"'{options.target}' is no target; there are {', '.join(TARGETS)}")
+        parser.error(f"'{options.target}' is not a target; there are {', '.join(TARGETS)}")
     count = collections.Counter()
     with memory_folder() as folder:
         ENVIRONMENT["TMPDIR"] = folder

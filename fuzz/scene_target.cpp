@@ -11,21 +11,22 @@ namespace {
 constexpr std::uint64_t kMaxSceneSensels = 1 << 12;
 constexpr std::uint64_t kMaxSceneWork = 1 << 14;
 
-/// Whether a body's contact has few pillars and few steps, and its shape is not in a file.
-bool is_small(const Body& body, const Scene& scene) {
+/// Whether an indenter's contact has few pillars and few steps, and its shape is not in a file.
+bool is_small(const Indenter& indenter, const Scene& scene) {
   constexpr double kMaxPillars = 8;
   constexpr double kMaxSteps = 2;
   const double most_mm = kMaxPillars * scene.skin.pillar_pitch_mm();
-  const double reach_mm = std::max({body.radius_mm, body.radii_mm[0], body.radii_mm[1],
-                                    body.shape == BodyShape::cylinder ? body.length_mm : 0});
-  const double steps = body.path.back().time_s * scene.rate_hz * body.substeps;
-  return body.shape != BodyShape::height_map && reach_mm <= most_mm && steps <= kMaxSteps;
+  const double reach_mm =
+      std::max({indenter.radius_mm, indenter.radii_mm[0], indenter.radii_mm[1],
+                indenter.shape == IndenterShape::cylinder ? indenter.length_mm : 0});
+  const double steps = indenter.path.back().time_s * scene.rate_hz * indenter.substeps;
+  return indenter.shape != IndenterShape::height_map && reach_mm <= most_mm && steps <= kMaxSteps;
 }
 
 bool is_small(const Scene& scene) {
-  if (scene.bodies.size() > 1) return false;
-  if (!scene.bodies.empty() && !is_small(scene.bodies.front(), scene)) return false;
-  const auto* const contacts = std::get_if<std::vector<Contact>>(&scene.load);
+  if (scene.indenters.size() > 1) return false;
+  if (!scene.indenters.empty() && !is_small(scene.indenters.front(), scene)) return false;
+  const auto* const contacts = std::get_if<std::vector<ClosedFormContact>>(&scene.load);
   const std::uint64_t each = contacts == nullptr ? 1 : contacts->size();
   return scene.skin.sensels() <= kMaxSceneSensels && scene.skin.sensels() * each <= kMaxSceneWork;
 }

@@ -24,7 +24,7 @@ Quantity quantity_of(const std::string& name, const py::dict& planes) {
   source.has_angles = planes.contains("theta");
   source.has_uncertainty = planes.contains("uncertainty_normal");
   if (!quantity || *quantity == Quantity::parity) {
-    throw Error("picture", "'" + name + "' is no quantity",
+    throw Error("picture", "'" + name + "' is not a quantity",
                 "give normal, shear, shear_x, shear_y, magnitude, theta, phi, region, status or "
                 "uncertainty");
   }

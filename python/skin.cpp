@@ -43,7 +43,8 @@ std::optional<PowerLaw> law_of(const std::optional<Law>& law) {
 
 Surface height_map(const FloatPlane& heights_mm) {
   if (heights_mm.ndim() != 2) {
-    throw Error("Surface.height_map", "the heights are no plane", "give [pillar rows, cols], mm");
+    throw Error("Surface.height_map", "the heights are not a two-dimensional array",
+                "give [pillar rows, cols], mm");
   }
   Surface surface;
   surface.shape = SurfaceShape::height_map;

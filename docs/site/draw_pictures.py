@@ -58,7 +58,7 @@ def draw_scene(scene, folder):
 def group_of(text):
     if "pillarfield calibrate" in text:
         return "calibration"
-    return "bodies" if "[[body]]" in text else "contacts"
+    return "bodies" if "[[indenter]]" in text else "contacts"
 
 
 def entry(path, text, scene):

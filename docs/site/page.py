@@ -14,7 +14,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = {path.resolve() for pattern in ("*.md", "docs/*.md", "docs/*/*.md") for path in ROOT.glob(pattern)}
 MAIN = ROOT / "README.md"
-# Code, a link (no picture; its words may have brackets, [[[body]]](#body)), or a formula.
+# Code, a link (no picture; its words may have brackets, [[[indenter]]](#indenter)), or a formula.
 TOKEN = re.compile(r"`[^`]*`|(?<!!)\[(?P<words>(?:\[[^]]*\]+|[^]])*)\]\((?P<target>[^)]+)\)"
                    r"|\$\$(?P<display>.+?)\$\$|\$(?P<inline>.+?)\$", re.DOTALL)
 

@@ -7,8 +7,8 @@
 
 namespace pillarfield {
 
-/// What a sensel inside the skin reads where all sensels bear the same, as a multiple, if `missing`
-/// of its two neighbours under other pillars are beyond the skin's edge: 1 + 2 inside +
+/// Reading of a sensel under uniform load, relative to one without leak, if `missing` of its two
+/// neighbours under other pillars are beyond the skin's edge: 1 + 2 inside +
 /// (2 − missing) across. Dead zones lie before this leak and after that between pillars.
 [[nodiscard]] inline double sensel_leak_sum(const SensorEffects& effects, int missing = 0) {
   const SenselLeak sensel = effects.sensel_leak.value_or(SenselLeak{});

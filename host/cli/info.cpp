@@ -184,12 +184,12 @@ Json facts_of_calibration(const std::string& file) {
   return facts;
 }
 
-void add_bodies(Json& facts, const Scene& scene) {
-  facts["bodies"] = scene.bodies.size();
+void add_indenters(Json& facts, const Scene& scene) {
+  facts["bodies"] = scene.indenters.size();
   facts["modulus_kpa"] = scene.modulus_kpa;
   facts["height_maps"] = Json::array();
-  for (const Body& body : scene.bodies) {
-    if (!body.height_map.empty()) facts["height_maps"].push_back(body.height_map.string());
+  for (const Indenter& indenter : scene.indenters) {
+    if (!indenter.height_map.empty()) facts["height_maps"].push_back(indenter.height_map.string());
   }
 }
 
@@ -200,10 +200,10 @@ Json facts_of_scene(const std::string& file) {
                 {"frames", scene.frames},
                 {"rate_hz", scene.rate_hz},
                 {"seed", scene.seed}};
-  if (const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load)) {
+  if (const auto* contacts = std::get_if<std::vector<ClosedFormContact>>(&scene.load)) {
     facts["contacts"] = contacts->size();
   }
-  if (!scene.bodies.empty()) add_bodies(facts, scene);
+  if (!scene.indenters.empty()) add_indenters(facts, scene);
   add_skin(facts, scene.skin);
   if (scene.surface_map) facts["surface"] = scene.surface_map->path.string();
   facts["warnings"] = scene.warnings;

@@ -46,7 +46,7 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
 /// Files that a scene names.
 std::vector<std::filesystem::path> files_of(const Scene& scene) {
   std::vector<std::filesystem::path> files;
-  for (const Body& body : scene.bodies) files.push_back(body.height_map);
+  for (const Indenter& indenter : scene.indenters) files.push_back(indenter.height_map);
   if (scene.surface_map) files.push_back(scene.surface_map->path);
   return files;
 }

@@ -44,7 +44,7 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
                 "name another file for contacts");
   }
   if (is_hdf5_name(file)) {
-    throw Error(file, "its ending is no format of contacts",
+    throw Error(file, "contacts cannot be written in this format",
                 fmt::format("end it in {}, or name the .h5 file of forces",
                             endings_of(OutputKind::contacts)));
   }

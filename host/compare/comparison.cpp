@@ -179,10 +179,10 @@ void check_pair(const ForceFieldView& solved, const ForceFieldView& truth) {
   }
   for (std::size_t pillar = 0; pillar < pillars; ++pillar) {
     if (is_finite(force_of(truth, pillar))) continue;
-    throw Error("true forces",
-                fmt::format("hold what is not a number at row {}, column {}", pillar / truth.cols,
-                            pillar % truth.cols),
-                "compare with a truth that is whole");
+    throw Error(
+        "true forces",
+        fmt::format("have a NaN at row {}, column {}", pillar / truth.cols, pillar % truth.cols),
+        "compare with a truth that is whole");
   }
 }
 

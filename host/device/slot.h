@@ -15,8 +15,8 @@
 namespace pillarfield {
 
 /// What frames leave to the next one on the device: the tare of a followed baseline or of a bent
-/// skin, and the states of sensels. Then frames in flight wait for each other: each for the last
-/// one that wrote, and one that writes for all that may still read.
+/// skin, and the states of sensels. Frames in flight are then ordered: a reader waits for the last
+/// writer, a writer for all readers.
 struct FrameOrder {
   bool is_needed = false;
   bool each_writes = false;  ///< every frame; else those with a change of curvature

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "pillarfield/error.h"
-#include "simulation/body/body_history.h"
 #include "simulation/closed_form/contact_traction.h"
 #include "simulation/closed_form/direction_sweep.h"
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/pillar_model.h"
 #include "simulation/ideal_readings.h"
+#include "simulation/indenter/indenter_history.h"
 #include "simulation/render_ahead.h"
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
@@ -44,9 +44,9 @@ void scale(ForceField& field, double factor) {
   }
 }
 
-void add_forces(const BodyForces& forces, ForceField& field, PressureMoments& moments) {
+void add_forces(const IndenterForces& forces, ForceField& field, PressureMoments& moments) {
   const auto add = [](double force_n, float& to) { to = static_cast<float>(to + force_n); };
-  for (const BodyForce& force : forces) {
+  for (const IndenterForce& force : forces) {
     add(force.shear_x, field.shear_x[force.pillar]);
     add(force.shear_y, field.shear_y[force.pillar]);
     add(force.normal, field.normal[force.pillar]);
@@ -111,8 +111,8 @@ struct Simulator::State {
     if (MemoryHistory::is_needed(scene.sensor)) memory = std::make_unique<MemoryHistory>(scene);
     if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load))
       sweep_truth = direction_sweep_forces(*sweep);
-    for (std::size_t number = 0; number < scene.bodies.size(); ++number) {
-      bodies.push_back(std::make_unique<BodyHistory>(scene, number));
+    for (std::size_t number = 0; number < scene.indenters.size(); ++number) {
+      indenters.push_back(std::make_unique<IndenterHistory>(scene, number));
     }
   }
 
@@ -127,15 +127,15 @@ struct Simulator::State {
     }
     clear(truth);
     const double pitch_mm = scene.skin.pillar_pitch_mm();
-    for (const Contact& contact : std::get<std::vector<Contact>>(scene.load)) {
+    for (const ClosedFormContact& contact : std::get<std::vector<ClosedFormContact>>(scene.load)) {
       const ContactKey state = state_at(contact, time_of(index));
       add_contact(contact, state, pitch_mm, truth);
       if (!load.moments.empty()) {
         add_pressure_moments(contact, state, pitch_mm, truth.rows, truth.cols, load.moments);
       }
     }
-    for (const std::unique_ptr<BodyHistory>& body : bodies) {
-      add_forces(*body->forces(index), truth, load.moments);
+    for (const std::unique_ptr<IndenterHistory>& indenter : indenters) {
+      add_forces(*indenter->forces(index), truth, load.moments);
     }
     return load;
   }
@@ -204,7 +204,7 @@ struct Simulator::State {
   Sensor sensor;
   std::unique_ptr<MemoryHistory> memory;  ///< null without hysteresis and creep
   ForceField sweep_truth;                 ///< empty where the load is not a sweep
-  std::vector<std::unique_ptr<BodyHistory>> bodies;
+  std::vector<std::unique_ptr<IndenterHistory>> indenters;
 };
 
 Simulator::Simulator(Scene scene) : state_(std::make_unique<State>(std::move(scene))) {}

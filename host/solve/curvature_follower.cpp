@@ -98,7 +98,7 @@ std::optional<Curvature> CurvatureFollower::follow(const FrameView& frame) {
   std::vector<double> differences(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const double reading = raw_reading(frame, samples_[i].row, samples_[i].col);
-    // A reading that is no number is far off every curvature.
+    // A reading that is not a number is far off every curvature.
     differences[i] = std::isfinite(reading) ? reading - samples_[i].tare : kMaxPlaneCounts;
   }
   const PatternTriple before = triple_of_curvature(applied_);

@@ -25,7 +25,7 @@ void check_counts(std::optional<double> value, const char* name, double high,
 /// Largest RMS error of the polynomial of a response curve, of the largest load.
 constexpr double kMaxCurveMisfit = 0.01;
 
-/// Throws Error if the kernel's polynomial is no good stand-in for a response curve.
+/// Throws Error if the kernel's polynomial does not follow a response curve.
 void check_curve(const ResponseCurve& curve, std::string_view where) {
   if (curve.empty()) return;
   const double misfit = curve_polynomial(curve).rms_counts / curve.loads.back();

@@ -15,7 +15,7 @@ namespace pillarfield {
 class WireFactors {
  public:
   WireFactors() = default;
-  /// `tares` are those of the frame; with TareOrigin::offset they are no load of the wires.
+  /// `tares` are those of the frame; with TareOrigin::offset they do not load the wires.
   WireFactors(const SolverPlan& plan, const FrameView& frame, std::span<const float> tares);
 
   /// Wires of a sensel; meaningless outside the pillars, and without crosstalk.

@@ -47,7 +47,7 @@ std::unique_ptr<FrameStream> open_live_source(const std::string& source,
                                               const LiveSourceOptions& options) {
   const LiveSourceKind* const kind = kind_of_source(source);
   if (kind == nullptr) {
-    throw Error(printable(source), "it names no live source",
+    throw Error(printable(source), "it is not a live source",
                 fmt::format("give one of {}", forms_of_sources()));
   }
   return kind->open(source.substr(kind->prefix.size()), options);

@@ -190,8 +190,8 @@ kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
   }
 }
 
-/* What find_shear_ratios left of an axis, `first` its plane of values; of pillars without load
- * nothing, or what an earlier frame left. */
+/* Loads the shear ratio of a pillar along one axis. `first`: its plane. Undefined for unloaded
+ * pillars. */
 PF_INLINE ShearRatio load_ratio(global uchar* results, Layout layout, uint first, uint row,
                                 int down, int col) {
   ShearRatio ratio;

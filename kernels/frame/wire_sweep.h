@@ -104,7 +104,7 @@ PF_INLINE RowWires wires_of_rows(Real load, Real square, RowWires before, WireMo
   return after;
 }
 
-/* Adds what a row that is not driven lets its columns lose, over their gain, to `losses`. */
+/* Adds an idle row's loss per column, divided by the column's gain, to `losses`. */
 PF_INLINE void add_row(const float* readings, float* losses, int cols, float row, float driven,
                        WireModel model) {
   const Real first = PF_CONSTANT(Real, (model.column - driven) * row);

@@ -5,9 +5,9 @@
 
 /* What the wires do to a sensel. */
 typedef struct {
-  Real row;    /* a: voltage that the driven row should have over what it has */
+  Real row;    /* a: ideal over actual voltage of the driven row */
   Real own;    /* k a: what the driven row adds to the loss of its column, per count */
-  Real column; /* l: what the column should read over what it reads, but for the driven row */
+  Real column; /* l: correction factor of the column, without the driven row */
 } Wires;
 
 /* Conductance over reading. */

@@ -1,6 +1,6 @@
 """fit_lean.py PROGRAM FOLDER: prints the coefficients of kernels/pillar/lean.h.
 
-Least squares over random bodies on random paths, which PROGRAM, pillarfield, simulates in FOLDER.
+Least squares over random indenters on random paths, which PROGRAM, pillarfield, simulates in FOLDER.
 Equations: docs/derivations/sensor_effects.md, E7."""
 
 import itertools
@@ -26,7 +26,7 @@ UNCLIPPED = f"{LEANING}\nshear_coefficient = 0.1"
 # --- Scenes ---
 
 def shape(kind, choose):
-    """Lines of [[body]] and a load, N."""
+    """Lines of [[indenter]] and a load, N."""
     if kind == "sphere":
         radius = 10 ** choose(0.75, 1.8)
         return f'shape = "sphere"\nradius_mm = {radius:.2f}', 0.8 * radius**0.9 + 1
@@ -52,9 +52,9 @@ def shapes():
     return [shape(kinds[i % len(kinds)], choose) for i in range(BODIES)]
 
 
-def scene(body, sensor, stiffness, seed):
-    """A body that presses, is dragged and turned, half unloaded, and dragged further."""
-    lines, load_n = body
+def scene(indenter, sensor, stiffness, seed):
+    """An indenter that presses, is dragged and turned, half unloaded, and dragged further."""
+    lines, load_n = indenter
     choose = random.Random(seed).uniform
     x, y, angle = choose(-4, 2), choose(-2, 2), choose(-90, 90)
     friction = choose(0.6, 2)
@@ -67,15 +67,15 @@ def scene(body, sensor, stiffness, seed):
         for time, part, turned, load in path)
     return (f"[skin]\npillars = [36, 36]\nthreshold_counts = {4 * NOISE_COUNTS}\n"
             f"modulus_kpa = {400 * stiffness}\ncounts_per_newton = {K}\n[sensor]\n{sensor}\n"
-            f"[time]\nrate_hz = 10\nframes = 12\nseed = 7\n[[body]]\n{lines}\n"
+            f"[time]\nrate_hz = 10\nframes = 12\nseed = 7\n[[indenter]]\n{lines}\n"
             f"friction = {friction:.3f}\npath = [\n{keys}\n]\n")
 
 
 class Simulation:
-    """Recordings and forces of one body."""
+    """Recordings and forces of one indenter."""
 
-    def __init__(self, program, folder, number, body):
-        self.program, self.folder, self.number, self.body = program, Path(folder), number, body
+    def __init__(self, program, folder, number, indenter):
+        self.program, self.folder, self.number, self.indenter = program, Path(folder), number, indenter
 
     def run(self, *words):
         subprocess.run([self.program, *map(str, words), "-q", "--overwrite"], check=True)
@@ -83,7 +83,7 @@ class Simulation:
     def record(self, name, sensor, stiffness):
         """The path of a recording without noise."""
         text, path = (self.folder / f"{self.number}_{name}.{end}" for end in ("toml", "h5"))
-        text.write_text(scene(self.body, sensor, stiffness, self.number), encoding="utf-8")
+        text.write_text(scene(self.indenter, sensor, stiffness, self.number), encoding="utf-8")
         self.run("simulate", text, "-o", path)
         return path
 
@@ -156,7 +156,7 @@ def non_negative(matrix, values):
 
 def main(program, folder):
     Path(folder).mkdir(parents=True, exist_ok=True)
-    simulations = [Simulation(program, folder, i, body) for i, body in enumerate(shapes())]
+    simulations = [Simulation(program, folder, i, indenter) for i, indenter in enumerate(shapes())]
     with ThreadPoolExecutor(2) as threads:
         found = list(threads.map(Simulation.samples, simulations))
     z = numpy.concatenate([numpy.stack([r[mask] for r in ratios(normal, axis)], 1)

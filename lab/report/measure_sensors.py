@@ -155,8 +155,8 @@ class Sensor:
         return "weighed.h5"
 
     def histories(self):
-        for name, body in scenes.BODIES.items():
-            text = scenes.history(body, self.effect.sensor, self.effect.surface,
+        for name, indenter in scenes.BODIES.items():
+            text = scenes.history(indenter, self.effect.sensor, self.effect.surface,
                                   self.stiffness[name])
             yield self.simulate(name.replace(" ", "_"), text)
 
@@ -175,8 +175,8 @@ class Sensor:
     def score_calibrated(self, calibration):
         """By the calibration's own noise, with the ambiguous pillars of other estimators too."""
         options = {"noise": False}
-        by_body = list(self.solve("--calibration", calibration, **options))
-        result = added(by_body) | {"bodies": dict(zip(scenes.BODIES, by_body))}
+        by_indenter = list(self.solve("--calibration", calibration, **options))
+        result = added(by_indenter) | {"indenters": dict(zip(scenes.BODIES, by_indenter))}
         for estimator in ("contact", "paper"):
             other = self.score("--calibration", calibration, estimator=estimator, **options)
             result[f"ambiguous_{estimator}"] = other["ambiguous"]
@@ -211,7 +211,7 @@ def measure_ideal(program, folder, stiffness):
 def measure_effect(program, folder, stiffness, effect):
     sensor = Sensor(program, folder, effect, stiffness)
     ignored = list(sensor.solve("--calibration", sensor.taken_for_ideal()))
-    return {"ignored": added(ignored) | {"bodies": dict(zip(scenes.BODIES, ignored))},
+    return {"ignored": added(ignored) | {"indenters": dict(zip(scenes.BODIES, ignored))},
             "exact": sensor.score(),
             "calibrated": sensor.score_calibrated(sensor.calibrated(effect.steps))}
 

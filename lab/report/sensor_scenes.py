@@ -81,7 +81,7 @@ seed = 7
 
 # --- Histories ---
 
-class Body(NamedTuple):
+class Indenter(NamedTuple):
     shape: str
     load_n: float  # on a skin of SOFT_KPA
     drag_mm: float
@@ -91,25 +91,25 @@ FRICTION = 1.6
 RATE_HZ = 20
 FRAMES = 24
 BODIES = {
-    "fingertip": Body('shape = "ellipsoid"\nradii_mm = [9, 14, 11]', 14, 6),
-    "small ball": Body('shape = "sphere"\nradius_mm = 10', 8, 3),
-    "large ball": Body('shape = "sphere"\nradius_mm = 50', 40, 6),
-    "punch": Body('shape = "punch"\nradius_mm = 7\nedge_radius_mm = 1', 18, 5),
-    "rough ball": Body('shape = "sphere"\nradius_mm = 18\nroughness_um = 30', 22, 5),
-    "cylinder": Body('shape = "cylinder"\nradius_mm = 10\nlength_mm = 12\nedge_radius_mm = 1.5',
+    "fingertip": Indenter('shape = "ellipsoid"\nradii_mm = [9, 14, 11]', 14, 6),
+    "small ball": Indenter('shape = "sphere"\nradius_mm = 10', 8, 3),
+    "large ball": Indenter('shape = "sphere"\nradius_mm = 50', 40, 6),
+    "punch": Indenter('shape = "punch"\nradius_mm = 7\nedge_radius_mm = 1', 18, 5),
+    "rough ball": Indenter('shape = "sphere"\nradius_mm = 18\nroughness_um = 30', 22, 5),
+    "cylinder": Indenter('shape = "cylinder"\nradius_mm = 10\nlength_mm = 12\nedge_radius_mm = 1.5',
                      18, 4),
 }
 
 
-def history(body, sensor, surface="", stiffness=1):
-    """A body that presses, rests, is dragged, half unloaded, and dragged and turned further."""
-    load = body.load_n * stiffness
+def history(indenter, sensor, surface="", stiffness=1):
+    """An indenter that presses, rests, is dragged, half unloaded, and dragged and turned further."""
+    load = indenter.load_n * stiffness
     path = ((0, -4, 0, 0, 0.2), (0.2, -4, 0, 0, 1), (0.4, -4, 0, 0, 1), (0.6, -2.5, 0.4, 0, 1),
-            (0.8, -2.5, 0.4, 0, 0.5), (1.15, body.drag_mm - 4, 1.2, 15, 0.8))
+            (0.8, -2.5, 0.4, 0, 0.5), (1.15, indenter.drag_mm - 4, 1.2, 15, 0.8))
     keys = ",\n".join(f"  {{ time_s = {time}, position_mm = [{x}, {y}], angle_deg = {angle}, "
                       f"load_n = {part * load:g} }}" for time, x, y, angle, part in path)
     return scene(sensor, frames=FRAMES, rate_hz=RATE_HZ, modulus_kpa=SOFT_KPA * stiffness,
-                 contacts=f"{surface}[[body]]\n{body.shape}\nfriction = {FRICTION}\n"
+                 contacts=f"{surface}[[indenter]]\n{indenter.shape}\nfriction = {FRICTION}\n"
                           f"path = [\n{keys}\n]\n")
 
 
@@ -155,7 +155,7 @@ def punch(direction_deg, friction, radius_mm, path):
 
 
 def pulled(sensor, direction_deg):
-    """A flat body of four times its tangential load."""
+    """A flat indenter of four times its tangential load."""
     return scene(sensor, frames=100, rate_hz=20,
                  contacts=punch(direction_deg, 0.25, 15, [(0, 0, 0, 4 * PULL_N)]))
 
@@ -193,7 +193,7 @@ def balls(sensor):
         for x, y, radius in places))
 
 
-# The places of a second body: alone, in the rows of the first one, its columns, and neither.
+# The places of a second indenter: alone, in the rows of the first one, its columns, and neither.
 OTHERS_MM = {"alone": None, "in_rows": (-5, 16), "in_columns": (-16, 5), "in_neither": (-5, 5)}
 
 

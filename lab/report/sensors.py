@@ -68,14 +68,14 @@ def region_rows(found):
                coverage(calibrated), text(over_paper(calibrated))]
 
 
-def body_rows(found):
-    """Errors of off-centre pressure by body, ignored and corrected."""
-    ignored, corrected = (found["effects"]["off_centre"][way]["bodies"]
+def indenter_rows(found):
+    """Errors of off-centre pressure by indenter, ignored and corrected."""
+    ignored, corrected = (found["effects"]["off_centre"][way]["indenters"]
                           for way in ("ignored", "calibrated"))
-    for body in scenes.BODIES:
-        cells = [text(rms(bodies[body], group), ".1f") for group in ("inside", "rim")
-                 for bodies in (ignored, corrected)]
-        yield [body, *cells]
+    for indenter in scenes.BODIES:
+        cells = [text(rms(indenters[indenter], group), ".1f") for group in ("inside", "rim")
+                 for indenters in (ignored, corrected)]
+        yield [indenter, *cells]
 
 
 # --- Goals ---
@@ -158,7 +158,7 @@ def main(docs, measured, timed):
     bench = speed.Bench(timed, page.load(timed))
     ideal = found["ideal"]
     page.write(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
-               body_rows=body_rows(found), time_rows=time_rows(bench),
+               indenter_rows=indenter_rows(found), time_rows=time_rows(bench),
                processor=processors.name(), threads=os.cpu_count(),
                goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
                ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),

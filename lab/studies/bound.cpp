@@ -16,7 +16,7 @@ namespace {
 
 using Row = std::array<double, 3>;
 
-/// What the readings of sensels 1 to 4 multiply the force's components by, but for k (M3).
+/// Coefficients of the force's components in the readings of sensels 1 to 4, for k = 1 (M3).
 constexpr double kCos45 = std::numbers::sqrt2 / 2;
 constexpr std::array<Row, 4> kModel = {{
     {kCos45, kCos45, 1},

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "pillarfield/body.h"
+#include "pillarfield/indenter.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 
@@ -79,9 +79,9 @@ std::vector<Entry> entries_of(Indenter indenter) {
           {touch_again, 3, 4.5, 273}, {reverse, 12, 4.5, 173}};
 }
 
-/// A body whose contact has about the radius `a_mm` under a load, N.
+/// An indenter whose contact has about the radius `a_mm` under a load, N.
 struct Indentation {
-  pillarfield::Body body;
+  pillarfield::Indenter indenter;
   double load_n = 0;
   double reach_mm = 0;  ///< extent of its contact from its origin
 };
@@ -93,12 +93,12 @@ double hertz_load(double a_mm, double radius_mm) {
 
 Indentation indentation_of(const History& history, const std::filesystem::path& scenes) {
   const double a = history.radius_pillars * kPitchMm;
-  // The body's radius grows with the contact's, which keeps strains small.
+  // The indenter's radius grows with the contact's, which keeps strains small.
   const double radius = a * (3 + history.radius_pillars / 3);
   Indentation made;
-  pillarfield::Body& body = made.body;
-  body.friction = history.friction;
-  body.radius_mm = radius;
+  pillarfield::Indenter& indenter = made.indenter;
+  indenter.friction = history.friction;
+  indenter.radius_mm = radius;
   made.load_n = hertz_load(a, radius);
   made.reach_mm = 1.3 * a;
   switch (history.indenter) {
@@ -106,33 +106,34 @@ Indentation indentation_of(const History& history, const std::filesystem::path& 
       break;
     case Indenter::fingertip:
     case Indenter::two_fingers:  // radii of curvature of 1.4 and 0.7 times that of the sphere
-      body.shape = BodyShape::ellipsoid;
-      body.radii_mm = {std::sqrt(1.4 * 0.9) * radius, std::sqrt(0.7 * 0.9) * radius, 0.9 * radius};
+      indenter.shape = IndenterShape::ellipsoid;
+      indenter.radii_mm = {std::sqrt(1.4 * 0.9) * radius, std::sqrt(0.7 * 0.9) * radius,
+                           0.9 * radius};
       made.reach_mm = 1.5 * a;
       break;
     case Indenter::cylinder:
-      body.shape = BodyShape::cylinder;
-      body.length_mm = 3.4 * a;
-      body.edge_radius_mm = 0.4 * a;
+      indenter.shape = IndenterShape::cylinder;
+      indenter.length_mm = 3.4 * a;
+      indenter.edge_radius_mm = 0.4 * a;
       made.load_n = std::numbers::pi * kModulusMpa / 3 * 0.52 * 0.52 * a * a * 3 * a / radius;
       made.reach_mm = 2 * a;
       break;
     case Indenter::punch:
-      body.shape = BodyShape::punch;
-      body.radius_mm = 1.15 * a;  // its rounded edge bears load in part
-      body.edge_radius_mm = 0.25 * a;
+      indenter.shape = IndenterShape::punch;
+      indenter.radius_mm = 1.15 * a;  // its rounded edge bears load in part
+      indenter.edge_radius_mm = 0.25 * a;
       break;
     case Indenter::rough_ball:
-      body.roughness_um = 1e3 * 0.04 * a * a / radius;
-      body.roughness_length_mm = a;
-      body.friction_variation = 0.1;
-      body.friction_variation_length_mm = a;
+      indenter.roughness_um = 1e3 * 0.04 * a * a / radius;
+      indenter.roughness_length_mm = a;
+      indenter.friction_variation = 0.1;
+      indenter.friction_variation_length_mm = a;
       break;
     case Indenter::key:  // 28 mm long: contact area of a circle of 6.4 mm radius
-      body.shape = BodyShape::height_map;
-      body.height_map = scenes / "key.png";
-      body.height_map_size_mm = {28 * a / 6.4, 12 * a / 6.4};
-      body.height_map_depth_mm = 1.5 * a / 6.4;
+      indenter.shape = IndenterShape::height_map;
+      indenter.height_map = scenes / "key.png";
+      indenter.height_map_size_mm = {28 * a / 6.4, 12 * a / 6.4};
+      indenter.height_map_depth_mm = 1.5 * a / 6.4;
       made.load_n = 20 * kModulusMpa * std::pow(a / 6.4, 2);
       made.reach_mm = 2.3 * a;
       break;
@@ -140,9 +141,9 @@ Indentation indentation_of(const History& history, const std::filesystem::path& 
   return made;
 }
 
-/// Pose of a body at a frame. Along and across the drag in units of the sliding distance, after
-/// which the whole contact slides; turn in units of that distance over the contact radius; load
-/// relative to that of the indentation.
+/// Pose of an indenter at a frame. Along and across the drag in units of the sliding distance,
+/// after which the whole contact slides; turn in units of that distance over the contact radius;
+/// load relative to that of the indentation.
 struct Pose {
   double along = 0;
   double across = 0;
@@ -184,31 +185,31 @@ std::vector<Pose> poses_of(Loading loading) {
           {1.0, 0, 0, 1}, {1.4, 0, 0, 1},   {1.8, 0, 0, 1},   {2.1, 0, 0, 1},   {2.3, 0, 0, 1}};
 }
 
-/// A body with its path; the sliding distance is 0.84 µP / (E a) (docs/scenes.md).
-pillarfield::Body moved(const Indentation& indentation, const History& history) {
+/// An indenter with its path; the sliding distance is 0.84 µP / (E a) (docs/scenes.md).
+pillarfield::Indenter moved(const Indentation& indentation, const History& history) {
   const double a = history.radius_pillars * kPitchMm;
   const double way_mm = 0.84 * history.friction * indentation.load_n / (kModulusMpa * a);
   const double direction = history.direction_deg * std::numbers::pi / 180;
   const double start_deg = std::fmod(61.8034 * static_cast<double>(history.seed), 180.0);
-  pillarfield::Body body = indentation.body;
+  pillarfield::Indenter indenter = indentation.indenter;
   for (const Pose& pose : poses_of(history.loading)) {
-    BodyKey key;
-    key.time_s = static_cast<double>(body.path.size());
+    IndenterKey key;
+    key.time_s = static_cast<double>(indenter.path.size());
     key.x_mm = way_mm * (pose.along * std::cos(direction) - pose.across * std::sin(direction));
     key.y_mm = way_mm * (pose.along * std::sin(direction) + pose.across * std::cos(direction));
     key.angle_deg = start_deg + pose.turn * way_mm / a * 180 / std::numbers::pi;
     key.load_n = pose.load * indentation.load_n;
-    body.path.push_back(key);
+    indenter.path.push_back(key);
   }
-  return body;
+  return indenter;
 }
 
 /// The second finger: lighter, and rotated by half a turn about a point beside the first.
-pillarfield::Body second_finger(const pillarfield::Body& first, const History& history,
-                                double distance_mm) {
+pillarfield::Indenter second_finger(const pillarfield::Indenter& first, const History& history,
+                                    double distance_mm) {
   const double direction = history.direction_deg * std::numbers::pi / 180;
-  pillarfield::Body second = first;
-  for (BodyKey& key : second.path) {
+  pillarfield::Indenter second = first;
+  for (IndenterKey& key : second.path) {
     key.x_mm = -key.x_mm + distance_mm * std::sin(direction);
     key.y_mm = -key.y_mm - distance_mm * std::cos(direction);
     key.angle_deg += 70;
@@ -217,12 +218,12 @@ pillarfield::Body second_finger(const pillarfield::Body& first, const History& h
   return second;
 }
 
-/// Sizes the skin to the bodies and offsets them from the pillars by the seed.
+/// Sizes the skin to the indenters and offsets them from the pillars by the seed.
 void fit_skin(Scene& scene, double reach_mm, std::uint64_t seed) {
   std::array<double, 2> low = {1e9, 1e9};
   std::array<double, 2> high = {-1e9, -1e9};
-  for (const pillarfield::Body& body : scene.bodies) {
-    for (const BodyKey& key : body.path) {
+  for (const pillarfield::Indenter& indenter : scene.indenters) {
+    for (const IndenterKey& key : indenter.path) {
       low = {std::min(low[0], key.x_mm), std::min(low[1], key.y_mm)};
       high = {std::max(high[0], key.x_mm), std::max(high[1], key.y_mm)};
     }
@@ -235,8 +236,8 @@ void fit_skin(Scene& scene, double reach_mm, std::uint64_t seed) {
   const auto number = static_cast<double>(seed);
   const double x = kPitchMm * (std::fmod(0.6180339887 * number, 1.0) - 0.5);
   const double y = kPitchMm * (std::fmod(0.7548776662 * number, 1.0) - 0.5);
-  for (pillarfield::Body& body : scene.bodies) {
-    for (BodyKey& key : body.path) {
+  for (pillarfield::Indenter& indenter : scene.indenters) {
+    for (IndenterKey& key : indenter.path) {
       key.x_mm += x - (low[0] + high[0]) / 2;
       key.y_mm += y - (low[1] + high[1]) / 2;
     }
@@ -253,11 +254,11 @@ Scene scene_of(const History& history, const std::filesystem::path& scenes) {
   scene.sensor.adc_bits = 8;
   scene.sensor.noise_counts = kHistoryNoiseCounts;
   scene.skin.threshold_counts = kThresholdDeviations * kHistoryNoiseCounts;
-  scene.bodies = {moved(indentation, history)};
-  scene.frames = static_cast<std::uint32_t>(scene.bodies[0].path.size());
+  scene.indenters = {moved(indentation, history)};
+  scene.frames = static_cast<std::uint32_t>(scene.indenters[0].path.size());
   if (history.indenter == Indenter::two_fingers) {
     const double distance_mm = 2 * indentation.reach_mm + 2 * kPitchMm;
-    scene.bodies.push_back(second_finger(scene.bodies[0], history, distance_mm));
+    scene.indenters.push_back(second_finger(scene.indenters[0], history, distance_mm));
   }
   fit_skin(scene, indentation.reach_mm, history.seed);
   return scene;

@@ -7,7 +7,7 @@
 
 #include "lab/studies/contact_study.h"
 
-/// Test set: loading histories of bodies down to a fingertip's size, by the simulator's
+/// Test set: loading histories of indenters down to a fingertip's size, by the simulator's
 /// boundary-element solver. No parameter of an estimator is chosen on it.
 namespace pillarfield::contact_study {
 
@@ -44,7 +44,7 @@ struct History {
   Indenter indenter = Indenter::sphere;
   Loading loading = Loading::slide;
   double radius_pillars = 5;  ///< radius of a circle of about the contact's area
-  double friction = 1;        ///< of all bodies
+  double friction = 1;        ///< of all indenters
   double direction_deg = 0;   ///< of the drag
   std::uint64_t seed = 1;
 

@@ -41,8 +41,8 @@ Scene all_directions(double noise_counts, const std::vector<double>& magnitudes_
   return scene;
 }
 
-Contact sphere(ContactMotion motion, ContactKey first, ContactKey last) {
-  Contact contact;
+ClosedFormContact sphere(ContactMotion motion, ContactKey first, ContactKey last) {
+  ClosedFormContact contact;
   contact.motion = motion;
   contact.contact_radius_mm = 12;
   contact.reference_load_n = 120;
@@ -53,7 +53,7 @@ Contact sphere(ContactMotion motion, ContactKey first, ContactKey last) {
   return contact;
 }
 
-Scene bodies(double noise_counts) {
+Scene indenters(double noise_counts) {
   Scene scene = real_sensor(noise_counts, 32);
   scene.skin.rows = 128;
   scene.skin.cols = 128;
@@ -112,7 +112,7 @@ const std::vector<Study>& studies() {
       {"forces of 60 to 1000 counts, noise 1", all_directions(1, {0.1875, 0.5, 1.2, 3.1})},
       {"forces of 60 to 1000 counts, noise 0.3", all_directions(0.3, {0.1875, 0.5, 1.2, 3.1})},
       {"small forces, 15 to 40 counts, noise 1", all_directions(1, {0.047, 0.0625, 0.09, 0.125})},
-      {"four bodies on the skin, noise 0.5", bodies(0.5)},
+      {"four indenters on the skin, noise 0.5", indenters(0.5)},
   };
   return all;
 }

@@ -15,7 +15,7 @@ struct Study {
   Scene scene;
 };
 
-/// All directions with large and with small forces, and bodies on a skin: whole counts, unequal
+/// All directions with large and with small forces, and indenters on a skin: whole counts, unequal
 /// sensels, dead zones, tares, and a threshold of four standard deviations of a reading's noise.
 [[nodiscard]] const std::vector<Study>& studies();
 

@@ -11,7 +11,7 @@
 /// Named hard cases of single pillars, for tests and docs/accuracy.md.
 namespace pillarfield::hard_cases {
 
-/// Of the arithmetic in which a pillar is solved, and for which its readings are rounded.
+/// Precision of the arithmetic and of the rounded readings.
 enum class Precision { single_precision, double_precision };
 
 /// A pillar to solve.

@@ -292,7 +292,7 @@ class ForceField:
         if len(self.shape) != 2:
             raise Error("ForceField.picture", "the forces are of several frames", "index one")
         if theme not in ("dark", "light"):
-            raise Error("ForceField.picture", f"'{theme}' is no theme", "give 'dark' or 'light'")
+            raise Error("ForceField.picture", f"'{theme}' is not a theme", "give 'dark' or 'light'")
         return picture(self._batch(), quantity, limits, theme == "light")
 
     def _repr_png_(self) -> Optional[bytes]:

@@ -72,7 +72,7 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
     >>> import pillarfield as pf
     >>> pf.live("press.h5")
     Traceback (most recent call last):
-    pillarfield.Error: press.h5: it names no live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE
+    pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE
     """
     return LiveSource(source, skin=skin, serial_baud=serial_baud)
 

@@ -1,4 +1,4 @@
-// The arm of off-centre pressure from bodies pressed straight down.
+// The arm of off-centre pressure from indenters pressed straight down.
 
 #include "pillarfield/arm_calibration.h"
 
@@ -35,16 +35,16 @@ SkinCalibration leaning_tare(PressedSkin& skin) {
 /// Frames under four balls, pressed down at different places within a pillar.
 FrameStatistics balls(PressedSkin& skin, double radius_mm, double load_n) {
   Scene scene = skin.scene();
-  std::vector<Contact> contacts;
+  std::vector<ClosedFormContact> contacts;
   const double places[][2] = {{-11.3, -10.2}, {11.6, -9.7}, {-10.1, 11.4}, {10.5, 10.9}};
   for (const auto& [x, y] : places) {
-    Contact body;
-    body.shape = ContactShape::sphere;
-    body.motion = ContactMotion::press;
-    body.contact_radius_mm = radius_mm;
-    body.reference_load_n = load_n;
-    body.path = {{0, x, y, load_n}};
-    contacts.push_back(body);
+    ClosedFormContact indenter;
+    indenter.shape = ContactShape::sphere;
+    indenter.motion = ContactMotion::press;
+    indenter.contact_radius_mm = radius_mm;
+    indenter.reference_load_n = load_n;
+    indenter.path = {{0, x, y, load_n}};
+    contacts.push_back(indenter);
   }
   scene.load = contacts;
   return skin.statistics_of(Simulator(scene), 20);

@@ -24,14 +24,14 @@ Scene pressed_scene(double load_n) {
   scene.sensor.noise_counts = 1;
   scene.frames = 10'000;
   if (load_n == 0) {
-    scene.load = std::vector<Contact>();
+    scene.load = std::vector<ClosedFormContact>();
     return scene;
   }
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 4;
   ball.reference_load_n = load_n;
   ball.path = {{0, 0, 0, load_n}};
-  scene.load = std::vector<Contact>{ball};
+  scene.load = std::vector<ClosedFormContact>{ball};
   return scene;
 }
 
@@ -164,7 +164,7 @@ struct UnderADrift {
 UnderADrift under_a_drift(const Drift& per_s, int interval = 1) {
   Scene scene = pressed_scene(20);
   scene.skin.threshold_counts = 6;
-  std::get<std::vector<Contact>>(scene.load).front().path = {
+  std::get<std::vector<ClosedFormContact>>(scene.load).front().path = {
       {0, 0, 0, 0}, {0.5, 0, 0, 0}, {1, 0, 0, 20}, {11, 0, 0, 20}};
   Follower follower(scene, 1, interval);
   UnderADrift result;
@@ -203,7 +203,7 @@ TEST(Baseline, WhatUntouchedSenselsDriftInCommonIsTakenOffTouchedOnes) {
 
 TEST(Baseline, ComesBackAfterAContact) {
   Scene scene = pressed_scene(20);
-  std::get<std::vector<Contact>>(scene.load).front().path = {
+  std::get<std::vector<ClosedFormContact>>(scene.load).front().path = {
       {0, 0, 0, 20}, {10, 0, 0, 20}, {10.01, 0, 0, 0}};
   scene.sensor.drift_counts_per_s = 0.05;
   Follower follower(scene, 1);

@@ -333,11 +333,11 @@ TEST(Equilibration, KnownLeaksCount) {
 /// A ball on the skin: far from uniform.
 FrameStatistics ball_press(PressedSkin& skin, double radius_mm, double load_n) {
   Scene scene = skin.scene();
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = radius_mm;
   ball.reference_load_n = load_n;
   ball.path = {{0, 0, 0, load_n}};
-  scene.load = std::vector<Contact>{ball};
+  scene.load = std::vector<ClosedFormContact>{ball};
   return skin.statistics_of(Simulator(scene), 20);
 }
 
@@ -381,14 +381,14 @@ TEST(Equilibration, MeasuresShear) {
   PressedSkin skin(20, 20, spread_sensor());
   const SkinCalibration before = tared(skin);
   Scene scene = skin.scene();
-  Contact slider;
+  ClosedFormContact slider;
   slider.motion = ContactMotion::slide;
   slider.friction = 0.1;
   slider.direction_deg = 70;
   slider.contact_radius_mm = 60;
   slider.reference_load_n = 3000;
   slider.path = {{0, 0, 0, 3000}};
-  scene.load = std::vector<Contact>{slider};
+  scene.load = std::vector<ClosedFormContact>{slider};
   const FrameStatistics sheared = skin.statistics_of(Simulator(scene), 20);
   const UniformPress presses[] = {{sheared, 300}};
   // The sensels' own spread of 10 % leaves 0.1 √2 / 40 on each axis.

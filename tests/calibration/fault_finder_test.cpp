@@ -38,11 +38,11 @@ Scene bare_scene() {
 /// A wide ball that presses all pillars, sways, and lets go.
 Scene swaying_ball() {
   Scene scene = bare_scene();
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 26;
   ball.reference_load_n = 300;
   ball.path = {{0, -2, -2, 20}, {0.5, 2, 0, 300}, {1, 0, 2, 40}, {1.5, 1, -2, 280}, {2, 0, 0, 5}};
-  scene.load = std::vector<Contact>{ball};
+  scene.load = std::vector<ClosedFormContact>{ball};
   return scene;
 }
 
@@ -210,15 +210,15 @@ TEST(FaultFinder, AStillSenselBesideAMissingOneIsSuspected) {
 /// Idle and under a constant press: nothing moves there, and elsewhere a ball sways.
 TEST(FaultFinder, ConstantlyPressedAndIdleSenselsAreOnlyUntested) {
   Scene scene = bare_scene();
-  Contact punch;
+  ClosedFormContact punch;
   punch.shape = ContactShape::flat_punch;
   punch.contact_radius_mm = 5;
   punch.path = {{0, -6, 6, 12}};
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 5;
   ball.reference_load_n = 20;
   ball.path = {{0, 6, -6, 0}, {1, 6, -6, 20}, {2, 6, -6, 0}};
-  scene.load = std::vector<Contact>{punch, ball};
+  scene.load = std::vector<ClosedFormContact>{punch, ball};
   const FaultResult result = faults_in(scene, no_spoil);
   EXPECT_TRUE(result.findings.empty());
   const auto untested = [&](std::uint32_t row, std::uint32_t col) {
@@ -235,14 +235,14 @@ TEST(FaultFinder, SenselsInactiveByShearAreNeverMasked) {
     for (const double friction : {0.9, 1.2, 3.0}) {
       Scene scene = bare_scene();
       scene.sensor.adc_bits = 12;
-      Contact ball;
+      ClosedFormContact ball;
       ball.motion = ContactMotion::slide;
       ball.friction = friction;
       ball.direction_deg = direction_deg;
       ball.contact_radius_mm = 26;
       ball.reference_load_n = 300;
       ball.path = {{0, 0, 0, 20}, {0.7, 0, 0, 300}, {1.3, 0, 0, 30}, {2, 0, 0, 200}};
-      scene.load = std::vector<Contact>{ball};
+      scene.load = std::vector<ClosedFormContact>{ball};
       const Simulator simulator(scene);
       FaultFinder finder("frames.h5", simulator.scene().skin, SenselType::u16,
                          calibration_of(simulator), {});
@@ -263,14 +263,14 @@ TEST(FaultFinder, LegallySaturatedSenselsAreNotMasked) {
   Scene scene = bare_scene();
   scene.sensor.gain_spread = 0;
   scene.sensor.adc_bits = 8;
-  Contact ball;
+  ClosedFormContact ball;
   ball.motion = ContactMotion::slide;
   ball.friction = 0.4;
   ball.direction_deg = 45;
   ball.contact_radius_mm = 40;
   ball.reference_load_n = 1500;
   ball.path = {{0, 0, 0, 900}, {1, 0, 0, 1600}, {2, 0, 0, 900}};
-  scene.load = std::vector<Contact>{ball};
+  scene.load = std::vector<ClosedFormContact>{ball};
   const FaultResult result = faults_in(scene, no_spoil);
   EXPECT_EQ(count_masked(result.calibration.planes), 0U);
 }
@@ -294,7 +294,7 @@ TEST(FaultFinder, AsksForLoadedFrames) {
   const std::size_t dead = place(20, 20);
   const auto spoil = [=](auto readings, std::uint32_t) { readings[dead] = 0; };
   Scene late = swaying_ball();
-  std::get<std::vector<Contact>>(late.load)[0].path = {{0.8, 0, 0, 0}, {1, 0, 0, 300}};
+  std::get<std::vector<ClosedFormContact>>(late.load)[0].path = {{0.8, 0, 0, 0}, {1, 0, 0, 300}};
   EXPECT_TRUE(faults_in(late, spoil, 100).findings.empty());
   EXPECT_EQ(faults_in(late, spoil, 100, {.least_frames = 10}).findings.size(), 1U);
 }

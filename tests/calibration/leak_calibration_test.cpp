@@ -67,7 +67,7 @@ void press_places(PressedSkin& skin, double friction, int stride, LeakFinder& fi
   std::uint64_t index = 1000;
   for (int place = 0; place < 18 * 18; place += stride) {
     Scene scene = skin.scene();
-    Contact tip;
+    ClosedFormContact tip;
     tip.shape = ContactShape::flat_punch;
     tip.motion = ContactMotion::slide;
     tip.friction = friction;
@@ -77,7 +77,7 @@ void press_places(PressedSkin& skin, double friction, int stride, LeakFinder& fi
     tip.contact_radius_mm = 0.3;
     tip.reference_load_n = 0.5;
     tip.path = {{0, (col - 8.5) * pitch, (row - 8.5) * pitch, 0.5}};
-    scene.load = std::vector<Contact>{tip};
+    scene.load = std::vector<ClosedFormContact>{tip};
     Simulator(scene).render(index++, frame, truth);
     finder.add(frame.view());
   }

@@ -35,11 +35,11 @@ Scene swaying_ball() {
   Scene scene;
   scene.skin.rows = scene.skin.cols = 40;
   scene.sensor = live_sensor();
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 26;
   ball.reference_load_n = 300;
   ball.path = {{0, -2, -2, 20}, {0.5, 2, 0, 300}, {1, 0, 2, 40}, {1.5, 1, -2, 280}, {2, 0, 0, 5}};
-  scene.load = std::vector<Contact>{ball};
+  scene.load = std::vector<ClosedFormContact>{ball};
   return scene;
 }
 
@@ -100,7 +100,7 @@ TEST(LiveTare, WaitsForEnoughFrames) {
 
 TEST(LiveTare, RefusesATouchedSkinUnlessPreloaded) {
   Scene scene = swaying_ball();
-  std::get<std::vector<Contact>>(scene.load).front().contact_radius_mm = 5;
+  std::get<std::vector<ClosedFormContact>>(scene.load).front().contact_radius_mm = 5;
   LiveTare tare(scene.skin, SenselType::u8);
   for (const bool preloaded : {false, true}) {
     Frames frames(scene);

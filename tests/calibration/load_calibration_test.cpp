@@ -36,11 +36,11 @@ SkinCalibration tared_skin(PressedSkin& skin) {
 /// A punch of 12 mm across in the middle of the skin.
 FrameStatistics punched(PressedSkin& skin, double load_n) {
   Scene scene = skin.scene();
-  Contact punch;
+  ClosedFormContact punch;
   punch.shape = ContactShape::flat_punch;
   punch.contact_radius_mm = 6;
   punch.path = {{0, 0, 0, load_n}};
-  scene.load = std::vector<Contact>{punch};
+  scene.load = std::vector<ClosedFormContact>{punch};
   return skin.statistics_of(Simulator(scene), kLoadFrames);
 }
 
@@ -90,13 +90,13 @@ TEST(LoadCalibration, ShearedPillarsGiveAnIntervalThatHoldsTheTruth) {
   PressedSkin skin(20, 20, noisy_sensor());
   const SkinCalibration before = tared_skin(skin);
   Scene scene = skin.scene();
-  Contact slider;
+  ClosedFormContact slider;
   slider.contact_radius_mm = 8;
   slider.reference_load_n = 20;
   slider.motion = ContactMotion::slide;
   slider.friction = 1.6;
   slider.path = {{0, 0, 0, 20}};
-  scene.load = std::vector<Contact>{slider};
+  scene.load = std::vector<ClosedFormContact>{slider};
   const FrameStatistics sheared = skin.statistics_of(Simulator(scene), kLoadFrames);
   const KnownLoad loads[] = {{sheared, 20}};
   const LoadResult result = calibrate_load(before, loads, LoadModel::linear);

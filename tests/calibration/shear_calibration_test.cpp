@@ -36,22 +36,22 @@ SkinCalibration equilibrated(PressedSkin& skin) {
   return equilibrate(tared, presses, {}).calibration;
 }
 
-/// Frames under a flat body that is pulled by kLoadN · kFriction. Pillars whose coefficients are c
-/// read it as the shear c · force, which is the friction kFriction · c.
+/// Frames under a flat indenter that is pulled by kLoadN · kFriction. Pillars whose coefficients
+/// are c read it as the shear c · force, which is the friction kFriction · c.
 FrameStatistics pulled(PressedSkin& skin, double direction_deg, double c) {
   Scene scene = skin.scene();
-  Contact body;
-  body.shape = ContactShape::flat_punch;
-  body.motion = ContactMotion::slide;
-  body.friction = kFriction * c;
-  body.direction_deg = direction_deg;
-  body.contact_radius_mm = 9;
-  body.path = {{0, 0, 0, kLoadN}};
-  scene.load = std::vector<Contact>{body};
+  ClosedFormContact indenter;
+  indenter.shape = ContactShape::flat_punch;
+  indenter.motion = ContactMotion::slide;
+  indenter.friction = kFriction * c;
+  indenter.direction_deg = direction_deg;
+  indenter.contact_radius_mm = 9;
+  indenter.path = {{0, 0, 0, kLoadN}};
+  scene.load = std::vector<ClosedFormContact>{indenter};
   return skin.statistics_of(Simulator(scene), 50);
 }
 
-/// The shear on the skin as the simulator draws it: a body that slides right pulls it right.
+/// The shear on the skin as the simulator draws it: an indenter that slides right pulls it right.
 ShearResult calibrated(PressedSkin& skin, double c_x, double c_y) {
   const SkinCalibration before = equilibrated(skin);
   const FrameStatistics right = pulled(skin, 0, c_x);

@@ -181,19 +181,19 @@ TEST(Tare, KeepsWhatWasKnownBefore) {
 
 TEST(Tare, RefusesATouchedSkin) {
   PressedSkin skin = common_skin();
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 5;
   ball.reference_load_n = 20;
   ball.path = {{0, 0, 0, 20}};
   Scene touched = skin.scene();
-  touched.load = std::vector<Contact>{ball};
+  touched.load = std::vector<ClosedFormContact>{ball};
   const FrameStatistics always = skin.statistics_of(Simulator(touched), 50);
   EXPECT_NE(message_of([&] { (void)tare_of(always); }).find("frames.h5: "), std::string::npos);
   EXPECT_NE(message_of([&] { (void)tare_of(always); }).find("touched them"), std::string::npos);
   EXPECT_NO_THROW((void)tare_of(always, {.preloaded = true}));
 
   ball.path = {{0, 0, 0, 0}, {0.945, 0, 0, 0}, {0.95, 0, 0, 20}};
-  touched.load = std::vector<Contact>{ball};
+  touched.load = std::vector<ClosedFormContact>{ball};
   const FrameStatistics at_the_end = skin.statistics_of(Simulator(touched), 50);
   EXPECT_NE(message_of([&] { (void)tare_of(at_the_end); }).find("touched them"), std::string::npos);
 }

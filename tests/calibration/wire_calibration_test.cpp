@@ -34,22 +34,22 @@ PressedSkin wired_skin(double row_ohm, double column_ohm, double noise_counts = 
   return {16, 16, sensor};
 }
 
-Contact ball_at(double x_mm, double y_mm, double load_n) {
-  Contact ball;
+ClosedFormContact ball_at(double x_mm, double y_mm, double load_n) {
+  ClosedFormContact ball;
   ball.contact_radius_mm = 4;
   ball.reference_load_n = load_n;
   ball.path = {{0, x_mm, y_mm, load_n}};
   return ball;
 }
 
-FrameStatistics under(PressedSkin& skin, std::vector<Contact> contacts) {
+FrameStatistics under(PressedSkin& skin, std::vector<ClosedFormContact> contacts) {
   Scene scene = skin.scene();
   scene.load = std::move(contacts);
   return skin.statistics_of(Simulator(scene), 50);
 }
 
 std::vector<FrameStatistics> presses_of(PressedSkin& skin) {
-  const Contact rest = ball_at(-5, 5, 10);
+  const ClosedFormContact rest = ball_at(-5, 5, 10);
   return {under(skin, {rest}), under(skin, {rest, ball_at(5, 5, 15)}),
           under(skin, {rest, ball_at(-5, -5, 15)}), under(skin, {rest, ball_at(5, -5, 15)})};
 }

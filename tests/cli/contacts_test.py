@@ -26,7 +26,7 @@ frames = 16
 [sensor]
 adc_bits = 8
 noise_counts = 0.5
-[[body]]
+[[indenter]]
 shape = "punch"
 radius_mm = 8
 friction = 0.8

@@ -54,7 +54,7 @@ class HeightMaps(OutputTest):
         numpy.save(heights, numpy.arange(64.0).reshape(8, 8))
         before = heights.read_bytes()
         scene = self.folder / "map.toml"
-        scene.write_text(SCENE + '[[body]]\nshape = "height_map"\nheight_map = "h.npy"\n'
+        scene.write_text(SCENE + '[[indenter]]\nshape = "height_map"\nheight_map = "h.npy"\n'
                          'height_map_size_mm = [8, 8]\nheight_map_depth_mm = 1\nfriction = 1\n'
                          'path = [{ time_s = 0, position_mm = [0, 0], load_n = 1 }]\n', encoding="utf-8")
         self.assert_fails("simulate", scene, "-o", heights, "--overwrite", names=["h.npy"])

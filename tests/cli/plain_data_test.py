@@ -247,7 +247,7 @@ class PlainData(CommandTest):
                           ("info", "-"), ("compare", "-", self.recording),
                           ("calibrate", "tare", "-", "-o", "c.h5"), ("simulate", "-", "-o", "r.h5"),
                           ("simulate", "a.toml", "-o", "-")):
-            self.assert_fails(*arguments, status=2, names=["'-' is no file"])
+            self.assert_fails(*arguments, status=2, names=["'-' is not a file"])
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "dragged_bodies.h"
+#include "dragged_indenters.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -17,8 +17,8 @@ namespace {
 
 struct Case {
   const char* name;
-  Scene (*motion)(const Body&, double);
-  Body (*body)();
+  Scene (*motion)(const Indenter&, double);
+  Indenter (*indenter)();
   double friction;
 };
 
@@ -36,7 +36,7 @@ TEST(ContactEstimator, BeatsThePapersMidpointAndHoldsTheTruth) {
   Errors all;
   for (const Case& each : kCases) {
     SCOPED_TRACE(std::string(each.name) + " at " + std::to_string(each.friction));
-    const Simulator simulator(each.motion(each.body(), each.friction));
+    const Simulator simulator(each.motion(each.indenter(), each.friction));
     const Errors paper = paper_errors(simulator);
     const Errors contact = contact_errors(simulator);
     ASSERT_GT(contact.pillars, 30);
@@ -51,8 +51,8 @@ TEST(ContactEstimator, BeatsThePapersMidpointAndHoldsTheTruth) {
 TEST(ContactEstimator, HoldsTheTruthAtHighFrictions) {
   for (const double friction : {4.5, 6.0}) {
     Errors all;
-    for (const auto body : {fingertip, ball, punch}) {
-      all += contact_errors(Simulator(dragged(body(), friction)));
+    for (const auto indenter : {fingertip, ball, punch}) {
+      all += contact_errors(Simulator(dragged(indenter(), friction)));
     }
     for (const double held : all.between) EXPECT_GT(held, 0.9 * all.pillars) << friction;
   }
@@ -80,13 +80,13 @@ TEST(ContactEstimator, RemembersWhatAContactShowed) {
 
 /// A single frame of a ball in partial slip, as a closed form: most slipping pillars are ambiguous,
 /// and the pressure regression adds what the ratios of determined pillars lack.
-TEST(ContactEstimator, ReadsTheShapeOfThePressureUnderASmoothBody) {
+TEST(ContactEstimator, ReadsTheShapeOfThePressureUnderASmoothIndenter) {
   for (const double friction : {1.6, 1.8, 2.2}) {
     for (const double direction_deg : {0.0, 3.0, 90.0, 183.0}) {
       Scene scene = dragged(ball(), friction);
       scene.skin.counts_per_newton = 700;
       scene.frames = 1;
-      Contact contact;
+      ClosedFormContact contact;
       contact.motion = ContactMotion::partial_slip;
       contact.contact_radius_mm = 12;
       contact.reference_load_n = 40;
@@ -94,8 +94,8 @@ TEST(ContactEstimator, ReadsTheShapeOfThePressureUnderASmoothBody) {
       contact.tangential_ratio = 0.7;
       contact.direction_deg = direction_deg;
       contact.path = {{0, 0.4, -0.3, 40}};
-      scene.bodies.clear();
-      scene.load = std::vector<Contact>{contact};
+      scene.indenters.clear();
+      scene.load = std::vector<ClosedFormContact>{contact};
       const Simulator simulator(scene);
       const Errors found = contact_errors(simulator);
       ASSERT_GT(found.pillars, 30);
@@ -152,8 +152,8 @@ TEST_F(OneFrame, ExplainsTheReadings) {
 
 TEST_F(OneFrame, HasTheSameBitsWithAnyNumberOfThreads) {
   Scene scene = scene_;
-  scene.bodies.push_back(scene.bodies[0]);
-  for (auto& key : scene.bodies[1].path) key.y_mm += 11;
+  scene.indenters.push_back(scene.indenters[0]);
+  for (auto& key : scene.indenters[1].path) key.y_mm += 11;
   const Simulator simulator(scene);
   FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
   ForceField truth(26, 26);

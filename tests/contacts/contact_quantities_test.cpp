@@ -377,7 +377,7 @@ class SolvedScene {
 
   /// Load and place of a contact of the scene.
   [[nodiscard]] ContactKey key(std::size_t contact, double time_s) const {
-    const auto& path = std::get<std::vector<Contact>>(scene().load).at(contact).path;
+    const auto& path = std::get<std::vector<ClosedFormContact>>(scene().load).at(contact).path;
     for (std::size_t i = 1; i < path.size(); ++i) {
       if (time_s > path[i].time_s) continue;
       const ContactKey& a = path[i - 1];

@@ -9,20 +9,20 @@
 #include <functional>
 #include <string>
 
-#include "dragged_bodies.h"
+#include "dragged_indenters.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr double kFriction = 1.6;
-constexpr Body (*kBodies[])() = {fingertip, ball, punch};
+constexpr Indenter (*kIndenters[])() = {fingertip, ball, punch};
 
 using Change = std::function<void(SensorModel&)>;
 
 const Change kIdeal = [](SensorModel&) {};
 
-Scene with(const Change& change, Body (*body)()) {
-  Scene scene = dragged(body(), kFriction);
+Scene with(const Change& change, Indenter (*indenter)()) {
+  Scene scene = dragged(indenter(), kFriction);
   change(scene.sensor);
   return scene;
 }
@@ -83,7 +83,7 @@ void expect_coverage(const Errors& errors) {
 TEST(RealSensor, AmbiguousPillarsAreEstimatedAsOnTheIdealOne) {
   std::array<double, 3> ideal{};
   for (std::size_t i = 0; i < ideal.size(); ++i) {
-    const Simulator simulator(with(kIdeal, kBodies[i]));
+    const Simulator simulator(with(kIdeal, kIndenters[i]));
     ideal.at(i) = contact_errors(simulator).rms() / paper_errors(simulator).rms();
   }
   for (const Sensor& sensor : sensors()) {
@@ -91,7 +91,7 @@ TEST(RealSensor, AmbiguousPillarsAreEstimatedAsOnTheIdealOne) {
     Errors direct;
     Errors contact;
     for (std::size_t i = 0; i < ideal.size(); ++i) {
-      const Simulator simulator(with(sensor.change, kBodies[i]));
+      const Simulator simulator(with(sensor.change, kIndenters[i]));
       const Errors found = contact_errors(simulator);
       EXPECT_LT(found.rms() / paper_errors(simulator).rms(), ideal.at(i) + sensor.most_above_ideal);
       contact += found;
@@ -115,7 +115,7 @@ TEST(RealSensor, LeaningPillarsAreNoWorseThanByDirect) {
       contact += contact_errors(simulator);
       direct += direct_errors(simulator);
     };
-    for (const auto body : kBodies) add(dragged(body(), friction));
+    for (const auto indenter : kIndenters) add(dragged(indenter(), friction));
     add(turned(fingertip(), friction));
     add(turned(ball(), friction));
     EXPECT_GT(contact.pillars, 500);

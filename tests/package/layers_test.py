@@ -8,7 +8,7 @@ import sys
 LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simulation", "compare",
           "device", "io", "streams", "pipeline", "cli"]
 # Public headers without a source file of their name.
-HEADER_MODULES = {"version": "base", "body": "simulation", "contact": "simulation",
+HEADER_MODULES = {"version": "base", "indenter": "simulation", "closed_form_contact": "simulation",
                   "scene": "simulation", "friction": "solve", "host_solve": "solve",
                   "read_options": "io", "recording": "io", "force_file": "io", "contact_file": "io",
                   "live": "streams", "stream_format": "streams"}

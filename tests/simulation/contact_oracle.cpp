@@ -60,8 +60,8 @@ Traction integrate_pieces(double low, double high, std::vector<double> breaks, F
 
 double root(double value) { return std::sqrt(std::max(0.0, value)); }
 
-struct Body {
-  const Contact& contact;
+struct Indenter {
+  const ClosedFormContact& contact;
   double load;
   double radius;
 
@@ -78,13 +78,13 @@ struct Body {
 };
 
 /// The point is relative to the contact's centre.
-Traction traction(const Body& body, double x, double y) {
-  const Contact& c = body.contact;
+Traction traction(const Indenter& indenter, double x, double y) {
+  const ClosedFormContact& c = indenter.contact;
   const double angle = c.direction_deg * pi / 180;
   const double across = x * std::cos(angle) + y * std::sin(angle);
   const bool cylinder = c.shape == ContactShape::cylinder;
   const double r_squared = cylinder ? across * across : x * x + y * y;
-  const double p = body.pressure(r_squared);
+  const double p = indenter.pressure(r_squared);
   if (c.motion == ContactMotion::press) return {0, 0, p};
   if (c.motion == ContactMotion::spin) {
     const double r = std::hypot(x, y);
@@ -95,29 +95,29 @@ Traction traction(const Body& body, double x, double y) {
   const double held = 1 - c.tangential_ratio;
   if (c.motion == ContactMotion::partial_slip) {
     // Mindlin: q'' = −(c/a) mu p0 sqrt(1 − r²/c²) where r <= c
-    const double stick = body.radius * std::cbrt(held);
-    const double p0 = 3 * body.load / (2 * pi * body.radius * body.radius);
-    q -= c.friction * p0 * stick / body.radius * root(1 - r_squared / (stick * stick));
+    const double stick = indenter.radius * std::cbrt(held);
+    const double p0 = 3 * indenter.load / (2 * pi * indenter.radius * indenter.radius);
+    q -= c.friction * p0 * stick / indenter.radius * root(1 - r_squared / (stick * stick));
   }
   if (c.motion == ContactMotion::roll) {
     // Carter: the ellipse of the stick zone, shifted to the leading edge
-    const double stick = body.radius * std::sqrt(held);
-    const double p0 = 2 * body.load / (pi * body.radius * c.length_mm);
-    const double from_middle = across - (body.radius - stick);
-    q -= c.friction * p0 * stick / body.radius *
+    const double stick = indenter.radius * std::sqrt(held);
+    const double p0 = 2 * indenter.load / (pi * indenter.radius * c.length_mm);
+    const double from_middle = across - (indenter.radius - stick);
+    q -= c.friction * p0 * stick / indenter.radius *
          root(1 - from_middle * from_middle / (stick * stick));
   }
   return {q * std::cos(angle), q * std::sin(angle), p};
 }
 
-Traction force_on_disc_cell(const Body& body, const Cell& cell) {
-  const double a = body.radius;
-  const double stick = a * std::cbrt(1 - body.contact.tangential_ratio);
+Traction force_on_disc_cell(const Indenter& indenter, const Cell& cell) {
+  const double a = indenter.radius;
+  const double stick = a * std::cbrt(1 - indenter.contact.tangential_ratio);
   const auto along_y = [&](double x) {
     const double h = root(a * a - x * x);
     const double s = root(stick * stick - x * x);
     return integrate_pieces(std::max(cell.y0, -h), std::min(cell.y1, h), {-s, 0, s},
-                            [&](double y) { return traction(body, x, y); });
+                            [&](double y) { return traction(indenter, x, y); });
   };
   std::vector<double> breaks = {0, stick, -stick};
   for (const double radius : {a, stick}) {
@@ -142,21 +142,21 @@ void cut(double slope, double offset, double limit, double& low, double& high) {
 }
 
 /// Lines along x, each integrated exactly enough; across them the midpoint rule.
-Traction force_on_strip_cell(const Body& body, const Cell& cell) {
-  const double angle = body.contact.direction_deg * pi / 180;
+Traction force_on_strip_cell(const Indenter& indenter, const Cell& cell) {
+  const double angle = indenter.contact.direction_deg * pi / 180;
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  const double stick = body.radius * std::sqrt(1 - body.contact.tangential_ratio);
+  const double stick = indenter.radius * std::sqrt(1 - indenter.contact.tangential_ratio);
   constexpr int kLines = 4000;
   Traction sum;
   for (int i = 0; i < kLines; ++i) {
     const double y = cell.y0 + (cell.y1 - cell.y0) * (i + 0.5) / kLines;
     double low = cell.x0;
     double high = cell.x1;
-    cut(c, s * y, body.radius, low, high);
-    cut(-s, c * y, body.contact.length_mm / 2, low, high);
-    const double kink = std::abs(c) < 1e-12 ? 0 : (body.radius - 2 * stick - s * y) / c;
-    const auto f = [&](double x) { return traction(body, x, y); };
+    cut(c, s * y, indenter.radius, low, high);
+    cut(-s, c * y, indenter.contact.length_mm / 2, low, high);
+    const double kink = std::abs(c) < 1e-12 ? 0 : (indenter.radius - 2 * stick - s * y) / c;
+    const auto f = [&](double x) { return traction(indenter, x, y); };
     sum = sum + (cell.y1 - cell.y0) / kLines * integrate_pieces(low, high, {kink}, f);
   }
   return sum;
@@ -164,16 +164,17 @@ Traction force_on_strip_cell(const Body& body, const Cell& cell) {
 
 }  // namespace
 
-Traction force_on_cell(const Contact& contact, const ContactKey& state, const Cell& cell) {
+Traction force_on_cell(const ClosedFormContact& contact, const ContactKey& state,
+                       const Cell& cell) {
   const double growth = state.load_n / contact.reference_load_n;
   double radius = contact.contact_radius_mm;
   if (contact.shape == ContactShape::sphere) radius *= std::cbrt(growth);
   if (contact.shape == ContactShape::cylinder) radius *= std::sqrt(growth);
-  const Body body{contact, state.load_n, radius};
+  const Indenter indenter{contact, state.load_n, radius};
   const Cell centred{cell.x0 - state.x_mm, cell.x1 - state.x_mm, cell.y0 - state.y_mm,
                      cell.y1 - state.y_mm};
-  return contact.shape == ContactShape::cylinder ? force_on_strip_cell(body, centred)
-                                                 : force_on_disc_cell(body, centred);
+  return contact.shape == ContactShape::cylinder ? force_on_strip_cell(indenter, centred)
+                                                 : force_on_disc_cell(indenter, centred);
 }
 
 }  // namespace pillarfield::oracle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pillarfield/contact.h"
+#include "pillarfield/closed_form_contact.h"
 
 namespace pillarfield::oracle {
 
@@ -21,6 +21,6 @@ struct Cell {
 
 /// Force on a cell, N: the textbook's traction, point by point, integrated numerically by the
 /// double exponential rule. Shares no code with the library. Within 1e-7 of the contact's load.
-Traction force_on_cell(const Contact& contact, const ContactKey& state, const Cell& cell);
+Traction force_on_cell(const ClosedFormContact& contact, const ContactKey& state, const Cell& cell);
 
 }  // namespace pillarfield::oracle

@@ -17,10 +17,10 @@ using std::numbers::pi;
 constexpr double kPitch = 1.2649;
 
 /// Every shape with every motion it has.
-std::vector<Contact> all_kinds() {
+std::vector<ClosedFormContact> all_kinds() {
   using enum ContactShape;
   using enum ContactMotion;
-  std::vector<Contact> kinds;
+  std::vector<ClosedFormContact> kinds;
   for (const auto& [shape, motion] :
        std::vector<std::pair<ContactShape, ContactMotion>>{{sphere, press},
                                                            {sphere, slide},
@@ -32,7 +32,7 @@ std::vector<Contact> all_kinds() {
                                                            {cylinder, press},
                                                            {cylinder, slide},
                                                            {cylinder, roll}}) {
-    Contact contact;
+    ClosedFormContact contact;
     contact.shape = shape;
     contact.motion = motion;
     contact.contact_radius_mm = 4;
@@ -46,14 +46,15 @@ std::vector<Contact> all_kinds() {
   return kinds;
 }
 
-std::string kind_of(const Contact& c) {
+std::string kind_of(const ClosedFormContact& c) {
   return "shape " + std::to_string(int(c.shape)) + " motion " + std::to_string(int(c.motion)) +
          " radius " + std::to_string(c.contact_radius_mm) + " at " +
          std::to_string(c.path.front().x_mm) + ", " + std::to_string(c.path.front().y_mm) +
          " direction " + std::to_string(c.direction_deg);
 }
 
-ForceField field_of(const Contact& contact, std::uint32_t pillars, double pitch = kPitch) {
+ForceField field_of(const ClosedFormContact& contact, std::uint32_t pillars,
+                    double pitch = kPitch) {
   ForceField field(pillars, pillars);
   add_contact(contact, contact.path.front(), pitch, field);
   return field;
@@ -83,7 +84,7 @@ Resultant resultant_of(const ForceField& field, double pitch, double x0 = 0, dou
   return sum;
 }
 
-double tangential_n(const Contact& contact) {
+double tangential_n(const ClosedFormContact& contact) {
   const double limit = contact.friction * contact.path.front().load_n;
   switch (contact.motion) {
     case ContactMotion::press:
@@ -98,7 +99,7 @@ double tangential_n(const Contact& contact) {
   return contact.tangential_ratio * limit;
 }
 
-void expect_resultants(const Contact& contact, const ForceField& field) {
+void expect_resultants(const ClosedFormContact& contact, const ForceField& field) {
   const double load = contact.path.front().load_n;
   const double tangential = tangential_n(contact);
   const double angle = contact.direction_deg * pi / 180;
@@ -111,7 +112,7 @@ void expect_resultants(const Contact& contact, const ForceField& field) {
 TEST(Contact, ForcesAddUpToTheLoadForAnyCentreAndRadius) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     for (int trial = 0; trial < 60; ++trial) {
       contact.contact_radius_mm = 20 * std::pow(10.0, -2 + 2 * unit(random));
       contact.reference_load_n = std::pow(10.0, unit(random));
@@ -126,7 +127,7 @@ TEST(Contact, ForcesAddUpToTheLoadForAnyCentreAndRadius) {
 }
 
 TEST(Contact, ForcesAddUpInTheHardPlaces) {
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     for (const double radius : {1e-3, 0.3, kPitch / 2, kPitch, 3 * kPitch}) {
       for (const double at : {0.0, kPitch / 2, kPitch, 1e-13, 0.25 * kPitch}) {
         for (const double direction : {0.0, 45.0, 90.0, 180.0, 1e-9}) {
@@ -144,7 +145,7 @@ TEST(Contact, ForcesAddUpInTheHardPlaces) {
 
 TEST(Contact, EachPillarIsTheIntegralOfTheTextbookTraction) {
   constexpr std::uint32_t kPillars = 12;
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     for (const double radius : {0.4, 2.9}) {
       contact.contact_radius_mm = radius;
       SCOPED_TRACE(kind_of(contact));
@@ -168,13 +169,13 @@ TEST(Contact, EachPillarIsTheIntegralOfTheTextbookTraction) {
 }
 
 /// Moments converge with the square of the pitch where the traction is bounded.
-double torque_of(const Contact& contact, double pitch) {
+double torque_of(const ClosedFormContact& contact, double pitch) {
   const auto pillars = static_cast<std::uint32_t>(2 * std::ceil(9 / pitch));
   return resultant_of(field_of(contact, pillars, pitch), pitch).torque;
 }
 
 TEST(Contact, SpinHasTheTorqueOfTheClosedForm) {
-  Contact contact;
+  ClosedFormContact contact;
   contact.motion = ContactMotion::spin;
   contact.contact_radius_mm = 8;
   contact.reference_load_n = 3;
@@ -190,7 +191,7 @@ TEST(Contact, SpinHasTheTorqueOfTheClosedForm) {
 }
 
 TEST(Contact, ShearStaysWithinFriction) {
-  for (const Contact& contact : all_kinds()) {
+  for (const ClosedFormContact& contact : all_kinds()) {
     SCOPED_TRACE(kind_of(contact));
     const ForceField field = field_of(contact, 24);
     for (std::size_t i = 0; i < field.pillars(); ++i) {
@@ -202,7 +203,7 @@ TEST(Contact, ShearStaysWithinFriction) {
 }
 
 TEST(Contact, SlidingAndPartialSlipActAlongTheirDirection) {
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     if (tangential_n(contact) == 0) continue;
     contact.direction_deg = 90;
     SCOPED_TRACE(kind_of(contact));
@@ -215,7 +216,7 @@ TEST(Contact, SlidingAndPartialSlipActAlongTheirDirection) {
 }
 
 TEST(Contact, ARollerSticksAtItsLeadingEdge) {
-  Contact roller = all_kinds().back();
+  ClosedFormContact roller = all_kinds().back();
   roller.direction_deg = 0;
   roller.path = {{0, 0, 0, roller.reference_load_n}};
   const ForceField field = field_of(roller, 8);
@@ -232,9 +233,9 @@ TEST(Contact, ARollerSticksAtItsLeadingEdge) {
 }
 
 TEST(Contact, AMirroredContactHasTheMirroredField) {
-  for (const Contact& contact : all_kinds()) {
+  for (const ClosedFormContact& contact : all_kinds()) {
     SCOPED_TRACE(kind_of(contact));
-    Contact mirrored = contact;
+    ClosedFormContact mirrored = contact;
     mirrored.path.front().x_mm *= -1;
     mirrored.direction_deg = 180 - contact.direction_deg;
     mirrored.clockwise = !contact.clockwise;
@@ -253,9 +254,9 @@ TEST(Contact, AMirroredContactHasTheMirroredField) {
 }
 
 TEST(Contact, ATurnedContactHasTheTurnedField) {
-  for (const Contact& contact : all_kinds()) {
+  for (const ClosedFormContact& contact : all_kinds()) {
     SCOPED_TRACE(kind_of(contact));
-    Contact turned = contact;
+    ClosedFormContact turned = contact;
     turned.path.front().x_mm = -contact.path.front().y_mm;
     turned.path.front().y_mm = contact.path.front().x_mm;
     turned.direction_deg += 90;
@@ -274,7 +275,7 @@ TEST(Contact, ATurnedContactHasTheTurnedField) {
 }
 
 TEST(Contact, TheRadiusFollowsTheLoad) {
-  Contact contact;
+  ClosedFormContact contact;
   contact.contact_radius_mm = 3;
   contact.reference_load_n = 2;
   EXPECT_DOUBLE_EQ(contact_radius_mm(contact, 16), 6);
@@ -285,9 +286,9 @@ TEST(Contact, TheRadiusFollowsTheLoad) {
 }
 
 TEST(Contact, EightTimesTheLoadIsTheSameFieldOnAGridTwiceAsCoarse) {
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     contact.path = {{0, 0.4, 0.1, 1}};
-    Contact heavy = contact;
+    ClosedFormContact heavy = contact;
     const double growth = contact.shape == ContactShape::cylinder ? 4 : 8;
     heavy.path = {{0, 0.8, 0.2, growth}};
     heavy.length_mm *= 2;
@@ -304,7 +305,7 @@ TEST(Contact, EightTimesTheLoadIsTheSameFieldOnAGridTwiceAsCoarse) {
 }
 
 TEST(Contact, WhatLiesOutsideThePatchIsLost) {
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     contact.path = {{0, 4 * kPitch, -3 * kPitch, 1}};
     SCOPED_TRACE(kind_of(contact));
     const ForceField small = field_of(contact, 8);
@@ -321,7 +322,7 @@ TEST(Contact, WhatLiesOutsideThePatchIsLost) {
 }
 
 TEST(Contact, NothingIsFeltOutsideTheContactOrWithoutLoad) {
-  for (Contact contact : all_kinds()) {
+  for (ClosedFormContact contact : all_kinds()) {
     SCOPED_TRACE(kind_of(contact));
     const ForceField field = field_of(contact, 40);
     EXPECT_EQ(field.normal[0], 0);
@@ -334,7 +335,7 @@ TEST(Contact, NothingIsFeltOutsideTheContactOrWithoutLoad) {
 }
 
 TEST(Contact, APathIsLinearBetweenKeysAndConstantBeyond) {
-  Contact contact;
+  ClosedFormContact contact;
   contact.path = {{1, 0, 10, 2}, {3, 4, 0, 6}, {4, 4, 0, 0}};
   EXPECT_DOUBLE_EQ(state_at(contact, 0).load_n, 2);
   EXPECT_DOUBLE_EQ(state_at(contact, 1).y_mm, 10);

@@ -1,4 +1,4 @@
-#include "simulation/body/friction_contact.h"
+#include "simulation/indenter/friction_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class Rubbed {
     });
   }
 
-  /// Drags the body by `drag(x, y)` from where it is.
+  /// Drags the indenter by `drag(x, y)` from where it is.
   template <class Drag>
   int step(Drag drag) {
     HalfSpace& surface = surfaces_.for_box(limit_.box);

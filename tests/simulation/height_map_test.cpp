@@ -1,4 +1,4 @@
-#include "simulation/body/height_map.h"
+#include "simulation/indenter/height_map.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/body/body_history.h"
+#include "simulation/indenter/indenter_history.h"
 #include "tests/base/message.h"
 
 namespace pillarfield {
@@ -160,34 +160,34 @@ constexpr std::size_t kMapSide = 201;
 constexpr double kMapSizeMm = 20;
 constexpr double kBallRadiusMm = 25;
 
-Body map_body(const std::filesystem::path& file) {
+Indenter map_indenter(const std::filesystem::path& file) {
   const std::vector<double> relief = ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm);
-  Body body;
-  body.shape = BodyShape::height_map;
-  body.height_map = file;
-  body.height_map_size_mm = {kMapSizeMm, kMapSizeMm};
-  body.height_map_depth_mm = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - relief[0];
-  body.path = {{0, 0.7, -1.1, 30, 8}};
-  return body;
+  Indenter indenter;
+  indenter.shape = IndenterShape::height_map;
+  indenter.height_map = file;
+  indenter.height_map_size_mm = {kMapSizeMm, kMapSizeMm};
+  indenter.height_map_depth_mm = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - relief[0];
+  indenter.path = {{0, 0.7, -1.1, 30, 8}};
+  return indenter;
 }
 
-BodyForces forces_of(const Body& body) {
+IndenterForces forces_of(const Indenter& indenter) {
   Scene scene;
   scene.skin.rows = 44;
   scene.skin.cols = 44;
-  scene.bodies = {body};
-  return *BodyHistory(scene, 0).forces(0);
+  scene.indenters = {indenter};
+  return *IndenterHistory(scene, 0).forces(0);
 }
 
-void expect_like_ball(const Body& body, double tolerance_n) {
-  Body ball;
+void expect_like_ball(const Indenter& indenter, double tolerance_n) {
+  Indenter ball;
   ball.radius_mm = kBallRadiusMm;
-  ball.path = body.path;
-  const BodyForces expected = forces_of(ball);
+  ball.path = indenter.path;
+  const IndenterForces expected = forces_of(ball);
   std::vector<double> all(484);
-  for (const BodyForce& force : forces_of(body)) all[force.pillar] = force.normal;
+  for (const IndenterForce& force : forces_of(indenter)) all[force.pillar] = force.normal;
   double most = 0;
-  for (const BodyForce& force : expected) {
+  for (const IndenterForce& force : expected) {
     most = std::max(most, force.normal);
     EXPECT_NEAR(all[force.pillar], force.normal, tolerance_n) << force.pillar;
   }
@@ -198,7 +198,7 @@ TEST(HeightMap, OfABallInNumpyPressesAsTheBall) {
   const auto file = scratch("ball.npy");
   write_bytes(file, npy_of("<f4", "(201, 201)",
                            numbers_of<float>(ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm))));
-  expect_like_ball(map_body(file), 2e-3);
+  expect_like_ball(map_indenter(file), 2e-3);
   std::filesystem::remove(file);
 }
 
@@ -218,7 +218,7 @@ TEST(HeightMap, OfABallAsAPictureOf16BitsPressesAsTheBall) {
   image.height = kMapSide;
   image.format = PNG_FORMAT_LINEAR_Y;
   ASSERT_TRUE(png_image_write_to_file(&image, file.c_str(), 0, samples.data(), 0, nullptr));
-  expect_like_ball(map_body(file), 2e-3);
+  expect_like_ball(map_indenter(file), 2e-3);
   std::filesystem::remove(file);
 }
 
@@ -256,8 +256,8 @@ TEST(HeightMap, RefusesOtherPicturesInOneLine) {
             "a.png: the picture is not grey of 8 or 16 bits; convert it to that");
   EXPECT_EQ(refused(png_bytes(PNG_FORMAT_GRAY, 1)),
             "a.png: the picture has 1 x 1 pixels; a height map has 2 x 2 at least");
-  EXPECT_TRUE(refused("\x89PNG").starts_with("a.png: is no picture that can be read: "));
-  EXPECT_TRUE(refused("").starts_with("a.png: is no picture that can be read: "));
+  EXPECT_TRUE(refused("\x89PNG").starts_with("a.png: is not a readable picture: "));
+  EXPECT_TRUE(refused("").starts_with("a.png: is not a readable picture: "));
   const std::string good = png_bytes(PNG_FORMAT_GRAY, 20);
   for (std::size_t length = 0; length < good.size(); ++length) {
     EXPECT_THROW(static_cast<void>(parsed_png(good.substr(0, length))), Error) << length;
@@ -279,7 +279,7 @@ TEST(HeightMap, OnlyRegularFilesWithAKnownEndingAreOpened) {
   };
   EXPECT_EQ(refused("/nowhere/a.npy"), "/nowhere/a.npy: No such file or directory; check its name");
   EXPECT_EQ(refused("/dev/zero"),
-            "/dev/zero: is no height map; name a file that ends in .npy or .png");
+            "/dev/zero: is not a height map; name a file that ends in .npy or .png");
   const auto folder = scratch("folder.png");
   std::filesystem::create_directory(folder);
   EXPECT_EQ(refused(folder), folder.string() + ": is a directory; name a file in it");

@@ -1,4 +1,4 @@
-#include "simulation/body/normal_contact.h"
+#include "simulation/indenter/normal_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// `height(x, y)` on a square of cells about the origin.
 template <class Height>
-CellField body_of(std::int64_t cells, Height height) {
+CellField indenter_of(std::int64_t cells, Height height) {
   CellField field(CellBox{0, 0, cells, cells});
   const double middle = static_cast<double>(cells - 1) / 2;
   for (std::int64_t row = 0; row < cells; ++row) {
@@ -31,7 +31,7 @@ CellField body_of(std::int64_t cells, Height height) {
 }
 
 CellField paraboloid(double radius_x_mm, double radius_y_mm) {
-  return body_of(180, [=](double x, double y) {
+  return indenter_of(180, [=](double x, double y) {
     return x * x / (2 * radius_x_mm) + y * y / (2 * radius_y_mm);
   });
 }
@@ -69,7 +69,7 @@ TEST(NormalContact, ASphereIsHertzs) {
   const double highest = std::ranges::max(contact.pressure.values);
   double squares = 0;
   double cells = 0;
-  const CellField hertz = body_of(180, [=](double x, double y) {
+  const CellField hertz = indenter_of(180, [=](double x, double y) {
     return peak * std::sqrt(std::max(0.0, 1 - (x * x + y * y) / (kContactMm * kContactMm)));
   });
   const CellField found = on_box(contact.pressure, hertz.box);
@@ -122,8 +122,8 @@ TEST(NormalContact, AnEllipsoidHasHertzsEllipse) {
 /// Johnson (3.36): P = 2aE*δ.
 TEST(NormalContact, AFlatPunchSinksInProportionToItsLoad) {
   constexpr double kRadiusMm = 9;
-  const CellField punch =
-      body_of(70, [](double x, double y) { return std::hypot(x, y) > kRadiusMm ? kNone : 0.0; });
+  const CellField punch = indenter_of(
+      70, [](double x, double y) { return std::hypot(x, y) > kRadiusMm ? kNone : 0.0; });
   const NormalContact contact = solved(punch, 3);
   const double radius = std::sqrt(contact_area_mm2(contact) / std::numbers::pi);
   EXPECT_NEAR(radius, kRadiusMm, 0.02 * kRadiusMm);
@@ -135,7 +135,8 @@ TEST(NormalContact, AFlatPunchSinksInProportionToItsLoad) {
 TEST(NormalContact, AConeIsSneddons) {
   constexpr double kSlope = 0.05;
   constexpr double kContactMm = 10;
-  const CellField cone = body_of(120, [](double x, double y) { return kSlope * std::hypot(x, y); });
+  const CellField cone =
+      indenter_of(120, [](double x, double y) { return kSlope * std::hypot(x, y); });
   const double sum = kContactMm * kContactMm * kSlope / (2 * kPressedCellMm * kPressedCellMm);
   const NormalContact contact = solved(cone, sum);
   EXPECT_NEAR(contact_area_mm2(contact), std::numbers::pi * kContactMm * kContactMm, 6);
@@ -144,7 +145,7 @@ TEST(NormalContact, AConeIsSneddons) {
 
 /// Two hills far apart: the window holds both, though the first guess may be of one.
 TEST(NormalContact, SeparateHillsShareTheLoad) {
-  const CellField hills = body_of(150, [](double x, double y) {
+  const CellField hills = indenter_of(150, [](double x, double y) {
     const double right = ((x - 12) * (x - 12) + y * y) / 40;
     const double left = ((x + 12) * (x + 12) + y * y) / 40;
     return std::min(left, right);
@@ -166,15 +167,16 @@ TEST(NormalContact, SeparateHillsShareTheLoad) {
 }
 
 TEST(NormalContact, OneCellBearsASmallLoadAlone) {
-  const CellField needle = body_of(9, [](double x, double y) { return 100 * std::hypot(x, y); });
+  const CellField needle =
+      indenter_of(9, [](double x, double y) { return 100 * std::hypot(x, y); });
   const NormalContact contact = solved(needle, 1e-6);
   EXPECT_EQ(contact.contact.cells(), 1U);
   EXPECT_NEAR(sum_of(contact.pressure), 1e-6, 1e-18);
 }
 
-TEST(NormalContact, WithoutABodyThereIsNone) {
+TEST(NormalContact, WithoutAnIndenterThereIsNone) {
   HalfSpaces surfaces(kPressedCellMm);
-  const CellField nothing = body_of(5, [](double, double) { return kNone; });
+  const CellField nothing = indenter_of(5, [](double, double) { return kNone; });
   EXPECT_FALSE(solve_normal_contact(nothing, 1, surfaces));
 }
 

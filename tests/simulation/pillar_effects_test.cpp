@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pillarfield/simulator.h"
-#include "simulation/body/body_history.h"
 #include "simulation/closed_form/contact_traction.h"
+#include "simulation/indenter/indenter_history.h"
 
 namespace pillarfield {
 namespace {
@@ -40,8 +40,8 @@ Scene bare_scene(std::uint32_t pillar_rows, std::uint32_t pillar_cols) {
   return scene;
 }
 
-Contact pressed(ContactShape shape, double radius_mm, double x_mm, double y_mm) {
-  Contact contact;
+ClosedFormContact pressed(ContactShape shape, double radius_mm, double x_mm, double y_mm) {
+  ClosedFormContact contact;
   contact.shape = shape;
   contact.contact_radius_mm = radius_mm;
   contact.length_mm = 6.5;
@@ -80,7 +80,7 @@ TEST(ShearCoefficientOfAScene, IsThatOfTheReadingsAndTheirStatus) {
 TEST(PillarLeakOfAScene, GivesTheNeighboursTheirFractions) {
   Scene scene = bare_scene(5, 5);
   // The contact lies within the middle pillar.
-  Contact tip = pressed(ContactShape::sphere, 0.4, 0.1, -0.1);
+  ClosedFormContact tip = pressed(ContactShape::sphere, 0.4, 0.1, -0.1);
   tip.motion = ContactMotion::slide;
   tip.friction = 0.5;
   scene.load = std::vector{tip};
@@ -101,7 +101,8 @@ TEST(PillarLeakOfAScene, GivesTheNeighboursTheirFractions) {
   }
 }
 
-PressureMoments moments_under(const Contact& contact, std::uint32_t pillars, ForceField& forces) {
+PressureMoments moments_under(const ClosedFormContact& contact, std::uint32_t pillars,
+                              ForceField& forces) {
   PressureMoments moments(std::size_t{pillars} * pillars);
   add_contact(contact, contact.path.front(), kPitch, forces);
   add_pressure_moments(contact, contact.path.front(), kPitch, pillars, pillars, moments);
@@ -118,7 +119,7 @@ TEST(PressureMoments, AddUpToTheMomentOfTheLoad) {
   for (const auto shape :
        {ContactShape::sphere, ContactShape::flat_punch, ContactShape::cylinder}) {
     for (const double radius : {0.3, 1.0, 3.7}) {
-      const Contact contact = pressed(shape, radius, 0.41, -0.83);
+      const ClosedFormContact contact = pressed(shape, radius, 0.41, -0.83);
       ForceField forces(kPillars, kPillars);
       const PressureMoments moments = moments_under(contact, kPillars, forces);
       double x = 0;
@@ -137,7 +138,7 @@ TEST(PressureMoments, AddUpToTheMomentOfTheLoad) {
 TEST(PressureMoments, AreTheIntegralsOfHertzsPressure) {
   constexpr std::uint32_t kPillars = 9;
   constexpr int kPoints = 500;
-  const Contact ball = pressed(ContactShape::sphere, 3, 0.2, 0.5);
+  const ClosedFormContact ball = pressed(ContactShape::sphere, 3, 0.2, 0.5);
   ForceField forces(kPillars, kPillars);
   const PressureMoments moments = moments_under(ball, kPillars, forces);
   for (const std::size_t pillar : {40U, 41U, 31U, 23U, 60U}) {
@@ -162,15 +163,15 @@ TEST(PressureMoments, AreTheIntegralsOfHertzsPressure) {
 }
 
 /// Its pressure is even on each of 4 x 4 cells, which lacks 1/16 of the moment of an even gradient.
-TEST(PressureMoments, OfABodyAreThoseOfItsClosedForm) {
+TEST(PressureMoments, OfAnIndenterAreThoseOfItsClosedForm) {
   Scene scene = bare_scene(15, 15);
-  Body ball;
-  ball.shape = BodyShape::sphere;
+  Indenter ball;
+  ball.shape = IndenterShape::sphere;
   ball.radius_mm = 20;
   ball.friction = 0;
   ball.path = {{0, 0.3, -0.2, 0, 5}};
-  scene.bodies = {ball};
-  BodyHistory history(scene, 0);
+  scene.indenters = {ball};
+  IndenterHistory history(scene, 0);
   // Hertz: a³ = 3PR/(4E*), E* = 4E/3.
   const double radius = std::cbrt(3 * 5 * 20 / (4 * (4.0 / 3)));
   ForceField forces(15, 15);
@@ -178,7 +179,7 @@ TEST(PressureMoments, OfABodyAreThoseOfItsClosedForm) {
       moments_under(pressed(ContactShape::sphere, radius, 0.3, -0.2), 15, forces);
   const double largest = std::ranges::max(moments.x);
   EXPECT_GT(largest, 0.005);
-  for (const BodyForce& force : *history.forces(0)) {
+  for (const IndenterForce& force : *history.forces(0)) {
     EXPECT_NEAR(force.moment_x, moments.x[force.pillar], 0.1 * largest) << force.pillar;
     EXPECT_NEAR(force.moment_y, moments.y[force.pillar], 0.1 * largest) << force.pillar;
   }
@@ -188,7 +189,7 @@ TEST(PressureMoments, OfABodyAreThoseOfItsClosedForm) {
 /// large ball g is −p₀ (x, y)/a² / sqrt(1 − (x² + y²)/a²).
 TEST(PillarArm, ReadsAPressureGradientAsShearTowardsTheHigherPressure) {
   Scene scene = bare_scene(41, 41);
-  Contact ball = pressed(ContactShape::sphere, 200, -60, 25);
+  ClosedFormContact ball = pressed(ContactShape::sphere, 200, -60, 25);
   ball.reference_load_n = 40000;
   ball.path.front().load_n = 40000;
   scene.load = std::vector{ball};

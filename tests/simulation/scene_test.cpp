@@ -12,8 +12,8 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/simulator.h"
-#include "simulation/body/body_path.h"
 #include "simulation/closed_form/contact_traction.h"
+#include "simulation/indenter/indenter_path.h"
 #include "simulation/scene/scene_limits.h"
 
 namespace pillarfield {
@@ -152,9 +152,9 @@ load_n = 0.5
   EXPECT_EQ(scene.estimator, Estimator::direct);
   EXPECT_TRUE(scene.angles);
   EXPECT_TRUE(scene.uncertainty);
-  const auto& contacts = std::get<std::vector<Contact>>(scene.load);
+  const auto& contacts = std::get<std::vector<ClosedFormContact>>(scene.load);
   ASSERT_EQ(contacts.size(), 2U);
-  const Contact& roller = contacts[0];
+  const ClosedFormContact& roller = contacts[0];
   EXPECT_EQ(roller.shape, ContactShape::cylinder);
   EXPECT_EQ(roller.motion, ContactMotion::roll);
   EXPECT_EQ(roller.contact_radius_mm, 3);
@@ -168,7 +168,7 @@ load_n = 0.5
   EXPECT_EQ(roller.path[1].x_mm, -4);
   EXPECT_EQ(roller.path[1].y_mm, 5.5);
   EXPECT_EQ(roller.path[1].load_n, 6);
-  const Contact& punch = contacts[1];
+  const ClosedFormContact& punch = contacts[1];
   EXPECT_TRUE(punch.clockwise);
   ASSERT_EQ(punch.path.size(), 1U);
   EXPECT_EQ(punch.path[0].y_mm, -8);
@@ -177,7 +177,7 @@ load_n = 0.5
 
 TEST(Scene, WhatIsNotListedIsAbsent) {
   const Scene scene = parse_scene("[skin]\nsize_mm = [20, 10]", "bare.toml");
-  EXPECT_TRUE(std::get<std::vector<Contact>>(scene.load).empty());
+  EXPECT_TRUE(std::get<std::vector<ClosedFormContact>>(scene.load).empty());
   EXPECT_FALSE(scene.skin.full_scale_counts);
   EXPECT_FALSE(scene.sensor.adc_bits);
   EXPECT_FALSE(scene.parity_tolerance_counts);
@@ -217,7 +217,7 @@ TEST(Scene, AContactHasItsRadiusAtItsHeaviestLoadUnlessGivenOtherwise) {
         "  { time_s = 1, position_mm = [0, 0], load_n = 7 }]\n" +
             line,
         "contact.toml");
-    return std::get<std::vector<Contact>>(scene.load).at(0).reference_load_n;
+    return std::get<std::vector<ClosedFormContact>>(scene.load).at(0).reference_load_n;
   };
   EXPECT_EQ(reference_load(""), 7);
   EXPECT_EQ(reference_load("reference_load_n = 5"), 5);
@@ -288,14 +288,14 @@ TEST(ShippedScenes, AreTheOnesOfTheDocumentation) {
   }
 }
 
-/// The truth's total load is that of the contacts and bodies, so none of them reaches beyond the
+/// The truth's total load is that of the contacts and indenters, so none of them reaches beyond the
 /// skin.
 void expect_whole_load(const Scene& scene, double time_s, const ForceField& truth) {
-  const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load);
+  const auto* contacts = std::get_if<std::vector<ClosedFormContact>>(&scene.load);
   if (!contacts) return;
   double load = 0;
-  for (const Contact& contact : *contacts) load += state_at(contact, time_s).load_n;
-  for (const Body& body : scene.bodies) load += state_at(body, time_s).load_n;
+  for (const ClosedFormContact& contact : *contacts) load += state_at(contact, time_s).load_n;
+  for (const Indenter& indenter : scene.indenters) load += state_at(indenter, time_s).load_n;
   double sum = 0;
   for (const float normal : truth.normal) sum += double{normal};
   EXPECT_NEAR(sum, load, 1e-6 * load);
@@ -330,7 +330,7 @@ TEST(ShippedScenes, ParseAndRenderTheirFirstAndLastFrame) {
   }
 }
 
-double reach_of(const Contact& contact, const ContactKey& state) {
+double reach_of(const ClosedFormContact& contact, const ContactKey& state) {
   const double radius = contact_radius_mm(contact, state.load_n);
   return contact.shape == ContactShape::cylinder ? std::hypot(radius, contact.length_mm / 2)
                                                  : radius;
@@ -340,7 +340,7 @@ double reach_of(const Contact& contact, const ContactKey& state) {
 TEST(ShippedScenes, KeepTheirContactsApart) {
   for (const auto& path : shipped_scenes()) {
     const Scene scene = load_scene(path);
-    const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load);
+    const auto* contacts = std::get_if<std::vector<ClosedFormContact>>(&scene.load);
     if (!contacts) continue;
     for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
       const double time = frame / scene.rate_hz;
@@ -381,7 +381,8 @@ TEST(ShippedScenes, TheDemoUsesTheScaleAndShowsEveryKindOfContact) {
   simulator.render(30, raw, truth);
   EXPECT_GT(std::ranges::max(raw.readings<std::uint8_t>()), 150);
   std::set<std::pair<ContactShape, ContactMotion>> kinds;
-  for (const Contact& contact : std::get<std::vector<Contact>>(simulator.scene().load)) {
+  for (const ClosedFormContact& contact :
+       std::get<std::vector<ClosedFormContact>>(simulator.scene().load)) {
     kinds.emplace(contact.shape, contact.motion);
   }
   EXPECT_EQ(kinds.size(), 6U);
@@ -433,7 +434,7 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
   for (const auto& quantity : kWireQuantities) keys.emplace_back(quantity.key);
   for (const auto& quantity : kSkinQuantities) keys.emplace_back(quantity.key);
   for (const auto& quantity : kSensorQuantities) keys.emplace_back(quantity.key);
-  for (const auto& [quantity, required, applies] : kBodyQuantities) {
+  for (const auto& [quantity, required, applies] : kIndenterQuantities) {
     keys.emplace_back(quantity.key);
   }
   for (const char* key :

@@ -153,7 +153,7 @@ TEST(SceneWithMemory, HasTheSameFramesInAnyOrder) {
   scene.sensor.hysteresis = 0.1;
   scene.sensor.creep_per_decade = 0.1;
   scene.sensor.noise_counts = 0.5;
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 3;
   ball.reference_load_n = 10;
   ball.path = {{0, -2, 0, 10}, {0.03, 2, 1, 20}, {0.06, 0, 0, 0}};

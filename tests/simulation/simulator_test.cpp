@@ -32,7 +32,7 @@ Scene noisy_scene(std::uint64_t seed) {
   scene.sensor.adc_bits = 8;
   scene.frames = 10;
   scene.seed = seed;
-  Contact ball;
+  ClosedFormContact ball;
   ball.motion = ContactMotion::slide;
   ball.contact_radius_mm = 8;
   ball.reference_load_n = 20;
@@ -152,13 +152,13 @@ TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfASensorWithAMemory) {
   expect_same_frames(scene, 11);
 }
 
-TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfABody) {
+TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfAnIndenter) {
   Scene scene = noisy_scene(4);
-  scene.load = std::vector<Contact>();
-  Body ball;
+  scene.load = std::vector<ClosedFormContact>();
+  Indenter ball;
   ball.path = {{0, -1, 0, 0, 2}, {0.05, 1, 0, 10, 3}};
-  scene.bodies = {ball, ball};
-  scene.bodies.back().path = {{0, 5, 5, 0, 2}, {0.05, 4, 5, 0, 1}};
+  scene.indenters = {ball, ball};
+  scene.indenters.back().path = {{0, 5, 5, 0, 2}, {0.05, 4, 5, 0, 1}};
   expect_same_frames(scene, 6);
 }
 
@@ -191,11 +191,11 @@ TEST(Simulator, FramesFollowTheClockAndThePath) {
 
 TEST(Simulator, ContactsAddUp) {
   Scene scene = noisy_scene(1);
-  const Contact ball = std::get<std::vector<Contact>>(scene.load).front();
-  Contact punch = ball;
+  const ClosedFormContact ball = std::get<std::vector<ClosedFormContact>>(scene.load).front();
+  ClosedFormContact punch = ball;
   punch.shape = ContactShape::flat_punch;
   punch.path = {{0, 3, 3, 7}};
-  const auto normal_of = [&](std::vector<Contact> load) {
+  const auto normal_of = [&](std::vector<ClosedFormContact> load) {
     scene.load = std::move(load);
     return render(Simulator(scene), 0).truth.normal;
   };
@@ -285,7 +285,7 @@ TEST(Simulator, AnOddRowOrColumnIsReadWithoutLoad) {
   scene.sensor.tare_counts = 2;
   scene.skin.rows = 33;
   scene.skin.cols = 27;
-  std::get<std::vector<Contact>>(scene.load).front().contact_radius_mm = 30;
+  std::get<std::vector<ClosedFormContact>>(scene.load).front().contact_radius_mm = 30;
   const Rendered frame = render(Simulator(scene), 0);
   const auto raw = frame.raw.readings<float>();
   EXPECT_GT(raw[0], 2);
@@ -314,7 +314,9 @@ TEST(Simulator, RefusesBuffersThatDoNotFit) {
 
 TEST(Simulator, RefusesScenesOutOfRange) {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const auto ball = [](Scene& s) -> Contact& { return std::get<std::vector<Contact>>(s.load)[0]; };
+  const auto ball = [](Scene& s) -> ClosedFormContact& {
+    return std::get<std::vector<ClosedFormContact>>(s.load)[0];
+  };
   const std::vector<std::function<void(Scene&)>> spoilers = {
       [](Scene& s) { s.skin.rows = 0; },
       [](Scene& s) { s.skin.rows = s.skin.cols = 60000; },

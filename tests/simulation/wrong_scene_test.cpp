@@ -39,7 +39,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
   const std::vector<WrongScene> table = {
       {"sise = 3",
        "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, direction_sweep, "
-       "contact, body, skin, sensor, surface, time, solver"},
+       "contact, indenter, skin, sensor, surface, time, solver"},
       {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",
@@ -65,7 +65,8 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:2: key 'power_law_reference_counts' in [sensor] is missing; allowed: a number in "
        "[0.001, 1000000]"},
       {"[sensor]\nresponse_curve = [[1, 2], [3]]",
-       "s.toml:3: key 'response_curve' in [sensor] has an element that is no such pair; allowed: a "
+       "s.toml:3: key 'response_curve' in [sensor] has an element that is not such a pair; "
+       "allowed: a "
        "list of pairs, each a number in (0, 1000000000]"},
       {"[sensor]\nresponse_curve = [[1, 2], [3, 2]]",
        "s.toml:3: key 'response_curve' in [sensor] has [3, 2] after [1, 2]; allowed: readings and "

@@ -33,7 +33,7 @@ Processor processor_for(const Device& device, const SolverPlan& plan,
       {.memory = options.memory, .frames_in_flight = slots, .on_compiling = options.on_compiling}};
 }
 
-/// Without the function that reports to whom opens a source now.
+/// Drops on_compiling, which refers to the caller that is opening the source.
 ProducerOptions options_for_later(ProducerOptions options) {
   options.on_compiling = {};
   return options;

@@ -31,7 +31,7 @@ def srgb_of(lab):
 def entry_of(lab):
     colour = srgb_of(lab)
     if min(colour) < -0.002 or max(colour) > 1.002:
-        raise ValueError(f"{lab} is no colour of sRGB: {colour}")
+        raise ValueError(f"{lab} is not a colour of sRGB: {colour}")
     red, green, blue = (round(255 * min(max(c, 0), 1)) for c in colour)
     return red << 16 | green << 8 | blue
 

@@ -53,9 +53,10 @@ CLI::Validator one_of(const std::vector<std::string>& words, const std::string& 
 
 CLI::Validator no_stream() {
   const auto error_of = [](const std::string& text) -> std::string {
-    return text == "-" ? "'-' is no file; 'pillarfield stream -' reads frames from standard input, "
-                         "and ./- is a file of this name"
-                       : "";
+    return text == "-"
+               ? "'-' is not a file; 'pillarfield stream -' reads frames from standard input, "
+                 "and ./- is a file of this name"
+               : "";
   };
   return {error_of, ""};
 }

@@ -240,10 +240,10 @@ std::string StreamSession::obey(std::uint64_t client, std::string_view line) {
       return done_line(verb);
     }
   }
-  return failed_line(
-      fmt::format("'{}' is no control line; there are: tare [SECONDS] [preloaded], pause, resume, "
-                  "record FILE, record stop, health, quit",
-                  printable(line)));
+  return failed_line(fmt::format(
+      "'{}' is not a control line; there are: tare [SECONDS] [preloaded], pause, resume, "
+      "record FILE, record stop, health, quit",
+      printable(line)));
 }
 
 std::string StreamSession::start_tare(std::uint64_t client, const std::vector<std::string>& words) {
@@ -258,7 +258,7 @@ std::string StreamSession::start_tare(std::uint64_t client, const std::vector<st
     const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), seconds);
     if (status != std::errc() || end != word.data() + word.size() ||
         !(seconds > 0 && seconds <= kMostTareSeconds)) {
-      return failed_line(fmt::format("tare: '{}' is no duration; give above 0 to {:g} seconds",
+      return failed_line(fmt::format("tare: '{}' is not a duration; give above 0 to {:g} seconds",
                                      printable(word), kMostTareSeconds));
     }
   }

@@ -38,7 +38,7 @@ struct StreamHealth {
   std::uint64_t late = 0;         ///< packets that came after their frame was delivered or lost
   std::uint64_t duplicates = 0;   ///< packets that came twice
   std::uint64_t reordered = 0;    ///< packets that came after one of a later frame, in time
-  std::uint64_t invalid = 0;      ///< packets that are no frame of this stream
+  std::uint64_t invalid = 0;      ///< packets that are not a frame of this stream
   std::uint64_t restarts = 0;     ///< new sessions, or sequences that began anew
   std::uint64_t clock_jumps = 0;  ///< sensor times that went back, or ahead by over a second
   std::uint64_t overrun = 0;      ///< packets or ring slots that came faster than they were read

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "pillarfield/body.h"
-#include "pillarfield/contact.h"
+#include "pillarfield/closed_form_contact.h"
+#include "pillarfield/indenter.h"
 #include "pillarfield/sensor_effects.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/solver_plan.h"
@@ -71,7 +71,7 @@ struct Bending {
 
 /// Height map of the surface under the skin.
 struct SurfaceMap {
-  std::filesystem::path path;              ///< .npy or .png, as Body::height_map
+  std::filesystem::path path;              ///< .npy or .png, as Indenter::height_map
   std::array<double, 2> size_mm = {0, 0};  ///< along x and y; it must cover the skin
   double depth_mm = 0;                     ///< height of its highest point above its lowest
 };
@@ -110,9 +110,9 @@ struct Scene {
   bool uncertainty = false;
   std::optional<double> baseline_time_s;  ///< time constant with which the tare follows drift
   std::vector<std::string> warnings;      ///< warnings about its file, such as former names
-  std::variant<std::vector<Contact>, DirectionSweep> load;
-  std::vector<Body> bodies;   ///< combined with contacts, not with a DirectionSweep
-  double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies
+  std::variant<std::vector<ClosedFormContact>, DirectionSweep> load;
+  std::vector<Indenter> indenters;  ///< combined with contacts, not with a DirectionSweep
+  double modulus_kpa = 1000;        ///< Young's modulus of the skin under indenters
 };
 
 /// Sets the solver's options, and the noise of the sensor if any, as the scene says. The skin and

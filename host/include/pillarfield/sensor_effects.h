@@ -109,7 +109,7 @@ struct SensorEffects {
   }
 };
 
-/// True if tares are an offset behind the wires, and so are no load of them.
+/// True if tares are an offset behind the wires, and so do not load them.
 [[nodiscard]] constexpr bool has_offset_tares(const SensorEffects& effects) {
   return effects.wires && effects.wires->tares == TareOrigin::offset;
 }

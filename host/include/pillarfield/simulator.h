@@ -11,17 +11,17 @@
 
 namespace pillarfield {
 
-/// Makes frames with exact truth from a scene: integrates the tractions of its contacts and bodies
-/// over each pillar and applies the pillar model (2) and the scene's sensor.
+/// Makes frames with exact truth from a scene: integrates the tractions of its contacts and
+/// indenters over each pillar and applies the pillar model (2) and the scene's sensor.
 ///
 /// A frame depends only on the scene, its seed and the index, so frames may be made in any order
-/// and in several threads at once. Bodies have a history: render() first solves all earlier frames
-/// not solved yet, about 0.1 s each, in one thread per body. Hysteresis and creep have one too:
-/// render() of a frame before the last one starts again from frame 0.
+/// and in several threads at once. Indenters have a history: render() first solves all earlier
+/// frames not solved yet, about 0.1 s each, in one thread per indenter. Hysteresis and creep have
+/// one too: render() of a frame before the last one starts again from frame 0.
 class Simulator {
  public:
   /// Draws the sensor (sensitivities, tares, dead sensels) from the scene's seed and reads the
-  /// height maps of bodies. Throws Error if the scene is out of range or a map cannot be read.
+  /// height maps of indenters. Throws Error if the scene is out of range or a map cannot be read.
   explicit Simulator(Scene scene);
   ~Simulator();
   Simulator(Simulator&&) noexcept;
@@ -40,7 +40,7 @@ class Simulator {
 
   /// Overwrites `raw`, [sensel rows, cols] of sensel_type(), and `truth`, [pillar rows, cols], N.
   /// The status of `truth` has the bits of the sensels that its pillar loads. Throws Error if
-  /// the contact of a body cannot be solved, or is_interrupted() becomes true meanwhile.
+  /// the contact of an indenter cannot be solved, or is_interrupted() becomes true meanwhile.
   void render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const;
 
   /// What render_all() calls with the index, readings and truth of a frame.

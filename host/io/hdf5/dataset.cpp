@@ -89,7 +89,7 @@ std::unique_ptr<NumberArray> open_dataset(const std::shared_ptr<const File>& ope
   }
   const std::size_t dimensions = dimensions_of(open_object(file, path.c_str()));
   if (dimensions < 1 || dimensions > 3) {
-    throw Error(file.path.string(), fmt::format("{} is no dataset of 1 to 3 dimensions", path),
+    throw Error(file.path.string(), fmt::format("{} is not a dataset of 1 to 3 dimensions", path),
                 "frames need the shape (frames, rows, columns)");
   }
   StoredFrames stored(file, path, dimensions - 1);

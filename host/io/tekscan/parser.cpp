@@ -234,7 +234,7 @@ void Parser::read_newtons(std::string_view cell) {
 void Parser::refuse_cell(std::string_view cell, std::string_view kind,
                          const std::string& mend) const {
   throw Error(fmt::format("{}, column {}", lines_.place(), col_ + 1),
-              cell.empty() ? "the cell is empty" : fmt::format("'{:.60}' is no {}", cell, kind),
+              cell.empty() ? "the cell is empty" : fmt::format("'{:.60}' is not a {}", cell, kind),
               mend);
 }
 

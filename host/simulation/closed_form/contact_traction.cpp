@@ -39,7 +39,7 @@ SpinCorners spin_corners(ContactShape shape) {
 /// A contact at an instant, over the pillars of its bounding box.
 class Footprint {
  public:
-  Footprint(const Contact& contact, const ContactKey& state, const PillarGrid& grid)
+  Footprint(const ClosedFormContact& contact, const ContactKey& state, const PillarGrid& grid)
       : contact_(contact),
         grid_(grid),
         centre_{state.x_mm, state.y_mm},
@@ -101,7 +101,7 @@ class Footprint {
     return shares;
   }
 
-  const Contact& contact_;
+  const ClosedFormContact& contact_;
   const PillarGrid& grid_;
   PlaneVector centre_;
   PlaneVector direction_;
@@ -123,7 +123,8 @@ void add_shares(const Shares& shares, double force_n, const PillarBox& box,
 
 /// Fractions of µP along the direction of motion: those of the pressure in full sliding (C10),
 /// minus the stick zone's reduction, if any.
-Shares tangential_shares(const Contact& contact, const Footprint& footprint, Shares pressure) {
+Shares tangential_shares(const ClosedFormContact& contact, const Footprint& footprint,
+                         Shares pressure) {
   if (contact.motion == ContactMotion::slide) return pressure;
   const Shares stick = footprint.stick();
   for (std::size_t i = 0; i < pressure.size(); ++i) {
@@ -134,13 +135,13 @@ Shares tangential_shares(const Contact& contact, const Footprint& footprint, Sha
 
 }  // namespace
 
-ContactKey state_at(const Contact& contact, double time_s) {
+ContactKey state_at(const ClosedFormContact& contact, double time_s) {
   const auto [from, to, fraction] = place_on(contact.path, time_s);
   return {time_s, std::lerp(from.x_mm, to.x_mm, fraction), std::lerp(from.y_mm, to.y_mm, fraction),
           std::lerp(from.load_n, to.load_n, fraction)};
 }
 
-double contact_radius_mm(const Contact& contact, double load_n) {
+double contact_radius_mm(const ClosedFormContact& contact, double load_n) {
   const double ratio = load_n / contact.reference_load_n;
   switch (contact.shape) {
     case ContactShape::sphere:
@@ -153,7 +154,7 @@ double contact_radius_mm(const Contact& contact, double load_n) {
   return contact.contact_radius_mm;
 }
 
-void add_contact(const Contact& contact, const ContactKey& state, double pitch_mm,
+void add_contact(const ClosedFormContact& contact, const ContactKey& state, double pitch_mm,
                  ForceField& forces) {
   if (!(state.load_n > 0)) return;
   const PillarGrid grid(forces.rows, forces.cols, pitch_mm);
@@ -178,8 +179,9 @@ void add_contact(const Contact& contact, const ContactKey& state, double pitch_m
   add(tangential, friction_n * footprint.direction().y, forces.shear_y);
 }
 
-void add_pressure_moments(const Contact& contact, const ContactKey& state, double pitch_mm,
-                          std::uint32_t rows, std::uint32_t cols, PressureMoments& moments) {
+void add_pressure_moments(const ClosedFormContact& contact, const ContactKey& state,
+                          double pitch_mm, std::uint32_t rows, std::uint32_t cols,
+                          PressureMoments& moments) {
   if (!(state.load_n > 0)) return;
   const PillarGrid grid(rows, cols, pitch_mm);
   const Footprint footprint(contact, state, grid);

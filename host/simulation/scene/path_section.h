@@ -13,8 +13,8 @@
 
 namespace pillarfield {
 
-/// Reads the path of a contact or body: the tables of `path` by `read`, with increasing time_s; or
-/// a single key from the section itself, whose names exclude `path`. Throws Error with the line.
+/// Reads the path of a contact or indenter: the tables of `path` by `read`, with increasing time_s;
+/// or a single key from the section itself, whose names exclude `path`. Throws Error with the line.
 template <class Key, class Read>
 std::vector<Key> read_path(TomlSection& section, const std::string& title,
                            std::initializer_list<std::string_view> names, const Read& read) {

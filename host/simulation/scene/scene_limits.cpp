@@ -7,10 +7,10 @@
 #include <cstddef>
 
 #include "pillarfield/error.h"
-#include "simulation/body/body_path.h"
 #include "simulation/closed_form/direction_sweep.h"
 #include "simulation/effects/known_effects.h"
 #include "simulation/effects/memory_history.h"
+#include "simulation/indenter/indenter_path.h"
 
 namespace pillarfield {
 namespace {
@@ -87,9 +87,10 @@ void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string
                           largest));
 }
 
-void check_contact(const Contact& contact, const std::string& where) {
+void check_contact(const ClosedFormContact& contact, const std::string& where) {
   if (!is_possible(contact.shape, contact.motion)) {
-    throw Error(where, "this shape does not move so", "see docs/scenes.md for what goes together");
+    throw Error(where, "this shape cannot have this motion",
+                "see docs/scenes.md for what goes together");
   }
   for (const auto& [quantity, required, applies] : kContactQuantities) {
     if (!applies(contact.shape, contact.motion)) continue;
@@ -98,63 +99,66 @@ void check_contact(const Contact& contact, const std::string& where) {
   check_path(contact.path, where);
 }
 
-void check_edge(const Body& body, const std::string& where) {
-  const double most = body.shape == BodyShape::cylinder ? body.length_mm / 2 : body.radius_mm;
-  if (body.edge_radius_mm <= most) return;
-  throw Error(
-      where, fmt::format("edge_radius_mm is {}", body.edge_radius_mm),
-      body.shape == BodyShape::cylinder ? "it may be half of length_mm" : "it may be radius_mm");
+void check_edge(const Indenter& indenter, const std::string& where) {
+  const double most =
+      indenter.shape == IndenterShape::cylinder ? indenter.length_mm / 2 : indenter.radius_mm;
+  if (indenter.edge_radius_mm <= most) return;
+  throw Error(where, fmt::format("edge_radius_mm is {}", indenter.edge_radius_mm),
+              indenter.shape == IndenterShape::cylinder ? "it may be half of length_mm"
+                                                        : "it may be radius_mm");
 }
 
-void check_height_map(const Body& body, const Skin& skin, const std::string& where) {
-  if (body.height_map.empty()) throw Error(where, "height_map is missing", "name a file");
+void check_height_map(const Indenter& indenter, const Skin& skin, const std::string& where) {
+  if (indenter.height_map.empty()) throw Error(where, "height_map is missing", "name a file");
   const double most_mm = (kMaxContactPillars - 1) * skin.pillar_pitch_mm();
-  for (const double size : body.height_map_size_mm) {
-    check_range(where, "height_map_size_mm", size, kBodySizeMm);
+  for (const double size : indenter.height_map_size_mm) {
+    check_range(where, "height_map_size_mm", size, kIndenterSizeMm);
     if (size <= most_mm) continue;
     throw Error(where, fmt::format("height_map_size_mm is {}", size),
                 fmt::format("on this skin it may be {:.6g}", most_mm));
   }
 }
 
-void check_steps(const Body& body, const Scene& scene, const std::string& where) {
-  check_range(where, "substeps", body.substeps, {1, kMaxSubsteps});
-  const double steps = steps_of(body, scene.rate_hz, scene.frames);
-  if (steps <= static_cast<double>(kMaxBodySteps)) return;
+void check_steps(const Indenter& indenter, const Scene& scene, const std::string& where) {
+  check_range(where, "substeps", indenter.substeps, {1, kMaxSubsteps});
+  const double steps = steps_of(indenter, scene.rate_hz, scene.frames);
+  if (steps <= static_cast<double>(kMaxIndenterSteps)) return;
   throw Error(
       where, fmt::format("it takes {:.0f} steps", steps),
-      fmt::format("its path may have {}: fewer frames, substeps or seconds", kMaxBodySteps));
+      fmt::format("its path may have {}: fewer frames, substeps or seconds", kMaxIndenterSteps));
 }
 
-void check_body(const Body& body, const Scene& scene, const std::string& where) {
-  for (const auto& [quantity, required, applies] : kBodyQuantities) {
-    if (!applies(body.shape)) continue;
-    check_range(where, quantity.key, body.*quantity.member, quantity.range);
+void check_indenter(const Indenter& indenter, const Scene& scene, const std::string& where) {
+  for (const auto& [quantity, required, applies] : kIndenterQuantities) {
+    if (!applies(indenter.shape)) continue;
+    check_range(where, quantity.key, indenter.*quantity.member, quantity.range);
   }
-  if (body.shape == BodyShape::ellipsoid) {
-    for (const double radius : body.radii_mm) check_range(where, "radii_mm", radius, kBodySizeMm);
+  if (indenter.shape == IndenterShape::ellipsoid) {
+    for (const double radius : indenter.radii_mm)
+      check_range(where, "radii_mm", radius, kIndenterSizeMm);
   }
-  if (body.shape == BodyShape::cylinder || body.shape == BodyShape::punch) check_edge(body, where);
-  if (body.shape == BodyShape::height_map) check_height_map(body, scene.skin, where);
-  check_path(body.path, where);
-  for (const BodyKey& key : body.path) {
+  if (indenter.shape == IndenterShape::cylinder || indenter.shape == IndenterShape::punch)
+    check_edge(indenter, where);
+  if (indenter.shape == IndenterShape::height_map) check_height_map(indenter, scene.skin, where);
+  check_path(indenter.path, where);
+  for (const IndenterKey& key : indenter.path) {
     check_range(where, "angle_deg", key.angle_deg, kPathAngleDeg);
   }
-  check_steps(body, scene, where);
+  check_steps(indenter, scene, where);
 }
 
-void check_bodies(const Scene& scene, const char* where) {
+void check_indenters(const Scene& scene, const char* where) {
   check_range(where, "modulus_kpa", scene.modulus_kpa, kModulusKpa);
-  if (scene.bodies.size() > kMaxBodies) {
-    throw Error(where, fmt::format("the scene has {} bodies", scene.bodies.size()),
-                fmt::format("it may have {}", kMaxBodies));
+  if (scene.indenters.size() > kMaxIndenters) {
+    throw Error(where, fmt::format("the scene has {} indenters", scene.indenters.size()),
+                fmt::format("it may have {}", kMaxIndenters));
   }
-  if (!scene.bodies.empty() && std::holds_alternative<DirectionSweep>(scene.load)) {
-    throw Error(where, "the scene has bodies and a direction sweep", "leave one of them out");
+  if (!scene.indenters.empty() && std::holds_alternative<DirectionSweep>(scene.load)) {
+    throw Error(where, "the scene has indenters and a direction sweep", "leave one of them out");
   }
   int number = 0;
-  for (const Body& body : scene.bodies) {
-    check_body(body, scene, fmt::format("{}: body {}", where, ++number));
+  for (const Indenter& indenter : scene.indenters) {
+    check_indenter(indenter, scene, fmt::format("{}: indenter {}", where, ++number));
   }
 }
 
@@ -213,13 +217,13 @@ void check(const Scene& scene, const char* where) {
   if (scene.baseline_time_s) {
     check_range(where, "baseline_time_s", *scene.baseline_time_s, kBaselineTimeS);
   }
-  check_bodies(scene, where);
+  check_indenters(scene, where);
   if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load)) {
     check_direction_sweep(*sweep, scene.skin, where);
     return;
   }
   int number = 0;
-  for (const Contact& contact : std::get<std::vector<Contact>>(scene.load)) {
+  for (const ClosedFormContact& contact : std::get<std::vector<ClosedFormContact>>(scene.load)) {
     check_contact(contact, fmt::format("{}: contact {}", where, ++number));
   }
 }

@@ -59,7 +59,7 @@ inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceC
 
 /// A number of a contact, and the shapes and motions to which it applies.
 struct ContactQuantity {
-  Quantity<Contact> quantity;
+  Quantity<ClosedFormContact> quantity;
   bool required = false;
   bool (*applies)(ContactShape shape, ContactMotion motion) = nullptr;
 };
@@ -75,69 +75,74 @@ struct ContactQuantity {
 }
 
 inline constexpr std::array<ContactQuantity, 6> kContactQuantities = {{
-    {{"contact_radius_mm", &Contact::contact_radius_mm, {1e-3, 1e4}},
+    {{"contact_radius_mm", &ClosedFormContact::contact_radius_mm, {1e-3, 1e4}},
      true,
      [](ContactShape, ContactMotion) { return true; }},
-    {{"reference_load_n", &Contact::reference_load_n, {1e-6, 1e6}},
+    {{"reference_load_n", &ClosedFormContact::reference_load_n, {1e-6, 1e6}},
      false,
      [](ContactShape shape, ContactMotion) { return shape != ContactShape::flat_punch; }},
-    {{"length_mm", &Contact::length_mm, {1e-3, 1e5}},
+    {{"length_mm", &ClosedFormContact::length_mm, {1e-3, 1e5}},
      true,
      [](ContactShape shape, ContactMotion) { return shape == ContactShape::cylinder; }},
-    {{"friction", &Contact::friction, {0, 10}},
+    {{"friction", &ClosedFormContact::friction, {0, 10}},
      true,
      [](ContactShape, ContactMotion motion) { return motion != ContactMotion::press; }},
-    {{"direction_deg", &Contact::direction_deg, {-360, 360}},
+    {{"direction_deg", &ClosedFormContact::direction_deg, {-360, 360}},
      false,
      [](ContactShape shape, ContactMotion motion) {
        return shape == ContactShape::cylinder || is_directed(motion);
      }},
-    {{"tangential_ratio", &Contact::tangential_ratio, {0, 1, true, true}},
+    {{"tangential_ratio", &ClosedFormContact::tangential_ratio, {0, 1, true, true}},
      true,
      [](ContactShape, ContactMotion motion) { return sticks(motion); }},
 }};
 
-/// A number of a body, and the shapes to which it applies.
-struct BodyQuantity {
-  Quantity<Body> quantity;
+/// A number of an indenter, and the shapes to which it applies.
+struct IndenterQuantity {
+  Quantity<Indenter> quantity;
   bool required = false;
-  bool (*applies)(BodyShape shape) = nullptr;
+  bool (*applies)(IndenterShape shape) = nullptr;
 };
 
-/// Whether a body of this shape has a single radius.
-[[nodiscard]] constexpr bool has_radius(BodyShape shape) {
-  return shape == BodyShape::sphere || shape == BodyShape::cylinder || shape == BodyShape::punch;
+/// Whether an indenter of this shape has a single radius.
+[[nodiscard]] constexpr bool has_radius(IndenterShape shape) {
+  return shape == IndenterShape::sphere || shape == IndenterShape::cylinder ||
+         shape == IndenterShape::punch;
 }
 
-inline constexpr Range kBodySizeMm = {1e-2, 1e4};
-inline constexpr std::array<BodyQuantity, 10> kBodyQuantities = {{
-    {{"radius_mm", &Body::radius_mm, kBodySizeMm}, true, has_radius},
-    {{"length_mm", &Body::length_mm, kBodySizeMm},
+inline constexpr Range kIndenterSizeMm = {1e-2, 1e4};
+inline constexpr std::array<IndenterQuantity, 10> kIndenterQuantities = {{
+    {{"radius_mm", &Indenter::radius_mm, kIndenterSizeMm}, true, has_radius},
+    {{"length_mm", &Indenter::length_mm, kIndenterSizeMm},
      true,
-     [](BodyShape shape) { return shape == BodyShape::cylinder; }},
-    {{"edge_radius_mm", &Body::edge_radius_mm, {0, 1e4}},
+     [](IndenterShape shape) { return shape == IndenterShape::cylinder; }},
+    {{"edge_radius_mm", &Indenter::edge_radius_mm, {0, 1e4}},
      false,
-     [](BodyShape shape) { return shape == BodyShape::cylinder || shape == BodyShape::punch; }},
-    {{"height_map_depth_mm", &Body::height_map_depth_mm, {0, 1e3, true}},
+     [](IndenterShape shape) {
+       return shape == IndenterShape::cylinder || shape == IndenterShape::punch;
+     }},
+    {{"height_map_depth_mm", &Indenter::height_map_depth_mm, {0, 1e3, true}},
      true,
-     [](BodyShape shape) { return shape == BodyShape::height_map; }},
-    {{"roughness_um", &Body::roughness_um, {0, 1e4}}, false, [](BodyShape) { return true; }},
-    {{"roughness_exponent", &Body::roughness_exponent, {0, 1, true}},
+     [](IndenterShape shape) { return shape == IndenterShape::height_map; }},
+    {{"roughness_um", &Indenter::roughness_um, {0, 1e4}},
      false,
-     [](BodyShape) { return true; }},
-    {{"roughness_length_mm", &Body::roughness_length_mm, kBodySizeMm},
+     [](IndenterShape) { return true; }},
+    {{"roughness_exponent", &Indenter::roughness_exponent, {0, 1, true}},
      false,
-     [](BodyShape) { return true; }},
-    {{"friction", &Body::friction, {0, 10}}, true, [](BodyShape) { return true; }},
-    {{"friction_variation", &Body::friction_variation, {0, 1}},
+     [](IndenterShape) { return true; }},
+    {{"roughness_length_mm", &Indenter::roughness_length_mm, kIndenterSizeMm},
      false,
-     [](BodyShape) { return true; }},
-    {{"friction_variation_length_mm", &Body::friction_variation_length_mm, kBodySizeMm},
+     [](IndenterShape) { return true; }},
+    {{"friction", &Indenter::friction, {0, 10}}, true, [](IndenterShape) { return true; }},
+    {{"friction_variation", &Indenter::friction_variation, {0, 1}},
      false,
-     [](BodyShape) { return true; }},
+     [](IndenterShape) { return true; }},
+    {{"friction_variation_length_mm", &Indenter::friction_variation_length_mm, kIndenterSizeMm},
+     false,
+     [](IndenterShape) { return true; }},
 }};
 inline constexpr std::int64_t kMaxSubsteps = 1000;
-inline constexpr std::size_t kMaxBodies = 100;
+inline constexpr std::size_t kMaxIndenters = 100;
 inline constexpr Range kModulusKpa = {1, 1e6};
 
 inline constexpr Range kPathTimeS = {0, 1e9};
@@ -177,12 +182,12 @@ inline constexpr std::array<Named<ContactMotion>, 5> kMotions = {{
     {"roll", ContactMotion::roll},
 }};
 
-inline constexpr std::array<Named<BodyShape>, 5> kBodyShapes = {{
-    {"sphere", BodyShape::sphere},
-    {"ellipsoid", BodyShape::ellipsoid},
-    {"cylinder", BodyShape::cylinder},
-    {"punch", BodyShape::punch},
-    {"height_map", BodyShape::height_map},
+inline constexpr std::array<Named<IndenterShape>, 5> kIndenterShapes = {{
+    {"sphere", IndenterShape::sphere},
+    {"ellipsoid", IndenterShape::ellipsoid},
+    {"cylinder", IndenterShape::cylinder},
+    {"punch", IndenterShape::punch},
+    {"height_map", IndenterShape::height_map},
 }};
 
 inline constexpr std::array<Named<SurfaceShape>, 4> kSurfaceShapes = {{

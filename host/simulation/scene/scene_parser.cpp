@@ -9,7 +9,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
 #include "simulation/closed_form/direction_sweep.h"
-#include "simulation/scene/body_section.h"
+#include "simulation/scene/indenter_section.h"
 #include "simulation/scene/named_value.h"
 #include "simulation/scene/path_section.h"
 #include "simulation/scene/scene_limits.h"
@@ -66,11 +66,11 @@ void read_bending(TomlSection& section, Scene& scene) {
 SurfaceMap read_surface_map(TomlSection& section, const std::filesystem::path& folder) {
   SurfaceMap map;
   map.path = read_height_map_path(section, folder);
-  const auto size = section.numbers("height_map_size_mm", 2, kBodySizeMm);
+  const auto size = section.numbers("height_map_size_mm", 2, kIndenterSizeMm);
   if (!size) section.fail_missing("height_map_size_mm", "a list of 2, [x, y] in millimetres");
   map.size_mm = {(*size)[0], (*size)[1]};
-  const auto depth = section.number("height_map_depth_mm", kBodySizeMm);
-  if (!depth) section.fail_missing("height_map_depth_mm", kBodySizeMm.text());
+  const auto depth = section.number("height_map_depth_mm", kIndenterSizeMm);
+  if (!depth) section.fail_missing("height_map_depth_mm", kIndenterSizeMm.text());
   map.depth_mm = *depth;
   return map;
 }
@@ -343,13 +343,13 @@ std::string name_of(ContactShape shape, ContactMotion motion) {
                      kMotions[static_cast<std::size_t>(motion)].name);
 }
 
-void read_shape(TomlSection& section, Contact& contact) {
+void read_shape(TomlSection& section, ClosedFormContact& contact) {
   const auto shape = read_name(section, "shape", kShapes);
   if (!shape) section.fail_missing("shape", quoted(kShapes));
   contact.shape = *shape;
 }
 
-void read_motion(TomlSection& section, Contact& contact) {
+void read_motion(TomlSection& section, ClosedFormContact& contact) {
   std::vector<Named<ContactMotion>> possible;
   for (const auto& motion : kMotions) {
     if (is_possible(contact.shape, motion.value)) possible.push_back(motion);
@@ -363,7 +363,7 @@ void read_motion(TomlSection& section, Contact& contact) {
 }
 
 /// Reads the numbers that apply to the shape and motion; refuses others.
-void read_contact_quantities(TomlSection& section, Contact& contact) {
+void read_contact_quantities(TomlSection& section, ClosedFormContact& contact) {
   for (const auto& [quantity, required, applies] : kContactQuantities) {
     if (!applies(contact.shape, contact.motion)) {
       if (section.has(quantity.key)) {
@@ -393,8 +393,8 @@ double heaviest_load(const std::vector<ContactKey>& path) {
   return heaviest > 0 ? heaviest : 1;
 }
 
-Contact read_contact(TomlSection& section) {
-  Contact contact;
+ClosedFormContact read_contact(TomlSection& section) {
+  ClosedFormContact contact;
   read_shape(section, contact);
   read_motion(section, contact);
   read_contact_quantities(section, contact);
@@ -410,15 +410,22 @@ Contact read_contact(TomlSection& section) {
 
 // The whole
 
-/// Reads the load: a direction sweep, or any number of contacts and bodies. `folder` is the folder
-/// of relative height map paths.
+/// Reads the load: a direction sweep, or any number of contacts and indenters. `folder` is the
+/// folder of relative height map paths.
 void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& scene) {
   const char* const key = root.has("chart") ? "chart" : "direction_sweep";
   TomlSection sweep = root.table(key);
   auto contacts = root.tables("contact", "[[contact]]");
-  auto bodies = root.tables("body", "[[body]]");
+  auto indenters = root.tables("indenter", "[[indenter]]");
+  if (!indenters) {
+    indenters = root.tables("body", "[[body]]");
+    if (indenters) {
+      scene.warnings.emplace_back(
+          "[[body]] is now [[indenter]]; the former name works in this release only");
+    }
+  }
   if (sweep.is_present() && contacts) root.fail(key, "comes with [[contact]]", "one of the two");
-  if (sweep.is_present() && bodies) root.fail(key, "comes with [[body]]", "one of the two");
+  if (sweep.is_present() && indenters) root.fail(key, "comes with [[indenter]]", "one of the two");
   if (root.has("chart")) {
     scene.warnings.emplace_back(
         "[chart] is now [direction_sweep]; the former name works in this release only");
@@ -427,13 +434,14 @@ void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& sc
     scene.load = read_direction_sweep(std::move(sweep), scene.skin);
     return;
   }
-  std::vector<Contact> load;
+  std::vector<ClosedFormContact> load;
   if (contacts) {
     for (TomlSection& contact : *contacts) load.push_back(read_contact(contact));
   }
   scene.load = std::move(load);
-  if (!bodies) return;
-  for (TomlSection& body : *bodies) scene.bodies.push_back(read_body(body, folder));
+  if (!indenters) return;
+  for (TomlSection& indenter : *indenters)
+    scene.indenters.push_back(read_indenter(indenter, folder));
 }
 
 Scene read_scene(TomlSection root, const std::filesystem::path& folder) {

@@ -3,19 +3,19 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
-#include "simulation/body/body_surface.h"
+#include "simulation/indenter/indenter_surface.h"
 
 namespace pillarfield {
 namespace {
 
-/// The relief that a body of this height map has; its depth below the highest point.
+/// The relief that an indenter of this height map has; its depth below the highest point.
 std::unique_ptr<Relief> relief_of(const SurfaceMap& map) {
-  Body body;
-  body.shape = BodyShape::height_map;
-  body.height_map = map.path;
-  body.height_map_size_mm = map.size_mm;
-  body.height_map_depth_mm = map.depth_mm;
-  return make_relief(body);
+  Indenter indenter;
+  indenter.shape = IndenterShape::height_map;
+  indenter.height_map = map.path;
+  indenter.height_map_size_mm = map.size_mm;
+  indenter.height_map_depth_mm = map.depth_mm;
+  return make_relief(indenter);
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ std::optional<std::vector<std::array<double, 2>>> TomlSection::pairs(std::string
     const auto first = is_pair ? number_in(*pair->get(0), range) : std::nullopt;
     const auto second = is_pair ? number_in(*pair->get(1), range) : std::nullopt;
     if (!first || !second) {
-      fail_at(element.source(), key, "has an element that is no such pair", allowed);
+      fail_at(element.source(), key, "has an element that is not such a pair", allowed);
     }
     values.push_back({*first, *second});
   }

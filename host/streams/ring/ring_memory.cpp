@@ -70,7 +70,7 @@ std::string segment_name(const std::string& name) {
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
   if (name.empty() || name.size() > 200 || name.front() == '.' ||
       name.find_first_not_of(kAllowed) != std::string::npos) {
-    throw Error("shm:" + printable(name), "is no name of a ring",
+    throw Error("shm:" + printable(name), "is not the name of a ring",
                 "give up to 200 letters, digits, '.', '_' and '-'");
   }
   return "/" + name;

@@ -88,9 +88,10 @@ bool RingReader::fits(const PillarfieldRing& ring, std::uint64_t bytes) {
   if (valid && layout_ && layout_of(ring) != *layout_) other_ = layout_of(ring);
   if (layout_) return valid && layout_of(ring) == *layout_;
   if (valid) return true;
-  throw Error(name_,
-              kind_ == PILLARFIELD_RING_FRAMES ? "is no ring of frames" : "is no ring of results",
-              "docs/streams.md describes the ring");
+  throw Error(
+      name_,
+      kind_ == PILLARFIELD_RING_FRAMES ? "is not a ring of frames" : "is not a ring of results",
+      "docs/streams.md describes the ring");
 }
 
 void RingReader::detach() {

@@ -16,7 +16,7 @@ class RingReader {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// `name` without "shm:". The ring need not exist yet. Throws Error if the name is no name.
+  /// `name` without "shm:". The ring need not exist yet. Throws Error if the name is not allowed.
   RingReader(const std::string& name, PillarfieldRingKind kind);
 
   /// Opens the ring if it exists; whether it is open. Throws Error if the segment is none of this

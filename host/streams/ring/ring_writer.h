@@ -13,8 +13,8 @@ namespace pillarfield {
 /// writer was killed, replaces another one, and unlinks its own at the end.
 class RingWriter {
  public:
-  /// `name` without "shm:". Throws Error if the name is no name, another program writes the ring,
-  /// or memory is short.
+  /// `name` without "shm:". Throws Error if the name is not allowed, another program writes the
+  /// ring, or memory is short.
   RingWriter(const std::string& name, const RingLayout& layout, std::uint32_t slots);
   ~RingWriter();
   RingWriter(const RingWriter&) = delete;

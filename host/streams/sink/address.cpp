@@ -35,7 +35,7 @@ HostAndPort split_address(std::string_view text) {
 SocketAddress address_of(std::string_view text, const std::string& target, int lowest_port) {
   const HostAndPort parts = split_address(text);
   if (!is_port(parts.port, lowest_port)) {
-    throw Error(printable(target), fmt::format("'{}' is no port", printable(parts.port)),
+    throw Error(printable(target), fmt::format("'{}' is not a port", printable(parts.port)),
                 fmt::format("give a number from {} to 65535", lowest_port));
   }
   addrinfo hints = {};

@@ -81,7 +81,7 @@ std::string Subscriptions::obey(std::string_view text) {
   std::string error;
   if (op == "subscribe") {
     const Json* const list = list_in(message, "subscriptions");
-    if (list == nullptr) return "subscriptions is no list";
+    if (list == nullptr) return "subscriptions is not a list";
     for (const Json& each : *list) {
       const auto id = number_in(each, "id");
       const auto topic = number_in(each, "channelId");
@@ -92,7 +92,7 @@ std::string Subscriptions::obey(std::string_view text) {
   }
   if (op == "unsubscribe") {
     const Json* const list = list_in(message, "subscriptionIds");
-    if (list == nullptr) return "subscriptionIds is no list";
+    if (list == nullptr) return "subscriptionIds is not a list";
     for (const Json& each : *list) {
       const auto id = number_in(each);
       if (!id) return "a subscription is a whole number";

@@ -41,7 +41,7 @@ class PacketParser {
   /// Declares the bytes so far all that there are: next() takes an unfinished packet for rubbish.
   void finish() { finished_ = true; }
 
-  /// Runs of bytes that are no packet.
+  /// Runs of bytes that are not a packet.
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
   void clear_counts() { invalid_ = 0; }
   /// Shape of the latest header that is sound, but of other frames than those of prepare().

@@ -66,7 +66,7 @@ UdpSource::UdpSource(int socket) : socket_(socket), memory_(kDatagrams * kDatagr
 }
 
 Arrival UdpSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
-  constexpr int kMostBatches = 4;  // of datagrams that are no packets
+  constexpr int kMostBatches = 4;  // of datagrams that are not packets
   for (int batches = 0; batches < kMostBatches; ++batches) {
     while (next_ < received_) {
       if (take(next_++, packet)) return Arrival::arrived;

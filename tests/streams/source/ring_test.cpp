@@ -279,9 +279,9 @@ TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
   const auto open = [](const std::string& source) {
     return message_of([&] { (void)open_live_source(source, {}); });
   };
-  EXPECT_NE(open(name.source()).find("is no ring of frames"), std::string::npos);
+  EXPECT_NE(open(name.source()).find("is not a ring of frames"), std::string::npos);
   for (const char* const bad : {"shm:", "shm:a/b", "shm:.", "shm:..", "shm:a b"}) {
-    EXPECT_NE(open(bad).find("is no name of a ring"), std::string::npos) << bad;
+    EXPECT_NE(open(bad).find("is not the name of a ring"), std::string::npos) << bad;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "simulation/body/normal_contact.h"
+#include "simulation/indenter/normal_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ double smallest_cell_mm(const CellField& height_mm) {
   return *std::min_element(height_mm.values.begin(), height_mm.values.end());
 }
 
-/// The iteration on one window. Cells outside the body have no pressure.
+/// The iteration on one window. Cells outside the indenter have no pressure.
 class PressureSearch {
  public:
   PressureSearch(const CellField& height_mm, double sum, HalfSpace& surface)

@@ -11,29 +11,29 @@
 namespace pillarfield {
 namespace {
 
-std::string scene_text(const std::string& body, const std::string& more = "") {
-  return "skin.size_mm = [40, 40]\n[[body]]\n" + body + "\n" + more;
+std::string scene_text(const std::string& indenter, const std::string& more = "") {
+  return "skin.size_mm = [40, 40]\n[[indenter]]\n" + indenter + "\n" + more;
 }
 
 Scene parsed_scene(const std::string& text) { return parse_scene(text, "folder/s.toml"); }
 
-TEST(BodyOfAScene, EveryKeyIsRead) {
+TEST(IndenterOfAScene, EveryKeyIsRead) {
   const Scene scene = parsed_scene(
       "[skin]\nsize_mm = [40, 40]\nmodulus_kpa = 250\n"
-      "[[body]]\nshape = \"height_map\"\nheight_map = \"maps/key.png\"\n"
+      "[[indenter]]\nshape = \"height_map\"\nheight_map = \"maps/key.png\"\n"
       "height_map_size_mm = [30, 10]\nheight_map_depth_mm = 2\nroughness_um = 12\n"
       "roughness_exponent = 0.7\nroughness_length_mm = 6\nfriction = 0.9\n"
       "friction_variation = 0.2\nfriction_variation_length_mm = 3\nsubsteps = 4\n"
       "path = [{ time_s = 0, position_mm = [1, 2], load_n = 3 },\n"
       "  { time_s = 0.5, position_mm = [2, 3], angle_deg = 40, load_n = 5 }]\n"
-      "[[body]]\nshape = \"ellipsoid\"\nradii_mm = [9, 8, 7]\nfriction = 0\n"
+      "[[indenter]]\nshape = \"ellipsoid\"\nradii_mm = [9, 8, 7]\nfriction = 0\n"
       "position_mm = [4, 5]\nangle_deg = 6\nload_n = 7\n"
-      "[[body]]\nshape = \"cylinder\"\nradius_mm = 5\nlength_mm = 12\nedge_radius_mm = 1\n"
+      "[[indenter]]\nshape = \"cylinder\"\nradius_mm = 5\nlength_mm = 12\nedge_radius_mm = 1\n"
       "friction = 1\nposition_mm = [0, 0]\nload_n = 0\n");
   EXPECT_EQ(scene.modulus_kpa, 250);
-  ASSERT_EQ(scene.bodies.size(), 3U);
-  const Body& key = scene.bodies[0];
-  EXPECT_EQ(key.shape, BodyShape::height_map);
+  ASSERT_EQ(scene.indenters.size(), 3U);
+  const Indenter& key = scene.indenters[0];
+  EXPECT_EQ(key.shape, IndenterShape::height_map);
   EXPECT_EQ(key.height_map, "folder/maps/key.png");
   EXPECT_EQ(key.height_map_size_mm[0], 30);
   EXPECT_EQ(key.height_map_size_mm[1], 10);
@@ -50,90 +50,96 @@ TEST(BodyOfAScene, EveryKeyIsRead) {
   EXPECT_EQ(key.path[1].time_s, 0.5);
   EXPECT_EQ(key.path[1].angle_deg, 40);
   EXPECT_EQ(key.path[1].load_n, 5);
-  EXPECT_EQ(scene.bodies[1].radii_mm[2], 7);
-  EXPECT_EQ(scene.bodies[1].path[0].angle_deg, 6);
-  EXPECT_EQ(scene.bodies[2].length_mm, 12);
-  EXPECT_EQ(scene.bodies[2].edge_radius_mm, 1);
+  EXPECT_EQ(scene.indenters[1].radii_mm[2], 7);
+  EXPECT_EQ(scene.indenters[1].path[0].angle_deg, 6);
+  EXPECT_EQ(scene.indenters[2].length_mm, 12);
+  EXPECT_EQ(scene.indenters[2].edge_radius_mm, 1);
 }
 
 /// A scene is read without its height maps, a simulator is not made without them.
-TEST(BodyOfAScene, HeightMapsAreOpenedBySimulatorsAlone) {
+TEST(IndenterOfAScene, HeightMapsAreOpenedBySimulatorsAlone) {
   const Scene scene = parsed_scene(scene_text(
       "shape = \"height_map\"\nheight_map = \"/nowhere/key.npy\"\nheight_map_size_mm = [9, 9]\n"
       "height_map_depth_mm = 1\nfriction = 1\nposition_mm = [0, 0]\nload_n = 1"));
-  EXPECT_EQ(scene.bodies[0].height_map, "/nowhere/key.npy");
+  EXPECT_EQ(scene.indenters[0].height_map, "/nowhere/key.npy");
   EXPECT_EQ(core_test::message_of([&] { static_cast<void>(Simulator(scene)); }),
             "/nowhere/key.npy: No such file or directory; check its name");
 }
 
-struct WrongBody {
+struct WrongIndenter {
   std::string text;
   std::string message;
 };
 
-TEST(WrongBody, IsRefusedInOneLine) {
+TEST(WrongIndenter, IsRefusedInOneLine) {
   const std::string ball = "shape = \"sphere\"\nradius_mm = 9\nfriction = 1\n";
   const std::string still = "position_mm = [0, 0]\nload_n = 1\n";
   const std::string file = "folder/s.toml:";
-  const std::vector<WrongBody> table = {
-      {"shape = \"cube\"", file + "3: key 'shape' in [[body]] is \"cube\"; allowed: \"sphere\", "
-                                  "\"ellipsoid\", \"cylinder\", \"punch\", \"height_map\""},
-      {"friction = 1", file + "2: key 'shape' in [[body]] is missing; allowed: \"sphere\", "
+  const std::vector<WrongIndenter> table = {
+      {"shape = \"cube\"", file +
+                               "3: key 'shape' in [[indenter]] is \"cube\"; allowed: \"sphere\", "
+                               "\"ellipsoid\", \"cylinder\", \"punch\", \"height_map\""},
+      {"friction = 1", file + "2: key 'shape' in [[indenter]] is missing; allowed: \"sphere\", "
                               "\"ellipsoid\", \"cylinder\", \"punch\", \"height_map\""},
       {"shape = \"sphere\"\nfriction = 1\n" + still,
-       file + "2: key 'radius_mm' in [[body]] is missing; allowed: a number in [0.01, 10000]"},
+       file + "2: key 'radius_mm' in [[indenter]] is missing; allowed: a number in [0.01, 10000]"},
       {"shape = \"sphere\"\nradius_mm = 9\n" + still,
-       file + "2: key 'friction' in [[body]] is missing; allowed: a number in [0, 10]"},
+       file + "2: key 'friction' in [[indenter]] is missing; allowed: a number in [0, 10]"},
       {"shape = \"sphere\"\nradius_mm = 0\nfriction = 1\n" + still,
-       file + "4: key 'radius_mm' in [[body]] is 0; allowed: a number in [0.01, 10000]"},
+       file + "4: key 'radius_mm' in [[indenter]] is 0; allowed: a number in [0.01, 10000]"},
       {ball + "length_mm = 3\n" + still,
-       file + "6: key 'length_mm' in [[body]] does not apply to shape = \"sphere\"; allowed: no "
-              "such key"},
+       file +
+           "6: key 'length_mm' in [[indenter]] does not apply to shape = \"sphere\"; allowed: no "
+           "such key"},
       {ball + "radii_mm = [1, 2, 3]\n" + still,
-       file + "6: key 'radii_mm' in [[body]] does not apply to shape = \"sphere\"; allowed: no "
+       file + "6: key 'radii_mm' in [[indenter]] does not apply to shape = \"sphere\"; allowed: no "
               "such key"},
       {ball + "height_map = \"x.npy\"\n" + still,
-       file + "6: key 'height_map' in [[body]] does not apply to shape = \"sphere\"; allowed: no "
-              "such key"},
+       file +
+           "6: key 'height_map' in [[indenter]] does not apply to shape = \"sphere\"; allowed: no "
+           "such key"},
       {ball + "motion = \"slide\"\n" + still,
-       file + "6: key 'motion' in [[body]] is unknown here; allowed: shape, radius_mm, "
+       file + "6: key 'motion' in [[indenter]] is unknown here; allowed: shape, radius_mm, "
               "roughness_um, roughness_exponent, roughness_length_mm, friction, "
               "friction_variation, friction_variation_length_mm, substeps, path, position_mm, "
               "angle_deg, load_n"},
       {ball + "roughness_exponent = 0.5\n" + still,
-       file + "6: key 'roughness_exponent' in [[body]] comes without roughness_um; allowed: both, "
-              "or none"},
+       file +
+           "6: key 'roughness_exponent' in [[indenter]] comes without roughness_um; allowed: both, "
+           "or none"},
       {ball + "friction_variation = 1.5\n" + still,
-       file + "6: key 'friction_variation' in [[body]] is 1.5; allowed: a number in [0, 1]"},
+       file + "6: key 'friction_variation' in [[indenter]] is 1.5; allowed: a number in [0, 1]"},
       {ball + "substeps = 0\n" + still,
-       file + "6: key 'substeps' in [[body]] is 0; allowed: a whole number from 1 to 1000"},
+       file + "6: key 'substeps' in [[indenter]] is 0; allowed: a whole number from 1 to 1000"},
       {ball + "load_n = 1",
-       file + "2: key 'position_mm' in [[body]] is missing; allowed: a list of 2, [x, y] in "
+       file + "2: key 'position_mm' in [[indenter]] is missing; allowed: a list of 2, [x, y] in "
               "millimetres"},
       {ball + "angle_deg = 3\npath = [{ time_s = 0, position_mm = [0, 0], load_n = 1 }]",
-       file + "6: key 'angle_deg' in [[body]] comes with path; allowed: one of the two"},
+       file + "6: key 'angle_deg' in [[indenter]] comes with path; allowed: one of the two"},
       {ball + "path = [{ time_s = 1, position_mm = [0, 0], load_n = 1 },\n"
               "{ time_s = 1, position_mm = [0, 0], load_n = 1 }]",
-       file + "7: key 'time_s' in path of [[body]] is 1; allowed: more than that of the key "
+       file + "7: key 'time_s' in path of [[indenter]] is 1; allowed: more than that of the key "
               "before, 1"},
       {"shape = \"ellipsoid\"\nfriction = 1\n" + still,
-       file + "2: key 'radii_mm' in [[body]] is missing; allowed: a list of 3, each a number in "
-              "[0.01, 10000]"},
+       file +
+           "2: key 'radii_mm' in [[indenter]] is missing; allowed: a list of 3, each a number in "
+           "[0.01, 10000]"},
       {"shape = \"height_map\"\nfriction = 1\n" + still,
-       file + "2: key 'height_map' in [[body]] is missing; allowed: the path of a .npy or .png "
+       file + "2: key 'height_map' in [[indenter]] is missing; allowed: the path of a .npy or .png "
               "file, from the scene's folder"},
       {"shape = \"height_map\"\nheight_map = \"/etc/passwd\"\nfriction = 1\n" + still,
-       file + "4: key 'height_map' in [[body]] is \"/etc/passwd\"; allowed: the path of a .npy or "
-              ".png file, from the scene's folder"},
+       file +
+           "4: key 'height_map' in [[indenter]] is \"/etc/passwd\"; allowed: the path of a .npy or "
+           ".png file, from the scene's folder"},
       {"shape = \"height_map\"\nheight_map = \"a.npy\"\nheight_map_size_mm = [300, 9]\n"
        "height_map_depth_mm = 1\nfriction = 1\n" +
            still,
-       "folder/s.toml: body 1: height_map_size_mm is 300; on this skin it may be 160.644"},
+       "folder/s.toml: indenter 1: height_map_size_mm is 300; on this skin it may be 160.644"},
       {"shape = \"punch\"\nradius_mm = 3\nedge_radius_mm = 4\nfriction = 1\n" + still,
-       "folder/s.toml: body 1: edge_radius_mm is 4; it may be radius_mm"},
+       "folder/s.toml: indenter 1: edge_radius_mm is 4; it may be radius_mm"},
       {"shape = \"cylinder\"\nradius_mm = 3\nlength_mm = 6\nedge_radius_mm = 4\nfriction = 1\n" +
            still,
-       "folder/s.toml: body 1: edge_radius_mm is 4; it may be half of length_mm"},
+       "folder/s.toml: indenter 1: edge_radius_mm is 4; it may be half of length_mm"},
   };
   for (const auto& entry : table) {
     const std::string is =
@@ -143,22 +149,23 @@ TEST(WrongBody, IsRefusedInOneLine) {
   }
 }
 
-TEST(WrongBody, ALongPathAndADirectionSweepAreRefused) {
+TEST(WrongIndenter, ALongPathAndADirectionSweepAreRefused) {
   const std::string ball =
       "shape = \"sphere\"\nradius_mm = 9\nfriction = 1\nsubsteps = 5\n"
       "path = [{ time_s = 0, position_mm = [0, 0], load_n = 1 },\n"
       "{ time_s = 1000, position_mm = [1, 0], load_n = 1 }]";
   EXPECT_NO_THROW(static_cast<void>(parsed_scene(scene_text(ball))));
-  EXPECT_EQ(core_test::message_of([&] {
-              static_cast<void>(parsed_scene(scene_text(ball, "[time]\nframes = 5000")));
-            }),
-            "folder/s.toml: body 1: it takes 25000 steps; its path may have 20000: fewer frames, "
-            "substeps or seconds");
-  EXPECT_EQ(core_test::message_of(
-                [&] { static_cast<void>(parsed_scene("[direction_sweep]\n[[body]]\n" + ball)); }),
-            "folder/s.toml:1: key 'direction_sweep' in the scene comes with [[body]]; allowed: one "
-            "of the "
-            "two");
+  EXPECT_EQ(
+      core_test::message_of(
+          [&] { static_cast<void>(parsed_scene(scene_text(ball, "[time]\nframes = 5000"))); }),
+      "folder/s.toml: indenter 1: it takes 25000 steps; its path may have 20000: fewer frames, "
+      "substeps or seconds");
+  EXPECT_EQ(
+      core_test::message_of(
+          [&] { static_cast<void>(parsed_scene("[direction_sweep]\n[[indenter]]\n" + ball)); }),
+      "folder/s.toml:1: key 'direction_sweep' in the scene comes with [[indenter]]; allowed: one "
+      "of the "
+      "two");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct ContactKey {
 };
 
 /// An indenter with a closed-form solution.
-struct Contact {
+struct ClosedFormContact {
   ContactShape shape = ContactShape::sphere;
   ContactMotion motion = ContactMotion::press;
   /// Contact radius (sphere, punch) or half width (cylinder) at reference_load_n. It scales with

@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
-#include "pillarfield/body.h"
+#include "pillarfield/indenter.h"
 #include "simulation/scene/toml_section.h"
 
 namespace pillarfield {
 
-/// Reads a [[body]]. Relative height map paths are relative to `folder`; the file is not opened.
-/// Throws Error.
-[[nodiscard]] Body read_body(TomlSection& section, const std::filesystem::path& folder);
+/// Reads a [[indenter]]. Relative height map paths are relative to `folder`; the file is not
+/// opened. Throws Error.
+[[nodiscard]] Indenter read_indenter(TomlSection& section, const std::filesystem::path& folder);
 
 /// Reads the key `height_map`: a .npy or .png file, relative to `folder`. Throws Error.
 [[nodiscard]] std::filesystem::path read_height_map_path(TomlSection& section,

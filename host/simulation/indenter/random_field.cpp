@@ -1,10 +1,10 @@
-#include "simulation/body/random_field.h"
+#include "simulation/indenter/random_field.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "simulation/body/fourier.h"
+#include "simulation/indenter/fourier.h"
 
 namespace pillarfield {
 namespace {

@@ -7,9 +7,9 @@
 
 namespace pillarfield {
 
-/// The shape of a rigid body, in its own frame: x and y along the skin, the origin on the path, the
-/// lowest point touching first.
-enum class BodyShape : std::uint8_t {
+/// The shape of a rigid indenter, in its own frame: x and y along the skin, the origin on the path,
+/// the lowest point touching first.
+enum class IndenterShape : std::uint8_t {
   sphere,      ///< radius_mm
   ellipsoid,   ///< radii_mm along x, y and the skin's normal
   cylinder,    ///< along x: radius_mm, length_mm, ends rounded by edge_radius_mm
@@ -17,8 +17,9 @@ enum class BodyShape : std::uint8_t {
   height_map,  ///< a relief from a picture or an array
 };
 
-/// Position, rotation and load of a body at a time. Between keys they are interpolated linearly.
-struct BodyKey {
+/// Position, rotation and load of an indenter at a time. Between keys they are interpolated
+/// linearly.
+struct IndenterKey {
   double time_s = 0;
   double x_mm = 0;       ///< from the centre of the patch, + right
   double y_mm = 0;       ///< + up
@@ -26,13 +27,13 @@ struct BodyKey {
   double load_n = 0;     ///< pressing force; 0: no contact
 };
 
-/// A rigid body on the skin, which is modelled as an incompressible elastic half-space
+/// A rigid indenter on the skin, which is modelled as an incompressible elastic half-space
 /// (Scene::modulus_kpa). The pressure is solved after Polonsky and Keer (Wear 231, 1999), the shear
-/// as Kalker's incremental problem with Coulomb friction (Three-Dimensional Elastic Bodies in
+/// as Kalker's incremental problem with Coulomb friction (Three-Dimensional Elastic Indenters in
 /// Rolling Contact, 1990), so it depends on the path up to a frame. Equations and checks:
 /// docs/derivations/half_space.md. Ranges: docs/scenes.md.
-struct Body {
-  BodyShape shape = BodyShape::sphere;
+struct Indenter {
+  IndenterShape shape = IndenterShape::sphere;
   double radius_mm = 10;                          ///< sphere, cylinder, punch
   std::array<double, 3> radii_mm = {10, 10, 10};  ///< ellipsoid: half axes along x, y, normal
   double length_mm = 20;                          ///< cylinder, end to end
@@ -52,18 +53,18 @@ struct Body {
   double roughness_length_mm = 10;
 
   double friction = 0;  ///< Coulomb coefficient µ
-  /// Relative variation over the body: friction lies within µ (1 ± variation).
+  /// Relative variation over the indenter: friction lies within µ (1 ± variation).
   double friction_variation = 0;
   double friction_variation_length_mm = 5;  ///< correlation length of that
 
-  std::uint32_t substeps = 1;  ///< steps of the solver per frame
-  std::vector<BodyKey> path;   ///< at least one key, times increasing
+  std::uint32_t substeps = 1;     ///< steps of the solver per frame
+  std::vector<IndenterKey> path;  ///< at least one key, times increasing
 };
 
-/// Most steps of a body from its first frame to the last in which it moves.
-inline constexpr std::uint64_t kMaxBodySteps = 20'000;
+/// Most steps of an indenter from its first frame to the last in which it moves.
+inline constexpr std::uint64_t kMaxIndenterSteps = 20'000;
 
-/// Largest contact of a body, in pillars along each side.
+/// Largest contact of an indenter, in pillars along each side.
 inline constexpr std::uint32_t kMaxContactPillars = 128;
 
 }  // namespace pillarfield

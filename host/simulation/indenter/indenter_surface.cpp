@@ -1,21 +1,21 @@
-#include "simulation/body/body_surface.h"
+#include "simulation/indenter/indenter_surface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "simulation/body/height_map.h"
+#include "simulation/indenter/height_map.h"
 
 namespace pillarfield {
 namespace {
 
-constexpr double kNoBody = std::numeric_limits<double>::infinity();
+constexpr double kNoIndenter = std::numeric_limits<double>::infinity();
 
 /// Rise of an arc of `radius` at the distance `along` from its flat tangent point.
 double arc_height(double along, double radius) {
   if (along <= 0) return 0;
-  if (along > radius) return kNoBody;
+  if (along > radius) return kNoIndenter;
   // Not radius − √(radius² − along²), which loses its digits.
   return along * along / (radius + std::sqrt(radius * radius - along * along));
 }
@@ -28,7 +28,7 @@ class EllipsoidRelief final : public Relief {
     const double u = x_mm / radii_[0];
     const double v = y_mm / radii_[1];
     const double square = u * u + v * v;
-    return square > 1 ? kNoBody : radii_[2] * square / (1 + std::sqrt(1 - square));
+    return square > 1 ? kNoIndenter : radii_[2] * square / (1 + std::sqrt(1 - square));
   }
   [[nodiscard]] PlaneVector reach_mm() const override { return {radii_[0], radii_[1]}; }
 
@@ -38,12 +38,14 @@ class EllipsoidRelief final : public Relief {
 
 class CylinderRelief final : public Relief {
  public:
-  explicit CylinderRelief(const Body& body)
-      : radius_(body.radius_mm), half_length_(body.length_mm / 2), edge_(body.edge_radius_mm) {}
+  explicit CylinderRelief(const Indenter& indenter)
+      : radius_(indenter.radius_mm),
+        half_length_(indenter.length_mm / 2),
+        edge_(indenter.edge_radius_mm) {}
 
   [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
     const double along = std::abs(x_mm);
-    if (along > half_length_) return kNoBody;
+    if (along > half_length_) return kNoIndenter;
     return arc_height(std::abs(y_mm), radius_) + arc_height(along - (half_length_ - edge_), edge_);
   }
   [[nodiscard]] PlaneVector reach_mm() const override { return {half_length_, radius_}; }
@@ -56,11 +58,12 @@ class CylinderRelief final : public Relief {
 
 class PunchRelief final : public Relief {
  public:
-  explicit PunchRelief(const Body& body) : radius_(body.radius_mm), edge_(body.edge_radius_mm) {}
+  explicit PunchRelief(const Indenter& indenter)
+      : radius_(indenter.radius_mm), edge_(indenter.edge_radius_mm) {}
 
   [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
     const double r = std::hypot(x_mm, y_mm);
-    return r > radius_ ? kNoBody : arc_height(r - (radius_ - edge_), edge_);
+    return r > radius_ ? kNoIndenter : arc_height(r - (radius_ - edge_), edge_);
   }
   [[nodiscard]] PlaneVector reach_mm() const override { return {radius_, radius_}; }
 
@@ -72,11 +75,13 @@ class PunchRelief final : public Relief {
 /// Bilinear between pixel centres, constant beyond the outermost centres.
 class MapRelief final : public Relief {
  public:
-  MapRelief(HeightMap map, const Body& body)
-      : map_(std::move(map)), size_(body.height_map_size_mm), depth_(body.height_map_depth_mm) {}
+  MapRelief(HeightMap map, const Indenter& indenter)
+      : map_(std::move(map)),
+        size_(indenter.height_map_size_mm),
+        depth_(indenter.height_map_depth_mm) {}
 
   [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
-    if (std::abs(x_mm) > size_[0] / 2 || std::abs(y_mm) > size_[1] / 2) return kNoBody;
+    if (std::abs(x_mm) > size_[0] / 2 || std::abs(y_mm) > size_[1] / 2) return kNoIndenter;
     const Pixel col = pixel(0.5 + x_mm / size_[0], map_.cols);
     const Pixel row = pixel(0.5 - y_mm / size_[1], map_.rows);
     const auto height = [&](std::size_t r) {
@@ -108,46 +113,46 @@ class MapRelief final : public Relief {
 
 }  // namespace
 
-std::unique_ptr<Relief> make_relief(const Body& body) {
-  switch (body.shape) {
-    case BodyShape::sphere:
+std::unique_ptr<Relief> make_relief(const Indenter& indenter) {
+  switch (indenter.shape) {
+    case IndenterShape::sphere:
       return std::make_unique<EllipsoidRelief>(
-          std::array<double, 3>{body.radius_mm, body.radius_mm, body.radius_mm});
-    case BodyShape::ellipsoid:
-      return std::make_unique<EllipsoidRelief>(body.radii_mm);
-    case BodyShape::cylinder:
-      return std::make_unique<CylinderRelief>(body);
-    case BodyShape::punch:
-      return std::make_unique<PunchRelief>(body);
-    case BodyShape::height_map:
+          std::array<double, 3>{indenter.radius_mm, indenter.radius_mm, indenter.radius_mm});
+    case IndenterShape::ellipsoid:
+      return std::make_unique<EllipsoidRelief>(indenter.radii_mm);
+    case IndenterShape::cylinder:
+      return std::make_unique<CylinderRelief>(indenter);
+    case IndenterShape::punch:
+      return std::make_unique<PunchRelief>(indenter);
+    case IndenterShape::height_map:
       break;
   }
-  return std::make_unique<MapRelief>(read_height_map(body.height_map), body);
+  return std::make_unique<MapRelief>(read_height_map(indenter.height_map), indenter);
 }
 
-BodySurface::BodySurface(const Body& body, double pillar_pitch_mm, std::uint64_t seed,
-                         std::uint64_t number)
-    : relief_(make_relief(body)),
-      friction_(body.friction),
-      roughness_mm_(body.roughness_um * 1e-3),
-      friction_variation_(body.friction_variation) {
+IndenterSurface::IndenterSurface(const Indenter& indenter, double pillar_pitch_mm,
+                                 std::uint64_t seed, std::uint64_t number)
+    : relief_(make_relief(indenter)),
+      friction_(indenter.friction),
+      roughness_mm_(indenter.roughness_um * 1e-3),
+      friction_variation_(indenter.friction_variation) {
   if (roughness_mm_ > 0) {
     roughness_ =
         RandomField::self_affine({seed, random::Stream::roughness, number}, pillar_pitch_mm / 8,
-                                 body.roughness_length_mm, body.roughness_exponent);
+                                 indenter.roughness_length_mm, indenter.roughness_exponent);
   }
   if (friction_variation_ > 0) {
     friction_field_ = RandomField::smooth({seed, random::Stream::friction, number},
-                                          body.friction_variation_length_mm);
+                                          indenter.friction_variation_length_mm);
   }
 }
 
-double BodySurface::height_mm(double x_mm, double y_mm) const {
+double IndenterSurface::height_mm(double x_mm, double y_mm) const {
   const double height = relief_->height_mm(x_mm, y_mm);
   return roughness_ ? height + roughness_mm_ * roughness_->at(x_mm, y_mm) : height;
 }
 
-double BodySurface::friction(double x_mm, double y_mm) const {
+double IndenterSurface::friction(double x_mm, double y_mm) const {
   if (!friction_field_) return friction_;
   return friction_ * (1 + friction_variation_ * friction_field_->at(x_mm, y_mm));
 }

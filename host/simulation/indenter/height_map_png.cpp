@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "pillarfield/error.h"
-#include "simulation/body/height_map.h"
+#include "simulation/indenter/height_map.h"
 
 namespace pillarfield {
 namespace {
@@ -89,7 +89,7 @@ HeightMap parse_png(const std::vector<std::byte>& bytes, const std::string& name
   PngPicture picture;
   const auto fail = [&] {
     throw Error(
-        name, fmt::format("is no picture that can be read: {}", input.message.data()),
+        name, fmt::format("is not a readable picture: {}", input.message.data()),
         fmt::format("give a PNG of grey, 8 or 16 bits, up to {0} x {0}", kMaxHeightMapSide));
   };
   picture.png =

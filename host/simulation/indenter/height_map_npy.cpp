@@ -5,7 +5,7 @@
 
 #include "base/npy.h"
 #include "pillarfield/error.h"
-#include "simulation/body/height_map.h"
+#include "simulation/indenter/height_map.h"
 
 namespace pillarfield {
 namespace {

@@ -14,7 +14,7 @@ class RandomField {
   struct Noise {
     std::uint64_t seed;
     random::Stream stream;
-    std::uint64_t number;  ///< of the body
+    std::uint64_t number;  ///< of the indenter
   };
 
   /// Power spectrum ∝ k^(−2 − 2 exponent) for wavelengths from 8 `spacing_mm` to `longest_mm`, at

@@ -2,12 +2,12 @@
 
 #include <optional>
 
-#include "simulation/body/cells.h"
-#include "simulation/body/half_space.h"
+#include "simulation/indenter/cells.h"
+#include "simulation/indenter/half_space.h"
 
 namespace pillarfield {
 
-/// Frictionless contact of a rigid body with the half-space (H7).
+/// Frictionless contact of a rigid indenter with the half-space (H7).
 struct NormalContact {
   double approach_mm = 0;  ///< depth of height 0 below the undeformed surface
   CellField pressure;      ///< over πE*, >= 0; the box contains the contact
@@ -22,10 +22,10 @@ inline constexpr double kGapTolerance = 1e-5;
 /// Largest number of iterations; about 25 are usual.
 inline constexpr int kMostPressIterations = 2000;
 
-/// Finds the pressure whose sum over the cells is `sum` (> 0) under a body whose surface is
-/// at `height_mm`, of any origin; infinite where there is no body. Bound-constrained conjugate
-/// gradients of Polonsky and Keer (Wear 231, 1999, 206-219), on the cells that the body reaches.
-/// The sum is met to rounding. Unset if no cell is below the body or
+/// Finds the pressure whose sum over the cells is `sum` (> 0) under an indenter whose surface is
+/// at `height_mm`, of any origin; infinite where there is no indenter. Bound-constrained conjugate
+/// gradients of Polonsky and Keer (Wear 231, 1999, 206-219), on the cells that the indenter
+/// reaches. The sum is met to rounding. Unset if no cell is below the indenter or
 /// kMostPressIterations do not suffice.
 [[nodiscard]] std::optional<NormalContact> solve_normal_contact(const CellField& height_mm,
                                                                 double sum, HalfSpaces& surfaces);

@@ -1,4 +1,4 @@
-#include "simulation/body/fourier.h"
+#include "simulation/indenter/fourier.h"
 
 #include <algorithm>
 #include <cmath>

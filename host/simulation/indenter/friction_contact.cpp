@@ -1,4 +1,4 @@
-#include "simulation/body/friction_contact.h"
+#include "simulation/indenter/friction_contact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "simulation/body/height_map.h"
+#include "simulation/indenter/height_map.h"
 
 #include <fmt/format.h>
 
@@ -42,7 +42,7 @@ HeightMap read_height_map(const std::filesystem::path& path) {
   const std::string name = path.string();
   if (path.extension() == ".npy") return parse_npy(bytes_of_height_map(path), name);
   if (path.extension() == ".png") return parse_png(bytes_of_height_map(path), name);
-  throw Error(name, "is no height map", "name a file that ends in .npy or .png");
+  throw Error(name, "is not a height map", "name a file that ends in .npy or .png");
 }
 
 }  // namespace pillarfield

@@ -1,4 +1,4 @@
-#include "simulation/body/half_space.h"
+#include "simulation/indenter/half_space.h"
 
 #include <algorithm>
 #include <cmath>

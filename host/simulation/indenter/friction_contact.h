@@ -1,7 +1,7 @@
 #pragma once
 
-#include "simulation/body/cells.h"
-#include "simulation/body/half_space.h"
+#include "simulation/indenter/cells.h"
+#include "simulation/indenter/half_space.h"
 
 namespace pillarfield {
 

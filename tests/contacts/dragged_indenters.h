@@ -1,7 +1,7 @@
 #pragma once
 
-// Boundary-element bodies that are dragged or turned on a skin, and the errors of estimates of its
-// ambiguous pillars.
+// Boundary-element indenters that are dragged or turned on a skin, and the errors of estimates of
+// its ambiguous pillars.
 
 #include <array>
 #include <cmath>
@@ -18,8 +18,9 @@
 
 namespace pillarfield {
 
-/// A body on 26 x 26 pillars that is pressed, dragged until it slides, and dragged another way.
-inline Scene dragged(const Body& shape, double friction) {
+/// An indenter on 26 x 26 pillars that is pressed, dragged until it slides, and dragged another
+/// way.
+inline Scene dragged(const Indenter& shape, double friction) {
   Scene scene;
   scene.skin.rows = 52;
   scene.skin.cols = 52;
@@ -29,44 +30,44 @@ inline Scene dragged(const Body& shape, double friction) {
   scene.frames = 12;
   scene.rate_hz = 10;
   scene.modulus_kpa = 400;
-  Body body = shape;
-  body.friction = friction;
-  body.path = {{0.0, -1, 0.5, 0, 6},
-               {0.2, -1, 0.5, 0, 14},
-               {0.6, 0.4 * friction, 1, 5, 14},
-               {0.8, 3, 1.3, 5, 16},
-               {1.1, 3.5, -2, 5, 12}};
-  scene.bodies = {body};
+  Indenter indenter = shape;
+  indenter.friction = friction;
+  indenter.path = {{0.0, -1, 0.5, 0, 6},
+                   {0.2, -1, 0.5, 0, 14},
+                   {0.6, 0.4 * friction, 1, 5, 14},
+                   {0.8, 3, 1.3, 5, 16},
+                   {1.1, 3.5, -2, 5, 12}};
+  scene.indenters = {indenter};
   return scene;
 }
 
-/// A body that is pressed and then turned, there and back.
-inline Scene turned(const Body& shape, double friction) {
+/// An indenter that is pressed and then turned, there and back.
+inline Scene turned(const Indenter& shape, double friction) {
   Scene scene = dragged(shape, friction);
-  scene.bodies[0].path = {
+  scene.indenters[0].path = {
       {0.0, 0, 0, 0, 6}, {0.2, 0, 0, 0, 14}, {0.7, 0, 0, 40, 14}, {1.1, 0, 0, 10, 14}};
   return scene;
 }
 
-inline Body fingertip() {
-  Body body;
-  body.shape = BodyShape::ellipsoid;
-  body.radii_mm = {14, 9, 8};
-  return body;
+inline Indenter fingertip() {
+  Indenter indenter;
+  indenter.shape = IndenterShape::ellipsoid;
+  indenter.radii_mm = {14, 9, 8};
+  return indenter;
 }
 
-inline Body ball() {
-  Body body;
-  body.radius_mm = 14;
-  return body;
+inline Indenter ball() {
+  Indenter indenter;
+  indenter.radius_mm = 14;
+  return indenter;
 }
 
-inline Body punch() {
-  Body body;
-  body.shape = BodyShape::punch;
-  body.radius_mm = 6;
-  body.edge_radius_mm = 2;
-  return body;
+inline Indenter punch() {
+  Indenter indenter;
+  indenter.shape = IndenterShape::punch;
+  indenter.radius_mm = 6;
+  indenter.edge_radius_mm = 2;
+  return indenter;
 }
 
 inline SolverPlan plan_of(const Scene& scene, Estimator estimator) {

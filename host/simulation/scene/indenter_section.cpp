@@ -1,4 +1,4 @@
-#include "simulation/scene/body_section.h"
+#include "simulation/scene/indenter_section.h"
 
 #include <fmt/format.h>
 
@@ -11,57 +11,59 @@
 namespace pillarfield {
 namespace {
 
-std::string shape_text(BodyShape shape) {
-  return fmt::format(R"(shape = "{}")", kBodyShapes[static_cast<std::size_t>(shape)].name);
+std::string shape_text(IndenterShape shape) {
+  return fmt::format(R"(shape = "{}")", kIndenterShapes[static_cast<std::size_t>(shape)].name);
 }
 
 /// Refuses a key that does not apply to the shape.
-void refuse_key(const TomlSection& section, std::string_view key, BodyShape shape) {
+void refuse_key(const TomlSection& section, std::string_view key, IndenterShape shape) {
   if (section.has(key)) section.fail(key, "does not apply to " + shape_text(shape), "no such key");
 }
 
 /// Reads the numbers that apply to the shape; refuses others.
-void read_body_quantities(TomlSection& section, Body& body) {
-  for (const auto& [quantity, required, applies] : kBodyQuantities) {
-    if (!applies(body.shape)) {
-      refuse_key(section, quantity.key, body.shape);
+void read_indenter_quantities(TomlSection& section, Indenter& indenter) {
+  for (const auto& [quantity, required, applies] : kIndenterQuantities) {
+    if (!applies(indenter.shape)) {
+      refuse_key(section, quantity.key, indenter.shape);
       continue;
     }
     const auto value = section.number(quantity.key, quantity.range);
     if (!value && required) section.fail_missing(quantity.key, quantity.range.text());
-    if (value) body.*quantity.member = *value;
+    if (value) indenter.*quantity.member = *value;
   }
 }
 
 /// Reads a list of `values`' length.
 template <std::size_t count>
 void read_sizes(TomlSection& section, std::string_view key, std::array<double, count>& values) {
-  const auto sizes = section.numbers(key, count, kBodySizeMm);
+  const auto sizes = section.numbers(key, count, kIndenterSizeMm);
   if (!sizes) {
-    section.fail_missing(key, fmt::format("a list of {}, each {}", count, kBodySizeMm.text()));
+    section.fail_missing(key, fmt::format("a list of {}, each {}", count, kIndenterSizeMm.text()));
   }
   std::copy_n(sizes->begin(), count, values.begin());
 }
 
-void read_height_map_keys(TomlSection& section, const std::filesystem::path& folder, Body& body) {
-  body.height_map = read_height_map_path(section, folder);
-  read_sizes(section, "height_map_size_mm", body.height_map_size_mm);
+void read_height_map_keys(TomlSection& section, const std::filesystem::path& folder,
+                          Indenter& indenter) {
+  indenter.height_map = read_height_map_path(section, folder);
+  read_sizes(section, "height_map_size_mm", indenter.height_map_size_mm);
 }
 
-void read_body_shape(TomlSection& section, const std::filesystem::path& folder, Body& body) {
-  const auto shape = read_name(section, "shape", kBodyShapes);
-  if (!shape) section.fail_missing("shape", quoted(kBodyShapes));
-  body.shape = *shape;
-  if (body.shape == BodyShape::ellipsoid) {
-    read_sizes(section, "radii_mm", body.radii_mm);
+void read_indenter_shape(TomlSection& section, const std::filesystem::path& folder,
+                         Indenter& indenter) {
+  const auto shape = read_name(section, "shape", kIndenterShapes);
+  if (!shape) section.fail_missing("shape", quoted(kIndenterShapes));
+  indenter.shape = *shape;
+  if (indenter.shape == IndenterShape::ellipsoid) {
+    read_sizes(section, "radii_mm", indenter.radii_mm);
   } else {
-    refuse_key(section, "radii_mm", body.shape);
+    refuse_key(section, "radii_mm", indenter.shape);
   }
-  if (body.shape == BodyShape::height_map) {
-    read_height_map_keys(section, folder, body);
+  if (indenter.shape == IndenterShape::height_map) {
+    read_height_map_keys(section, folder, indenter);
   } else {
-    refuse_key(section, "height_map", body.shape);
-    refuse_key(section, "height_map_size_mm", body.shape);
+    refuse_key(section, "height_map", indenter.shape);
+    refuse_key(section, "height_map_size_mm", indenter.shape);
   }
 }
 
@@ -71,8 +73,8 @@ void expect_together(const TomlSection& section, std::string_view key, std::stri
   section.fail(key, fmt::format("comes without {}", needed), "both, or none");
 }
 
-/// Reads a key of the path, or the pose of a body in a fixed place.
-BodyKey read_body_key(TomlSection& section) {
+/// Reads a key of the path, or the pose of an indenter in a fixed place.
+IndenterKey read_indenter_key(TomlSection& section) {
   const auto position = section.numbers("position_mm", 2, kPathPositionMm);
   if (!position) section.fail_missing("position_mm", "a list of 2, [x, y] in millimetres");
   const auto angle = section.number("angle_deg", kPathAngleDeg);
@@ -94,20 +96,20 @@ std::filesystem::path read_height_map_path(TomlSection& section,
   return folder / *path;
 }
 
-Body read_body(TomlSection& section, const std::filesystem::path& folder) {
-  Body body;
-  read_body_shape(section, folder, body);
-  read_body_quantities(section, body);
+Indenter read_indenter(TomlSection& section, const std::filesystem::path& folder) {
+  Indenter indenter;
+  read_indenter_shape(section, folder, indenter);
+  read_indenter_quantities(section, indenter);
   expect_together(section, "roughness_exponent", "roughness_um");
   expect_together(section, "roughness_length_mm", "roughness_um");
   expect_together(section, "friction_variation_length_mm", "friction_variation");
   if (const auto substeps = section.whole_number("substeps", 1, kMaxSubsteps)) {
-    body.substeps = static_cast<std::uint32_t>(*substeps);
+    indenter.substeps = static_cast<std::uint32_t>(*substeps);
   }
-  body.path = read_path<BodyKey>(section, "path of [[body]]",
-                                 {"position_mm", "angle_deg", "load_n"}, read_body_key);
+  indenter.path = read_path<IndenterKey>(section, "path of [[indenter]]",
+                                         {"position_mm", "angle_deg", "load_n"}, read_indenter_key);
   section.finish();
-  return body;
+  return indenter;
 }
 
 }  // namespace pillarfield

@@ -1,4 +1,4 @@
-#include "simulation/body/body_history.h"
+#include "simulation/indenter/indenter_history.h"
 
 #include <fmt/format.h>
 
@@ -29,9 +29,11 @@ struct Turn {
   double sine;
 };
 
-/// Calls `visit(index, place)` for each cell of a box; `place` is its centre in the body's frame.
+/// Calls `visit(index, place)` for each cell of a box; `place` is its centre in the indenter's
+/// frame.
 template <class Visit>
-void for_each_place(const CellGrid& grid, const CellBox& box, const BodyKey& pose, Visit visit) {
+void for_each_place(const CellGrid& grid, const CellBox& box, const IndenterKey& pose,
+                    Visit visit) {
   const Turn turn(pose.angle_deg);
   std::size_t index = 0;
   for (std::int64_t row = box.first_row; row < box.end_row(); ++row) {
@@ -41,7 +43,7 @@ void for_each_place(const CellGrid& grid, const CellBox& box, const BodyKey& pos
   }
 }
 
-bool is_same_pose(const BodyKey& a, const BodyKey& b) {
+bool is_same_pose(const IndenterKey& a, const IndenterKey& b) {
   return a.x_mm == b.x_mm && a.y_mm == b.y_mm && a.angle_deg == b.angle_deg && a.load_n == b.load_n;
 }
 
@@ -80,26 +82,26 @@ TractionMoments moments_over(const CellField& traction, const CellBox& pillar,
   return moments;
 }
 
-std::uint64_t last_frame_of(const Body& body, double rate_hz) {
-  return static_cast<std::uint64_t>(std::ceil(body.path.back().time_s * rate_hz));
+std::uint64_t last_frame_of(const Indenter& indenter, double rate_hz) {
+  return static_cast<std::uint64_t>(std::ceil(indenter.path.back().time_s * rate_hz));
 }
 
 }  // namespace
 
-BodyHistory::BodyHistory(const Scene& scene, std::size_t number)
-    : body_(scene.bodies.at(number)),
+IndenterHistory::IndenterHistory(const Scene& scene, std::size_t number)
+    : indenter_(scene.indenters.at(number)),
       number_(number),
       rate_hz_(scene.rate_hz),
-      last_frame_(last_frame_of(body_, scene.rate_hz)),
+      last_frame_(last_frame_of(indenter_, scene.rate_hz)),
       pillar_rows_(scene.skin.pillar_rows()),
       pillar_cols_(scene.skin.pillar_cols()),
       grid_(scene.skin),
       traction_to_force_n_(grid_.cell_mm() * grid_.cell_mm() * std::numbers::pi * (4.0 / 3) *
                            scene.modulus_kpa * 1e-3),
-      surface_(body_, scene.skin.pillar_pitch_mm(), scene.seed, number),
+      surface_(indenter_, scene.skin.pillar_pitch_mm(), scene.seed, number),
       half_spaces_(grid_.cell_mm()) {}
 
-std::shared_ptr<const BodyForces> BodyHistory::forces(std::uint64_t frame) {
+std::shared_ptr<const IndenterForces> IndenterHistory::forces(std::uint64_t frame) {
   frame = std::min(frame, last_frame_);
   // Solved frames are returned without waiting for the solver.
   if (SharedForces known = solved(frame)) return known;
@@ -112,24 +114,24 @@ std::shared_ptr<const BodyForces> BodyHistory::forces(std::uint64_t frame) {
   }
 }
 
-BodyHistory::SharedForces BodyHistory::solved(std::uint64_t frame) const {
+IndenterHistory::SharedForces IndenterHistory::solved(std::uint64_t frame) const {
   const std::scoped_lock lock(frames_mutex_);
   return frame < frames_.size() ? frames_[frame] : nullptr;
 }
 
-BodyHistory::SharedForces BodyHistory::next_frame() {
+IndenterHistory::SharedForces IndenterHistory::next_frame() {
   const auto frame = static_cast<double>(frames_.size());
   if (frames_.empty()) {
-    step_to(state_at(body_, 0));
+    step_to(state_at(indenter_, 0));
     return forces_;
   }
-  const std::uint32_t steps = body_.substeps;
+  const std::uint32_t steps = indenter_.substeps;
   // On failure the state is that of the frame before, so a later call can retry.
   const auto before = std::make_tuple(pose_, shear_, touches_, forces_);
   try {
     for (std::uint32_t step = 1; step <= steps; ++step) {
       const double part = static_cast<double>(step) / steps;
-      step_to(state_at(body_, (frame - 1 + part) / rate_hz_));
+      step_to(state_at(indenter_, (frame - 1 + part) / rate_hz_));
     }
   } catch (...) {
     std::tie(pose_, shear_, touches_, forces_) = before;
@@ -138,7 +140,7 @@ BodyHistory::SharedForces BodyHistory::next_frame() {
   return forces_;
 }
 
-void BodyHistory::step_to(const BodyKey& pose) {
+void IndenterHistory::step_to(const IndenterKey& pose) {
   if (is_interrupted()) throw Error(place(pose), "interrupted", "start again");
   if (forces_ && is_same_pose(pose, pose_)) return;
   CellVectors shear;
@@ -147,9 +149,9 @@ void BodyHistory::step_to(const BodyKey& pose) {
   if (touches) {
     const NormalContact normal = press(pose);
     shear = rub(pose, normal);
-    forces = std::make_shared<const BodyForces>(on_pillars(normal, shear));
+    forces = std::make_shared<const IndenterForces>(on_pillars(normal, shear));
   } else {
-    forces = std::make_shared<const BodyForces>();
+    forces = std::make_shared<const IndenterForces>();
   }
   pose_ = pose;
   shear_ = std::move(shear);
@@ -157,7 +159,7 @@ void BodyHistory::step_to(const BodyKey& pose) {
   forces_ = std::move(forces);
 }
 
-NormalContact BodyHistory::press(const BodyKey& pose) {
+NormalContact IndenterHistory::press(const IndenterKey& pose) {
   constexpr double kMostCells = kMaxContactPillars * kCellsPerPillar;
   const Turn turn(pose.angle_deg);
   const PlaneVector reach = surface_.reach_mm();
@@ -176,7 +178,7 @@ NormalContact BodyHistory::press(const BodyKey& pose) {
     throw Error(
         place(pose),
         fmt::format("it lies between the cells of {:.4g} mm that bear the load", grid_.cell_mm()),
-        "make the body larger than a cell");
+        "make the indenter larger than a cell");
   }
   std::optional<NormalContact> normal =
       solve_normal_contact(height, pose.load_n / traction_to_force_n_, half_spaces_);
@@ -185,7 +187,7 @@ NormalContact BodyHistory::press(const BodyKey& pose) {
                 fmt::format("its pressure was not found in {} iterations", kMostPressIterations),
                 "change its shape or load");
   }
-  // If the body extends beyond the box, the contact must end inside it.
+  // If the indenter extends beyond the box, the contact must end inside it.
   const CellBox inner = {box.first_row + 2, box.first_col + 2, box.rows - 4, box.cols - 4};
   if ((turned.x > most_mm || turned.y > most_mm) && !inner.holds(normal->contact)) {
     throw Error(place(pose),
@@ -195,7 +197,7 @@ NormalContact BodyHistory::press(const BodyKey& pose) {
   return *std::move(normal);
 }
 
-CellVectors BodyHistory::rub(const BodyKey& pose, const NormalContact& normal) {
+CellVectors IndenterHistory::rub(const IndenterKey& pose, const NormalContact& normal) {
   const CellBox& contact = normal.contact;
   CellField limit = on_box(normal.pressure, contact);
   for_each_place(grid_, contact, pose, [&](std::size_t index, const PlaneVector& at) {
@@ -216,8 +218,8 @@ CellVectors BodyHistory::rub(const BodyKey& pose, const NormalContact& normal) {
 }
 
 /// Displacements of the contact's cells if none slipped: those under the earlier shear plus the
-/// body's movement (H9).
-CellVectors BodyHistory::drive(const BodyKey& pose, const CellBox& contact) {
+/// indenter's movement (H9).
+CellVectors IndenterHistory::drive(const IndenterKey& pose, const CellBox& contact) {
   CellVectors drive_mm(contact);
   if (!touches_) return drive_mm;
   const double turn = (pose.angle_deg - pose_.angle_deg) * std::numbers::pi / 180;
@@ -234,7 +236,7 @@ CellVectors BodyHistory::drive(const BodyKey& pose, const CellBox& contact) {
   return drive_mm;
 }
 
-void BodyHistory::add_elastic_shear(CellVectors& drive_mm, const BodyKey& pose) {
+void IndenterHistory::add_elastic_shear(CellVectors& drive_mm, const IndenterKey& pose) {
   if (shear_.box().empty()) return;
   const CellBox both = hull(shear_.box(), drive_mm.box());
   constexpr std::int64_t kMostCells = std::int64_t{2} * kMaxContactPillars * kCellsPerPillar;
@@ -255,14 +257,15 @@ void BodyHistory::add_elastic_shear(CellVectors& drive_mm, const BodyKey& pose) 
   }
 }
 
-BodyForces BodyHistory::on_pillars(const NormalContact& normal, const CellVectors& shear) const {
+IndenterForces IndenterHistory::on_pillars(const NormalContact& normal,
+                                           const CellVectors& shear) const {
   const CellBox& contact = normal.contact;
   const CellBox pillars =
       intersection({pillar_of(contact.first_row), pillar_of(contact.first_col),
                     pillar_of(contact.end_row() - 1) - pillar_of(contact.first_row) + 1,
                     pillar_of(contact.end_col() - 1) - pillar_of(contact.first_col) + 1},
                    {0, 0, pillar_rows_, pillar_cols_});
-  BodyForces forces;
+  IndenterForces forces;
   forces.reserve(pillars.cells());
   for (std::int64_t row = pillars.first_row; row < pillars.end_row(); ++row) {
     for (std::int64_t col = pillars.first_col; col < pillars.end_col(); ++col) {
@@ -282,8 +285,8 @@ BodyForces BodyHistory::on_pillars(const NormalContact& normal, const CellVector
   return forces;
 }
 
-std::string BodyHistory::place(const BodyKey& pose) const {
-  return fmt::format("body {} at {:.6g} s", number_ + 1, pose.time_s);
+std::string IndenterHistory::place(const IndenterKey& pose) const {
+  return fmt::format("indenter {} at {:.6g} s", number_ + 1, pose.time_s);
 }
 
 }  // namespace pillarfield

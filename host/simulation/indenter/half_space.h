@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "simulation/body/cells.h"
-#include "simulation/body/fourier.h"
+#include "simulation/indenter/cells.h"
+#include "simulation/indenter/fourier.h"
 
 namespace pillarfield {
 

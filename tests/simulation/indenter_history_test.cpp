@@ -1,4 +1,4 @@
-#include "simulation/body/body_history.h"
+#include "simulation/indenter/indenter_history.h"
 
 #include <gtest/gtest.h>
 
@@ -16,29 +16,29 @@ namespace {
 
 using core_test::message_of;
 
-/// A skin of 26 x 26 pillars with one body.
-Scene scene_of(const Body& body, std::uint32_t frames = 8) {
+/// A skin of 26 x 26 pillars with one indenter.
+Scene scene_of(const Indenter& indenter, std::uint32_t frames = 8) {
   Scene scene;
   scene.skin.rows = 52;
   scene.skin.cols = 52;
   scene.frames = frames;
   scene.rate_hz = 10;
-  scene.bodies = {body};
+  scene.indenters = {indenter};
   return scene;
 }
 
 /// A fingertip, longer than wide, that presses, is dragged, turned and pulled back.
-Body fingertip() {
-  Body body;
-  body.shape = BodyShape::ellipsoid;
-  body.radii_mm = {14, 9, 8};
-  body.friction = 0.9;
-  body.path = {{0, -1, 0.5, 10, 4},
-               {0.2, -1, 0.5, 10, 9},
-               {0.4, -0.2, 0.7, 10, 9},
-               {0.5, 1.8, 1, 15, 8},
-               {0.7, 1.2, 0.5, -5, 6}};
-  return body;
+Indenter fingertip() {
+  Indenter indenter;
+  indenter.shape = IndenterShape::ellipsoid;
+  indenter.radii_mm = {14, 9, 8};
+  indenter.friction = 0.9;
+  indenter.path = {{0, -1, 0.5, 10, 4},
+                   {0.2, -1, 0.5, 10, 9},
+                   {0.4, -0.2, 0.7, 10, 9},
+                   {0.5, 1.8, 1, 15, 8},
+                   {0.7, 1.2, 0.5, -5, 6}};
+  return indenter;
 }
 
 ForceField truth_of(const Simulator& simulator, std::uint64_t index) {
@@ -60,9 +60,9 @@ struct Resultant {
   double normal = 0;
 };
 
-Resultant resultant(const BodyForces& forces) {
+Resultant resultant(const IndenterForces& forces) {
   Resultant sum;
-  for (const BodyForce& force : forces) {
+  for (const IndenterForce& force : forces) {
     sum.shear_x += force.shear_x;
     sum.shear_y += force.shear_y;
     sum.normal += force.normal;
@@ -70,13 +70,13 @@ Resultant resultant(const BodyForces& forces) {
   return sum;
 }
 
-/// A body that is long in x lies, turned counter-clockwise, along a line that rises to the right;
-/// and being turned on the skin it turns the skin with it.
-TEST(BodyHistory, TurnsCounterClockwise) {
+/// An indenter that is long in x lies, turned counter-clockwise, along a line that rises to the
+/// right; and being turned on the skin it turns the skin with it.
+TEST(IndenterHistory, TurnsCounterClockwise) {
   for (const double angle_deg : {30.0, -30.0}) {
-    Body body = fingertip();
-    body.path = {{0, 0, 0, angle_deg, 9}, {0.1, 0, 0, angle_deg + 4, 9}};
-    const Simulator simulator(scene_of(body, 2));
+    Indenter indenter = fingertip();
+    indenter.path = {{0, 0, 0, angle_deg, 9}, {0.1, 0, 0, angle_deg + 4, 9}};
+    const Simulator simulator(scene_of(indenter, 2));
     const ForceField pressed = truth_of(simulator, 0);
     const ForceField turned = truth_of(simulator, 1);
     double product = 0;
@@ -96,49 +96,49 @@ TEST(BodyHistory, TurnsCounterClockwise) {
   }
 }
 
-TEST(BodyHistory, CarriesTheLoadAndNeverMoreShearThanFriction) {
-  const Body body = fingertip();
-  BodyHistory history(scene_of(body), 0);
+TEST(IndenterHistory, CarriesTheLoadAndNeverMoreShearThanFriction) {
+  const Indenter indenter = fingertip();
+  IndenterHistory history(scene_of(indenter), 0);
   for (std::uint64_t frame = 0; frame < 9; ++frame) {
     const auto forces = history.forces(frame);
-    const double load = state_at(body, static_cast<double>(frame) / 10).load_n;
+    const double load = state_at(indenter, static_cast<double>(frame) / 10).load_n;
     EXPECT_NEAR(resultant(*forces).normal, load, 1e-12 * load) << frame;
-    for (const BodyForce& force : *forces) {
+    for (const IndenterForce& force : *forces) {
       ASSERT_GT(force.normal, 0);
       ASSERT_LE(std::hypot(force.shear_x, force.shear_y),
-                body.friction * force.normal * (1 + 1e-9));
+                indenter.friction * force.normal * (1 + 1e-9));
     }
   }
 }
 
-TEST(BodyHistory, PressingAloneMakesNoShear) {
-  Body body = fingertip();
-  body.path = {{0, 0, 0, 0, 2}, {0.3, 0, 0, 0, 9}};
-  BodyHistory history(scene_of(body), 0);
+TEST(IndenterHistory, PressingAloneMakesNoShear) {
+  Indenter indenter = fingertip();
+  indenter.path = {{0, 0, 0, 0, 2}, {0.3, 0, 0, 0, 9}};
+  IndenterHistory history(scene_of(indenter), 0);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
-    for (const BodyForce& force : *history.forces(frame)) {
+    for (const IndenterForce& force : *history.forces(frame)) {
       ASSERT_EQ(force.shear_x, 0);
       ASSERT_EQ(force.shear_y, 0);
     }
   }
 }
 
-/// The signs of the project: a body that goes right pushes the skin to the right, one that turns
-/// counter-clockwise turns the skin so.
-TEST(BodyHistory, ShearFollowsTheBody) {
-  Body body;
-  body.radius_mm = 15;
-  body.friction = 0.7;
-  body.path = {{0, 0, 0, 0, 6}, {0.1, 3, 4, 0, 6}};
-  const Scene scene = scene_of(body);
-  BodyHistory slid(scene, 0);
+/// The signs of the project: an indenter that goes right pushes the skin to the right, one that
+/// turns counter-clockwise turns the skin so.
+TEST(IndenterHistory, ShearFollowsTheIndenter) {
+  Indenter indenter;
+  indenter.radius_mm = 15;
+  indenter.friction = 0.7;
+  indenter.path = {{0, 0, 0, 0, 6}, {0.1, 3, 4, 0, 6}};
+  const Scene scene = scene_of(indenter);
+  IndenterHistory slid(scene, 0);
   const Resultant sum = resultant(*slid.forces(1));
   EXPECT_NEAR(sum.shear_x, 0.6 * 0.7 * 6, 0.03);
   EXPECT_NEAR(sum.shear_y, 0.8 * 0.7 * 6, 0.03);
-  body.path = {{0, 0, 0, 0, 6}, {0.1, 0, 0, 60, 6}};
-  BodyHistory turned(scene_of(body), 0);
+  indenter.path = {{0, 0, 0, 0, 6}, {0.1, 0, 0, 60, 6}};
+  IndenterHistory turned(scene_of(indenter), 0);
   double torque = 0;
-  for (const BodyForce& force : *turned.forces(1)) {
+  for (const IndenterForce& force : *turned.forces(1)) {
     const auto row = force.pillar / 26;
     const double x = static_cast<double>(force.pillar % 26) - 12.5;
     const double y = 12.5 - static_cast<double>(row);
@@ -149,13 +149,13 @@ TEST(BodyHistory, ShearFollowsTheBody) {
   EXPECT_NEAR(torque, 3 * std::numbers::pi / 16 * 0.7 * 6 * contact_mm, 0.3);
 }
 
-TEST(BodyHistory, TurningTheWholeSceneTurnsTheTruth) {
-  const Body body = fingertip();
-  Body turned = body;
-  for (BodyKey& key : turned.path) {
+TEST(IndenterHistory, TurningTheWholeSceneTurnsTheTruth) {
+  const Indenter indenter = fingertip();
+  Indenter turned = indenter;
+  for (IndenterKey& key : turned.path) {
     key = {key.time_s, -key.y_mm, key.x_mm, key.angle_deg + 90, key.load_n};
   }
-  const Simulator upright(scene_of(body));
+  const Simulator upright(scene_of(indenter));
   const Simulator lying(scene_of(turned));
   for (const std::uint64_t frame : {0U, 3U, 5U, 7U}) {
     const ForceField a = truth_of(upright, frame);
@@ -175,7 +175,7 @@ TEST(BodyHistory, TurningTheWholeSceneTurnsTheTruth) {
   }
 }
 
-TEST(BodyHistory, OrderAndThreadsDoNotMatter) {
+TEST(IndenterHistory, OrderAndThreadsDoNotMatter) {
   const Simulator forwards(scene_of(fingertip()));
   std::vector<ForceField> expected;
   for (std::uint64_t frame = 0; frame < 8; ++frame) expected.push_back(truth_of(forwards, frame));
@@ -198,59 +198,59 @@ TEST(BodyHistory, OrderAndThreadsDoNotMatter) {
   }
 }
 
-TEST(BodyHistory, NothingChangesAfterThePathsEnd) {
-  BodyHistory history(scene_of(fingertip()), 0);
+TEST(IndenterHistory, NothingChangesAfterThePathsEnd) {
+  IndenterHistory history(scene_of(fingertip()), 0);
   const auto last = history.forces(7);
   EXPECT_EQ(history.forces(8), last);
   EXPECT_EQ(history.forces(99'999'999), last);
 }
 
-TEST(BodyHistory, ABodyThatStandsStillKeepsItsShear) {
-  Body body = fingertip();
-  body.path = {{0, 0, 0, 0, 6}, {0.1, 0.3, 0, 0, 6}, {0.5, 0.3, 0, 0, 6}};
-  BodyHistory history(scene_of(body), 0);
+TEST(IndenterHistory, AnIndenterThatStandsStillKeepsItsShear) {
+  Indenter indenter = fingertip();
+  indenter.path = {{0, 0, 0, 0, 6}, {0.1, 0.3, 0, 0, 6}, {0.5, 0.3, 0, 0, 6}};
+  IndenterHistory history(scene_of(indenter), 0);
   const auto moved = history.forces(1);
   EXPECT_GT(resultant(*moved).shear_x, 0.5);
   EXPECT_EQ(history.forces(3), moved);
 }
 
-TEST(BodyHistory, LiftingForgetsTheShear) {
-  Body body = fingertip();
-  body.path = {{0, 0, 0, 0, 6}, {0.2, 1, 0, 0, 6}, {0.3, 1, 0, 0, 0}, {0.4, 1, 0, 0, 6}};
-  BodyHistory history(scene_of(body), 0);
+TEST(IndenterHistory, LiftingForgetsTheShear) {
+  Indenter indenter = fingertip();
+  indenter.path = {{0, 0, 0, 0, 6}, {0.2, 1, 0, 0, 6}, {0.3, 1, 0, 0, 0}, {0.4, 1, 0, 0, 6}};
+  IndenterHistory history(scene_of(indenter), 0);
   EXPECT_GT(resultant(*history.forces(2)).shear_x, 1);
   EXPECT_TRUE(history.forces(3)->empty());
   EXPECT_EQ(resultant(*history.forces(4)).shear_x, 0);
   EXPECT_NEAR(resultant(*history.forces(4)).normal, 6, 1e-11);
 }
 
-TEST(BodyHistory, WhatLiesOutsideTheSkinIsLost) {
-  Body body = fingertip();
-  body.shape = BodyShape::sphere;
+TEST(IndenterHistory, WhatLiesOutsideTheSkinIsLost) {
+  Indenter indenter = fingertip();
+  indenter.shape = IndenterShape::sphere;
   const double edge_mm = 13 * Skin().pillar_pitch_mm();
-  body.path = {{0, edge_mm, 0, 0, 6}};
-  BodyHistory at_edge(scene_of(body), 0);
+  indenter.path = {{0, edge_mm, 0, 0, 6}};
+  IndenterHistory at_edge(scene_of(indenter), 0);
   EXPECT_NEAR(resultant(*at_edge.forces(0)).normal, 3, 1e-3);
-  body.path = {{0, 1000, 0, 0, 6}};
-  BodyHistory beyond(scene_of(body), 0);
+  indenter.path = {{0, 1000, 0, 0, 6}};
+  IndenterHistory beyond(scene_of(indenter), 0);
   EXPECT_TRUE(beyond.forces(0)->empty());
 }
 
 /// Friction that varies: in full sliding it shows on every pillar, within its bounds.
-TEST(BodyHistory, FrictionVariesOverTheBody) {
-  Body body;
-  body.shape = BodyShape::punch;
-  body.radius_mm = 12;
-  body.edge_radius_mm = 3;
-  body.friction = 1;
-  body.friction_variation = 0.4;
-  body.path = {{0, 0, 0, 0, 20}, {0.1, 40, 0, 0, 20}};
-  Scene scene = scene_of(body);
+TEST(IndenterHistory, FrictionVariesOverTheIndenter) {
+  Indenter indenter;
+  indenter.shape = IndenterShape::punch;
+  indenter.radius_mm = 12;
+  indenter.edge_radius_mm = 3;
+  indenter.friction = 1;
+  indenter.friction_variation = 0.4;
+  indenter.path = {{0, 0, 0, 0, 20}, {0.1, 40, 0, 0, 20}};
+  Scene scene = scene_of(indenter);
   scene.skin.cols = 140;
-  BodyHistory history(scene, 0);
+  IndenterHistory history(scene, 0);
   double least = 9;
   double most = 0;
-  for (const BodyForce& force : *history.forces(1)) {
+  for (const IndenterForce& force : *history.forces(1)) {
     const double ratio = std::hypot(force.shear_x, force.shear_y) / force.normal;
     least = std::min(least, ratio);
     most = std::max(most, ratio);
@@ -261,20 +261,20 @@ TEST(BodyHistory, FrictionVariesOverTheBody) {
   EXPECT_LE(most, 1.4 + 1e-9);
 }
 
-TEST(BodyHistory, RoughnessIsTheSeeds) {
-  Body body;
-  body.radius_mm = 20;
-  body.roughness_um = 60;
-  body.path = {{0, 0, 0, 0, 10}};
-  Scene scene = scene_of(body);
-  const auto rough = BodyHistory(scene, 0).forces(0);
-  const auto again = BodyHistory(scene, 0).forces(0);
+TEST(IndenterHistory, RoughnessIsTheSeeds) {
+  Indenter indenter;
+  indenter.radius_mm = 20;
+  indenter.roughness_um = 60;
+  indenter.path = {{0, 0, 0, 0, 10}};
+  Scene scene = scene_of(indenter);
+  const auto rough = IndenterHistory(scene, 0).forces(0);
+  const auto again = IndenterHistory(scene, 0).forces(0);
   scene.seed = 2;
-  const auto other = BodyHistory(scene, 0).forces(0);
-  scene.bodies[0].roughness_um = 0;
-  const auto smooth = BodyHistory(scene, 0).forces(0);
-  const auto highest = [](const BodyForces& forces) {
-    return std::ranges::max(forces, {}, &BodyForce::normal).normal;
+  const auto other = IndenterHistory(scene, 0).forces(0);
+  scene.indenters[0].roughness_um = 0;
+  const auto smooth = IndenterHistory(scene, 0).forces(0);
+  const auto highest = [](const IndenterForces& forces) {
+    return std::ranges::max(forces, {}, &IndenterForce::normal).normal;
   };
   EXPECT_EQ(highest(*rough), highest(*again));
   EXPECT_NE(highest(*rough), highest(*other));
@@ -282,41 +282,43 @@ TEST(BodyHistory, RoughnessIsTheSeeds) {
   EXPECT_NEAR(resultant(*rough).normal, 10, 1e-10);
 }
 
-TEST(BodyHistory, RefusesWhatItCannotSolve) {
-  Body wide;
+TEST(IndenterHistory, RefusesWhatItCannotSolve) {
+  Indenter wide;
   wide.radius_mm = 9000;
   wide.path = {{0, 0, 0, 0, 1e5}};
-  EXPECT_EQ(message_of([&] { static_cast<void>(BodyHistory(scene_of(wide), 0).forces(0)); }),
-            "body 1 at 0 s: its contact is more than 128 pillars wide; lower its load or make it "
-            "smaller");
-  Body tiny;
+  EXPECT_EQ(
+      message_of([&] { static_cast<void>(IndenterHistory(scene_of(wide), 0).forces(0)); }),
+      "indenter 1 at 0 s: its contact is more than 128 pillars wide; lower its load or make it "
+      "smaller");
+  Indenter tiny;
   tiny.radius_mm = 0.02;
   tiny.path = {{0, 0, 0, 0, 1}};
-  EXPECT_EQ(message_of([&] { static_cast<void>(BodyHistory(scene_of(tiny), 0).forces(0)); }),
-            "body 1 at 0 s: it lies between the cells of 0.3162 mm that bear the load; make the "
-            "body larger than a cell");
-  Body fast = fingertip();
+  EXPECT_EQ(
+      message_of([&] { static_cast<void>(IndenterHistory(scene_of(tiny), 0).forces(0)); }),
+      "indenter 1 at 0 s: it lies between the cells of 0.3162 mm that bear the load; make the "
+      "indenter larger than a cell");
+  Indenter fast = fingertip();
   fast.path = {{0, 0, 0, 0, 6}, {0.1, 1, 0, 0, 6}, {0.2, 900, 0, 0, 6}};
-  BodyHistory history(scene_of(fast), 0);
+  IndenterHistory history(scene_of(fast), 0);
   EXPECT_NO_THROW(static_cast<void>(history.forces(1)));
   for (int again = 0; again < 2; ++again) {
-    EXPECT_EQ(
-        message_of([&] { static_cast<void>(history.forces(2)); }),
-        "body 1 at 0.2 s: it moves 899 mm in one step; give it more substeps, or withdraw it in "
-        "between");
+    EXPECT_EQ(message_of([&] { static_cast<void>(history.forces(2)); }),
+              "indenter 1 at 0.2 s: it moves 899 mm in one step; give it more substeps, or "
+              "withdraw it in "
+              "between");
   }
 }
 
 /// A path in substeps is the path in as many frames.
-TEST(BodyHistory, SubstepsAreStepsBetweenFrames) {
-  Body body = fingertip();
-  body.substeps = 2;
-  Scene coarse = scene_of(body);
-  body.substeps = 1;
-  Scene fine = scene_of(body, 16);
+TEST(IndenterHistory, SubstepsAreStepsBetweenFrames) {
+  Indenter indenter = fingertip();
+  indenter.substeps = 2;
+  Scene coarse = scene_of(indenter);
+  indenter.substeps = 1;
+  Scene fine = scene_of(indenter, 16);
   fine.rate_hz = 20;
-  const auto a = BodyHistory(coarse, 0).forces(5);
-  const auto b = BodyHistory(fine, 0).forces(10);
+  const auto a = IndenterHistory(coarse, 0).forces(5);
+  const auto b = IndenterHistory(fine, 0).forces(10);
   ASSERT_EQ(a->size(), b->size());
   for (std::size_t i = 0; i < a->size(); ++i) {
     ASSERT_NEAR((*a)[i].shear_x, (*b)[i].shear_x, 1e-12);
@@ -324,12 +326,12 @@ TEST(BodyHistory, SubstepsAreStepsBetweenFrames) {
   }
 }
 
-TEST(BodyHistory, BodiesAddToContacts) {
+TEST(IndenterHistory, IndentersAddToContacts) {
   Scene scene = scene_of(fingertip());
-  Contact ball;
+  ClosedFormContact ball;
   ball.contact_radius_mm = 3;
   ball.path = {{0, 10, 10, 2}};
-  scene.load = std::vector<Contact>{ball};
+  scene.load = std::vector<ClosedFormContact>{ball};
   const ForceField both = truth_of(Simulator(scene), 0);
   double sum = 0;
   for (const float normal : both.normal) sum += double{normal};

@@ -1,4 +1,4 @@
-#include "simulation/body/cells.h"
+#include "simulation/indenter/cells.h"
 
 #include <cmath>
 
