@@ -14,7 +14,7 @@ foreach(directive IN LISTS directives)
   string(APPEND program "${line}${text}")
 endforeach()
 string(REGEX REPLACE "(..)" "0x\\1," program "${program}")
-file(WRITE "${OUTPUT}" "#include \"device/kernel_program.h\"
+file(WRITE "${OUTPUT}" "#include \"device/kernel_source.h\"
 
 namespace pillarfield {
 namespace {

@@ -16,10 +16,8 @@
 #include "pillar/leak.h"
 #include "pillar/memory.h"
 #include "pillar/lean.h"
-#include "pillar/shear_ratio.h"
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"
-#include "pillar/open_components.h"
 #include "pillar/uncertainty.h"
 #include "pillar/corrected_interval.h"
 #endif

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "device/sensel_macro.h"
+#include "device/kernel_source.h"
 
 namespace pillarfield::bench {
 namespace {

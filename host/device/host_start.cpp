@@ -1,5 +1,7 @@
 #include "device/host_start.h"
 
+#include <condition_variable>
+#include <mutex>
 #include <utility>
 
 #include "solve/stages.h"
@@ -20,5 +22,16 @@ void HostStart::submit(const FrameView& frame) {
 }
 
 ForceFieldView HostStart::receive() { return results_[received_++ % results_.size()].view(); }
+
+LateCall::LateCall(std::chrono::milliseconds delay, std::function<void()> function) {
+  if (!function) return;
+  thread_.emplace([delay, call = std::move(function)](const std::stop_token& ended) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any nothing;
+    nothing.wait_for(lock, ended, delay, [] { return false; });
+    if (!ended.stop_requested()) call();
+  });
+}
 
 }  // namespace pillarfield

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <thread>
 #include <vector>
 
 #include "pillarfield/host_solve.h"
@@ -32,6 +36,16 @@ class HostStart {
   std::vector<ForceField> results_;
   std::size_t submitted_ = 0;
   std::size_t received_ = 0;
+};
+
+/// Calls a function from its own thread after a delay, unless the object is destroyed before.
+class LateCall {
+ public:
+  /// An empty `function` is not called.
+  LateCall(std::chrono::milliseconds delay, std::function<void()> function);
+
+ private:
+  std::optional<std::jthread> thread_;  ///< ends with the object
 };
 
 }  // namespace pillarfield

@@ -1,3 +1,5 @@
+#include "device/kernel_source.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,10 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "device/block_lanes.h"
 #include "device/calibration_memory.h"
-#include "device/kernel_program.h"
-#include "device/sensel_macro.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "solve/activation_thresholds.h"

@@ -11,9 +11,8 @@
 #include <system_error>
 #include <utility>
 
-#include "device/block_lanes.h"
 #include "device/host_start.h"
-#include "device/late_call.h"
+#include "device/kernel_source.h"
 #include "device/slot.h"
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"

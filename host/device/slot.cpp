@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "device/block_lanes.h"
+#include "device/kernel_source.h"
 
 namespace pillarfield {
 namespace {

@@ -1,6 +1,6 @@
 #include "device/slot_memory.h"
 
-#include "device/block_lanes.h"
+#include "device/kernel_source.h"
 
 namespace pillarfield {
 

@@ -3,7 +3,7 @@
 #include "pillarfield/tuning.h"
 #include "skin/raw_reading.h"
 #include "solve/curvature_follower.h"
-#include "solve/plan_constants.h"
+#include "solve/stages.h"
 
 namespace pillarfield {
 

@@ -7,7 +7,6 @@
 
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
-#include "solve/plan_constants.h"
 #include "solve/sensor_corrections.h"
 
 namespace pillarfield {

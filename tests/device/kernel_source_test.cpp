@@ -1,5 +1,7 @@
 // The program of a plan: its stages, constants and files.
 
+#include "device/kernel_source.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "device/kernel_program.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"

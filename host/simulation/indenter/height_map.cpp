@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include "base/input_file.h"
+#include "base/npy.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -43,6 +46,51 @@ HeightMap read_height_map(const std::filesystem::path& path) {
   if (path.extension() == ".npy") return parse_npy(bytes_of_height_map(path), name);
   if (path.extension() == ".png") return parse_png(bytes_of_height_map(path), name);
   throw Error(name, "is not a height map", "name a file that ends in .npy or .png");
+}
+
+namespace {
+
+void check_sides(const NpyHeader& header, const std::string& name) {
+  constexpr const char* kSave = "save a two-dimensional array with numpy.save()";
+  if (header.shape.size() != 2) {
+    throw Error(name, fmt::format("has the shape {}", text_of_shape(header.shape)), kSave);
+  }
+  for (const std::uint64_t side : header.shape) {
+    if (side >= 2 && side <= kMaxHeightMapSide) continue;
+    throw Error(name, fmt::format("has {} rows or columns, not 2 to {}", side, kMaxHeightMapSide),
+                kSave);
+  }
+}
+
+/// Values row by row from values column by column.
+std::vector<double> by_rows(const std::vector<double>& values, std::size_t rows, std::size_t cols) {
+  std::vector<double> ordered(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) ordered[i % rows * cols + i / rows] = values[i];
+  return ordered;
+}
+
+}  // namespace
+
+HeightMap parse_npy(const std::vector<std::byte>& bytes, const std::string& name) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const NpyHeader header = parse_npy_header(text.substr(0, kLongestNpyHeader), name);
+  check_sides(header, name);
+  if (bytes.size() - header.bytes != header.data_bytes) {
+    throw Error(name,
+                fmt::format("has {} bytes of numbers, not the {} of its header",
+                            bytes.size() - header.bytes, header.data_bytes),
+                "save the array again");
+  }
+  std::vector<std::byte> numbers(bytes.begin() + static_cast<std::ptrdiff_t>(header.bytes),
+                                 bytes.end());
+  if (header.is_swapped) {
+    swap_bytes(numbers.data(), numbers.size() / header.type.bytes, header.type.bytes);
+  }
+  const std::size_t rows = header.shape[0];
+  const std::size_t cols = header.shape[1];
+  std::vector<double> values = doubles_of(header.type, numbers);
+  if (header.by_columns) values = by_rows(values, rows, cols);
+  return height_map_of(rows, cols, std::move(values), name);
 }
 
 }  // namespace pillarfield

@@ -13,7 +13,6 @@
 #include "simulation/scene/named_value.h"
 #include "simulation/scene/path_section.h"
 #include "simulation/scene/scene_limits.h"
-#include "simulation/scene/toml_depth.h"
 #include "simulation/scene/toml_section.h"
 
 namespace pillarfield {

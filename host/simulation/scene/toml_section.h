@@ -64,4 +64,8 @@ class TomlSection {
   std::vector<std::string_view> read_keys_;
 };
 
+/// Throws Error, "file:line: ...", if a TOML text has a key of more than 16 parts (`a.b.c` has
+/// three): toml++ recurses into each part without a bound.
+void check_key_depth(std::string_view toml, const std::string& file);
+
 }  // namespace pillarfield

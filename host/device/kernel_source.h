@@ -2,8 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
+
+#include "pillarfield/skin.h"
 
 namespace pillarfield {
+
+/// The program of kernels/all.h, embedded in the library; a plan's macros precede it.
+std::string_view kernel_program();
 
 /// Pillars that a work-item solves at once: the device's lanes, halved until a row has as many.
 constexpr int block_lanes(int lanes, std::uint32_t pillar_cols) {
@@ -14,6 +20,19 @@ constexpr int block_lanes(int lanes, std::uint32_t pillar_cols) {
 /// Blocks of a pillar row at most, the stride of flags; as in kernels/frame/calibration_planes.h.
 constexpr std::size_t blocks_of_row(std::uint32_t pillar_cols, std::uint32_t lanes) {
   return pillar_cols / lanes + 2;
+}
+
+/// The OpenCL C type of a reading.
+constexpr const char* sensel_macro(SenselType type) {
+  switch (type) {
+    case SenselType::u8:
+      return "uchar";
+    case SenselType::u16:
+      return "ushort";
+    case SenselType::f32:
+      break;
+  }
+  return "float";
 }
 
 }  // namespace pillarfield
