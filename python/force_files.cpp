@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/extension.h"
+#include "io/file_kind.h"
 #include "io/force_planes.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/force_file.h"

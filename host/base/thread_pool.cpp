@@ -1,5 +1,8 @@
 #include "base/thread_pool.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 namespace pillarfield {
@@ -47,6 +50,12 @@ void ThreadPool::help(std::size_t member) {
     take_pieces(lock, member);
     if (busy_ == 0) done_.notify_one();
   }
+}
+
+void yield_to_other_threads() {
+  constexpr int kNiceness = 5;
+  // Linux keeps a niceness for each thread. Only a raise may be refused.
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
 }
 
 }  // namespace pillarfield

@@ -41,4 +41,9 @@ class ThreadPool {
   std::vector<std::thread> helpers_;  ///< last: they use the other members
 };
 
+/// Lowers the priority of the calling thread, so that it waits where processors are scarce: for
+/// work beside a solver that must not be late. On Linux a niceness of 5, about a third of the
+/// share.
+void yield_to_other_threads();
+
 }  // namespace pillarfield

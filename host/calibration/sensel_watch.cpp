@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/thread_priority.h"
+#include "base/thread_pool.h"
 #include "pillarfield/error.h"
 #include "pillarfield/fault_finder.h"
 #include "pillarfield/tuning.h"

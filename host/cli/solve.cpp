@@ -18,7 +18,7 @@
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
-#include "io/extension.h"
+#include "io/file_kind.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"

@@ -8,10 +8,8 @@
 #include <limits>
 #include <string>
 
-#include "io/calibration_format.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
-#include "io/hdf5/links.h"
 #include "io/hdf5/readers.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"

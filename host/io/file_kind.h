@@ -3,10 +3,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "base/input_file.h"
 
 namespace pillarfield {
+
+/// The extension of a file name in lower case, ".csv"; empty if it has none.
+[[nodiscard]] std::string extension_of(const std::filesystem::path& path);
+
+/// Whether the extension is that of HDF5.
+[[nodiscard]] bool is_hdf5_name(const std::filesystem::path& path);
 
 struct SourceFormat;  // io/frame_source.h
 

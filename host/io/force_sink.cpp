@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "io/extension.h"
+#include "io/file_kind.h"
 #include "io/force_planes.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"

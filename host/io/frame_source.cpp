@@ -6,6 +6,7 @@
 #include "io/file_kind.h"
 #include "io/hdf5/readers.h"
 #include "pillarfield/error.h"
+#include "pillarfield/frame_stream.h"
 
 namespace pillarfield {
 
@@ -64,5 +65,12 @@ std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
   if (options.tare_frames > 0) source->measure_tare(options);
   return source;
 }
+
+const Calibration& FrameStream::calibration() const {
+  static const Calibration none;
+  return none;
+}
+
+StreamHealth FrameStream::health() const { return {}; }
 
 }  // namespace pillarfield

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/nearest_word.h"
-#include "io/hdf5/links.h"
+#include "io/hdf5/file.h"
 #include "io/recording_format.h"
 #include "skin/effect_parameters.h"
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/child_process.h"
-#include "io/calibration_format.h"
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"

@@ -8,14 +8,12 @@
 #include "io/file_source.h"
 #include "io/hdf5/dataset.h"
 #include "io/hdf5/file.h"
-#include "io/hdf5/links.h"
-#include "io/hdf5/number_type.h"
+#include "io/hdf5/handle.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
 #include "io/misspelt_names.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
-#include "io/stored_surface.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {

@@ -9,11 +9,10 @@
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
-#include "io/hdf5/plane.h"
+#include "io/hdf5/stored_frames.h"
 #include "io/hdf5/tiled_frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
-#include "io/stored_surface.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 
@@ -217,11 +216,8 @@ void RecordingWriter::append_incomplete(const FrameView& frame, double time_s,
     sensels += block.rows * block.cols;
   }
   if (state.type != SenselType::f32) return state.append(frame, time_s, nullptr, sensels);
-  const auto* const readings = static_cast<const float*>(frame.data);
   state.holed.resize(std::size_t{frame.rows} * frame.cols);
-  for (std::size_t row = 0; row < frame.rows; ++row) {
-    std::copy_n(readings + row * frame.row_stride, frame.cols, &state.holed[row * frame.cols]);
-  }
+  copy_readings(frame, std::as_writable_bytes(std::span(state.holed)).data());
   for (const SenselBlock& block : missing) {
     for (std::size_t row = block.first_row; row < block.first_row + block.rows; ++row) {
       std::fill_n(&state.holed[row * frame.cols + block.first_col], block.cols,

@@ -5,6 +5,7 @@
 #include "io/hdf5/file.h"
 #include "pillarfield/calibration.h"
 #include "pillarfield/skin.h"
+#include "pillarfield/surface.h"
 
 namespace pillarfield {
 
@@ -41,5 +42,12 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
 /// readings, unset if unknown. Throws Error if a plane has another size or a value is out of range.
 [[nodiscard]] Calibration read_planes(const hdf5::File& file, const Skin& skin,
                                       std::optional<SenselType> type = {});
+
+/// Creates the group /surface of recordings and force files: shape, radius, axis, heights.
+void write_surface(const hdf5::File& file, const Surface& surface, const PillarLayout& pillars);
+
+/// Reads the group /surface; unset if it is absent. Throws Error if it does not fit the pillars.
+[[nodiscard]] std::optional<Surface> read_surface(const hdf5::File& file,
+                                                  const PillarLayout& pillars);
 
 }  // namespace pillarfield

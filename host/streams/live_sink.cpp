@@ -8,13 +8,14 @@
 #include "io/force_sink.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
-#include "streams/sink/file_sinks.h"
-#include "streams/sink/foxglove_sink.h"
-#include "streams/sink/mcap_sink.h"
-#include "streams/sink/ring_sink.h"
-#include "streams/sink/udp_sink.h"
 
 namespace pillarfield {
+
+// Each is defined beside its sink.
+LiveSinkKind mcap_sink_kind();
+LiveSinkKind ring_sink_kind();
+LiveSinkKind udp_sink_kind();
+LiveSinkKind foxglove_sink_kind();
 
 std::span<const LiveSinkKind> live_sink_kinds() {
   static const std::array kinds = {mcap_sink_kind(), ring_sink_kind(), udp_sink_kind(),

@@ -21,4 +21,8 @@ struct LiveSinkKind {
 
 [[nodiscard]] std::span<const LiveSinkKind> live_sink_kinds();
 
+/// A live sink that writes a file of create_force_sink().
+[[nodiscard]] std::unique_ptr<LiveSink> create_live_file(const std::string& path,
+                                                         const LiveSinkInfo& info);
+
 }  // namespace pillarfield

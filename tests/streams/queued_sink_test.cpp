@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
-#include "streams/message/contact_slots.h"
+#include "streams/message/topics.h"
 
 namespace pillarfield {
 namespace {

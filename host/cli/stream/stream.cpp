@@ -11,7 +11,7 @@
 #include "cli/progress.h"
 #include "cli/stream/replay.h"
 #include "cli/stream/session.h"
-#include "io/extension.h"
+#include "io/file_kind.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "io/hdf5/number_type.h"
+#include "io/hdf5/handle.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {

@@ -6,9 +6,33 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5/storage.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/filters.h"
 
 namespace pillarfield::hdf5 {
+
+/// Storage layout of a dataset.
+struct Storage {
+  std::vector<hsize_t> extent;
+  std::vector<hsize_t> chunk;  ///< empty: not chunked
+  Filters filters;             ///< empty: unfiltered
+  std::size_t value_bytes = 0;
+  bool is_filled = false;  ///< chunks that were never written read as its fill value
+
+  [[nodiscard]] bool holds_values() const;
+  [[nodiscard]] double chunk_bytes() const;
+};
+
+/// Reads the layout. Throws Error if the dataset is not an array, lies in other files, or has
+/// unsupported filters.
+[[nodiscard]] Storage storage_of(const File& file, const Handle& dataset, const std::string& name);
+
+/// Throws Error if the file is shorter than the dataset claims or lacks chunks of it, so that a
+/// damaged header causes no endless allocation and lost readings do not become zeros. Chunks of an
+/// unclosed file are not counted. With `may_lack_chunks`, absent chunks of a dataset with a fill
+/// value are as if they held it.
+void require_stored(const File& file, const Handle& dataset, const std::string& name,
+                    const Storage& storage, bool may_lack_chunks = false);
 
 /// Largest unfiltered chunk that is read, bytes.
 inline constexpr std::size_t kMaxChunkBytes = std::size_t{128} << 20;

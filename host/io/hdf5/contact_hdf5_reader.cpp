@@ -9,7 +9,7 @@
 #include "io/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
-#include "io/hdf5/links.h"
+#include "io/hdf5/file.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/hdf5/links.h"
-#include "io/hdf5/number_type.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/handle.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/output/part_bytes.h"
+#include "io/output/locked_part.h"
 
 namespace pillarfield::hdf5 {
 namespace {

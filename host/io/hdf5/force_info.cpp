@@ -6,9 +6,8 @@
 
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
-#include "io/hdf5/links.h"
+#include "io/hdf5/file.h"
 #include "io/stored_skin.h"
-#include "io/stored_surface.h"
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
 

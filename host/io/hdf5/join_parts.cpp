@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "io/extension.h"
+#include "io/file_kind.h"
 #include "io/file_source.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
@@ -15,7 +15,6 @@
 #include "io/hdf5/file.h"
 #include "io/hdf5/force_info.h"
 #include "io/hdf5/frames.h"
-#include "io/hdf5/links.h"
 #include "io/hdf5/stored_frames.h"
 #include "io/hdf5/tiled_frames.h"
 #include "pillarfield/error.h"

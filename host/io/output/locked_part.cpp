@@ -5,13 +5,129 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "pillarfield/error.h"
 
 namespace pillarfield {
+namespace {
+
+/// Size of the file, or 0 if it is unknown: then it counts as shortened.
+std::uint64_t size_of_file(int descriptor) {
+  struct stat found = {};
+  return fstat(descriptor, &found) == 0 ? static_cast<std::uint64_t>(found.st_size) : 0;
+}
+
+}  // namespace
+
+int PartBytes::write(std::span<const std::byte> bytes, std::uint64_t offset) {
+  // Before each write, since a write beyond the end hides that the file was shortened.
+  if (size_of_file(descriptor_) < end_) return ESTALE;
+  if (offset < head_.size()) {
+    std::ranges::copy(bytes.first(std::min<std::size_t>(bytes.size(), head_.size() - offset)),
+                      head_.begin() + static_cast<std::ptrdiff_t>(offset));
+  }
+  while (!bytes.empty()) {
+    const ssize_t put = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) return errno;
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+    offset += static_cast<std::uint64_t>(put);
+    end_ = std::max(end_, offset);
+  }
+  return 0;
+}
+
+int PartBytes::resize(std::uint64_t bytes) {
+  if (size_of_file(descriptor_) < end_) return ESTALE;
+  if (ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0) return errno;
+  end_ = bytes;
+  return 0;
+}
+
+int PartBytes::check() const {
+  std::array<std::byte, 64> head{};
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(end_, head.size()));
+  const bool is_read = pread(descriptor_, head.data(), count, 0) == static_cast<ssize_t>(count);
+  return size_of_file(descriptor_) == end_ && is_read && head == head_ ? 0 : ESTALE;
+}
+
+void fail_to_write(const std::filesystem::path& part, int reason) {
+  if (reason == ESTALE) {
+    throw Error(part.string(),
+                "was shortened or overwritten by another program while it was written",
+                "write it again");
+  }
+  throw Error(part.string(), std::string("cannot be written: ") + std::strerror(reason),
+              "check its directory and the space left on its disk");
+}
+
+namespace {
+
+/// Limit of Linux.
+constexpr int kMaxLinks = 40;
+
+std::filesystem::path output_folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+/// Applies the rule of Linux's fs.protected_symlinks.
+void require_own_link(const std::filesystem::path& link) {
+  struct stat folder = {};
+  struct stat found = {};
+  if (stat(output_folder_of(link).c_str(), &folder) != 0 || lstat(link.c_str(), &found) != 0)
+    return;
+  constexpr mode_t kForAll = S_ISVTX | S_IWOTH;
+  if ((folder.st_mode & kForAll) != kForAll) return;
+  if (found.st_uid == geteuid() || found.st_uid == folder.st_uid) return;
+  throw Error(link.string(), "is another user's symbolic link in a directory that all may write",
+              "choose another name");
+}
+
+std::filesystem::path end_of_links(const std::filesystem::path& path) {
+  std::filesystem::path end = path;
+  std::error_code error;
+  for (int links = 0; std::filesystem::is_symlink(std::filesystem::symlink_status(end, error));
+       ++links) {
+    if (links == kMaxLinks) {
+      throw Error(path.string(), "is a symbolic link that leads nowhere", "choose another name");
+    }
+    require_own_link(end);
+    const std::filesystem::path target = std::filesystem::read_symlink(end, error);
+    if (error) throw Error(path.string(), error.message(), "choose another name");
+    end = target.is_absolute() ? target : output_folder_of(end) / target;
+  }
+  return end;
+}
+
+}  // namespace
+
+OutputPlace place_of_output(const std::filesystem::path& path) {
+  if (path == "-") {
+    throw Error("-", "this output cannot be written to standard output",
+                "name a file; for a file named '-' write ./-");
+  }
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw Error(path.string(), "exists and is not a regular file", "choose another name");
+  }
+  OutputPlace place;
+  place.final_path = end_of_links(path);
+  if (!place.final_path.has_filename()) {
+    throw Error(path.string(), path.empty() ? "the name of an output is empty" : "names no file",
+                "give the name of a file");
+  }
+  place.part_path = place.final_path;
+  place.part_path += ".part";
+  return place;
+}
+
 namespace {
 
 constexpr const char* kOtherPart = "remove it, or choose another name";

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "io/output/locked_part.h"
-#include "io/output/output_place.h"
 #include "io/output/replaceable.h"
 #include "pillarfield/error.h"
 #include "pillarfield/output_file.h"

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "io/output/locked_part.h"
-#include "io/output/output_place.h"
 #include "io/output/replaceable.h"
 #include "pillarfield/error.h"
 

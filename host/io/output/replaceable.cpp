@@ -8,7 +8,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/calibration_format.h"
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_sink.h"

@@ -1,5 +1,3 @@
-#include "io/plain/ordered_array.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "io/plain/source.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {

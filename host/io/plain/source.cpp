@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "io/hdf5/stored_frames.h"
-#include "io/plain/ordered_array.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 

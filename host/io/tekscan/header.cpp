@@ -1,5 +1,3 @@
-#include "io/tekscan/header.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "io/tekscan/parser.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "pillarfield/live.h"
-#include "streams/message/contact_slots.h"
 #include "streams/message/host_clock.h"
 #include "streams/message/messages.h"
 #include "streams/message/topics.h"

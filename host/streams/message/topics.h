@@ -1,14 +1,48 @@
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
-#include "streams/message/contact_slots.h"
-#include "streams/message/schemas.h"
+#include "pillarfield/contact_tracker.h"
 
 namespace pillarfield {
+
+/// Numbered places of contacts. A contact keeps its place while it lives; a new one takes the
+/// lowest free place. Contacts beyond the last place have none.
+class ContactSlots {
+ public:
+  static constexpr std::size_t kSlots = 16;
+
+  struct Slot {
+    const TrackedContact* contact = nullptr;  ///< null: free
+    bool ended = false;                       ///< its contact ended with this frame
+  };
+
+  /// The places in this frame; the contacts must outlive their use.
+  const std::array<Slot, kSlots>& update(const FrameContacts& contacts);
+
+ private:
+  std::array<std::uint64_t, kSlots> tracks_ = {};  // track_id; 0: free
+  std::array<Slot, kSlots> slots_;
+};
+
+/// The definition of a ROS 2 message.
+struct MessageSchema {
+  std::string name;        ///< "sensor_msgs/msg/Image"
+  std::string definition;  ///< `ros2msg`: its members, then those of the messages it contains
+};
+
+/// Definitions as of ROS 2 Humble and later.
+[[nodiscard]] const MessageSchema& image_schema();
+[[nodiscard]] const MessageSchema& point_cloud_schema();
+[[nodiscard]] const MessageSchema& wrench_schema();
+[[nodiscard]] const MessageSchema& marker_array_schema();
+[[nodiscard]] const MessageSchema& diagnostics_schema();
+[[nodiscard]] const MessageSchema& time_reference_schema();
 
 /// A topic of ROS 2 messages.
 struct Topic {

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "streams/source/restart_limits.h"
+#include "streams/source/sessions.h"
 
 namespace pillarfield {
 namespace {

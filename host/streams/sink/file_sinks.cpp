@@ -1,11 +1,10 @@
-#include "streams/sink/file_sinks.h"
-
 #include <chrono>
 #include <limits>
 #include <utility>
 
-#include "io/extension.h"
+#include "io/file_kind.h"
 #include "pillarfield/recording.h"
+#include "streams/live_sink.h"
 #include "streams/sink/queued_sink.h"
 
 namespace pillarfield {

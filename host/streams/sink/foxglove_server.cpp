@@ -21,11 +21,10 @@
 #include <thread>
 #include <utility>
 
-#include "base/thread_priority.h"
+#include "base/thread_pool.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/sink/foxglove_protocol.h"
-#include "streams/sink/web_origin.h"
 
 namespace pillarfield {
 namespace {

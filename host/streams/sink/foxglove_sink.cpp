@@ -1,10 +1,9 @@
-#include "streams/sink/foxglove_sink.h"
-
 #include <fmt/format.h>
 
 #include <memory>
 #include <utility>
 
+#include "streams/live_sink.h"
 #include "streams/message/encoder.h"
 #include "streams/sink/address.h"
 #include "streams/sink/foxglove_server.h"
@@ -86,6 +85,7 @@ std::unique_ptr<LiveSink> create_foxglove_sink(const std::string& target,
 
 }  // namespace
 
+/// `foxglove:[ADDRESS:]PORT`: a WebSocket server of ROS 2 messages.
 LiveSinkKind foxglove_sink_kind() {
   return {.prefix = kFoxglovePrefix,
           .form = "foxglove[:[ADDRESS:]PORT]",

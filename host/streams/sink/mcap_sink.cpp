@@ -1,7 +1,6 @@
-#include "streams/sink/mcap_sink.h"
-
 #include <chrono>
 
+#include "streams/live_sink.h"
 #include "streams/message/encoder.h"
 #include "streams/sink/mcap_file.h"
 #include "streams/sink/queued_sink.h"
@@ -53,6 +52,7 @@ class McapConsumer final : public SinkConsumer {
 
 }  // namespace
 
+/// A .mcap file of ROS 2 messages.
 LiveSinkKind mcap_sink_kind() {
   return {.prefix = ".mcap",
           .form = "FILE.mcap",

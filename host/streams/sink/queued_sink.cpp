@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "base/thread_priority.h"
+#include "base/thread_pool.h"
 
 namespace pillarfield {
 

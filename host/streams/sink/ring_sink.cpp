@@ -1,5 +1,3 @@
-#include "streams/sink/ring_sink.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
+#include "streams/live_sink.h"
 #include "streams/message/host_clock.h"
 #include "streams/ring/ring_writer.h"
 
@@ -149,6 +148,8 @@ std::unique_ptr<LiveSink> create_ring_sink(const std::string& target, const Live
 
 }  // namespace
 
+/// `shm:NAME`: a ring of results in shared memory (stream_format.h). append() writes into it and
+/// never waits.
 LiveSinkKind ring_sink_kind() {
   return {.prefix = kRingPrefix, .form = "shm:NAME", .create = create_ring_sink};
 }

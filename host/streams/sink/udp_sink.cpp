@@ -1,5 +1,3 @@
-#include "streams/sink/udp_sink.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,8 +9,9 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
-#include "streams/message/contact_slots.h"
+#include "streams/live_sink.h"
 #include "streams/message/host_clock.h"
+#include "streams/message/topics.h"
 #include "streams/sink/address.h"
 #include "streams/sink/queued_sink.h"
 
@@ -112,6 +111,7 @@ bool UdpConsumer::consume(const SolvedFrame& frame) {
 
 }  // namespace
 
+/// `udp:ADDRESS:PORT`: one datagram of JSON a frame.
 LiveSinkKind udp_sink_kind() {
   return {.prefix = kUdpPrefix,
           .form = "udp:ADDRESS:PORT",

@@ -22,4 +22,21 @@ Sessions::Kind Sessions::classify(std::uint64_t session, std::chrono::nanosecond
   return started ? Kind::started : Kind::current;
 }
 
+double SensorClock::seconds(std::uint64_t time_ns, std::chrono::nanoseconds arrived,
+                            bool restarted) {
+  constexpr std::uint64_t kMostAheadNs = 1'000'000'000;
+  const std::uint64_t before_ns = std::exchange(last_ns_, time_ns);
+  const auto host =
+      static_cast<std::uint64_t>(std::max<std::int64_t>((arrived - last_arrived_).count(), 0));
+  last_arrived_ = arrived;
+  if (!std::exchange(started_, true)) return 0;
+  const bool comparable = !restarted && time_ns != 0 && before_ns != 0;
+  const bool jumped =
+      comparable && (time_ns < before_ns || time_ns - before_ns > host + kMostAheadNs);
+  if (jumped) ++jumps_;
+  // At least 1 ns, since files of frames need times that rise.
+  elapsed_ns_ += std::max<std::uint64_t>(comparable && !jumped ? time_ns - before_ns : host, 1);
+  return static_cast<double>(elapsed_ns_) * 1e-9;
+}
+
 }  // namespace pillarfield

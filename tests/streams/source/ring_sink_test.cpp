@@ -1,7 +1,5 @@
 // The ring of results, as a control loop reads it.
 
-#include "streams/sink/ring_sink.h"
-
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -9,6 +7,7 @@
 #include <numeric>
 
 #include "pillarfield/error.h"
+#include "pillarfield/live.h"
 #include "streams/ring/ring_reader.h"
 #include "tests/base/message.h"
 #include "tests/streams/source/assembler_run.h"
