@@ -1,5 +1,7 @@
 // pillarfield control: one line to a stream, and its answer.
 
+#include "cli/stream/control.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <poll.h>
@@ -15,7 +17,6 @@
 #include <thread>
 
 #include "cli/commands.h"
-#include "cli/stream/control_place.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 

@@ -1,12 +1,15 @@
 #include "cli/options/shared_arguments.h"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
+#include <optional>
 #include <system_error>
 
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/tare.h"
+#include "pipeline/plan_settings.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -100,6 +103,17 @@ void add_tare_frames(CLI::App* command, ReadOptions& options) {
       .whole("--tare-frames", options.tare_frames, "N",
              "Measure tare, noise and threshold in the first N frames, without load [the file's]",
              kLeastTareFrames, std::numeric_limits<std::uint32_t>::max());
+}
+
+void add_constants(CLI::App* command, ReadOptions& options) {
+  Group sensor(command, "Sensor");
+  const auto add = [&](std::optional<double> PlanSettings::*member, std::optional<double>& target) {
+    const auto* const setting = std::ranges::find(kPlanSettings, member, &PlanSetting::member);
+    sensor.number(setting->option, target, setting->unit, setting->help);
+  };
+  add(&PlanSettings::threshold_counts, options.threshold_counts);
+  add(&PlanSettings::counts_per_newton, options.counts_per_newton);
+  add(&PlanSettings::full_scale_counts, options.full_scale_counts);
 }
 
 }  // namespace pillarfield::cli

@@ -30,6 +30,8 @@ void add_trust(CLI::App* command, ReadOptions& options);
 /// Adds what files of plain numbers leave open; --rate if the command uses the times of frames.
 void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times);
 void add_tare_frames(CLI::App* command, ReadOptions& options);
+/// Adds the constants of the skin that files of plain numbers lack.
+void add_constants(CLI::App* command, ReadOptions& options);
 void add_sensor(CLI::App* command, PlanOptions& plan);
 void add_solver(CLI::App* command, PlanOptions& plan);
 void add_contacts(CLI::App* command, ContactOptions& options);

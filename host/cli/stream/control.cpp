@@ -11,9 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <system_error>
 
-#include "cli/stream/control_place.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::cli {
@@ -169,6 +170,24 @@ void ControlChannel::answer(std::uint64_t client, const std::string& line) {
     // A client that does not read loses answers.
     static_cast<void>(send(found->output, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
   }
+}
+
+std::string control_place(const std::string& name) {
+  const char* const folder = std::getenv("XDG_RUNTIME_DIR");
+  const bool has_folder = folder != nullptr && folder[0] == '/';
+  if (!has_folder || name.empty() || name.find('/') != std::string::npos) return name;
+  return fmt::format("{}/{}", folder, name);
+}
+
+sockaddr_un control_address(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    throw Error(path, "the name of the control socket is too long",
+                fmt::format("give at most {} bytes", sizeof address.sun_path - 1));
+  }
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
 }
 
 }  // namespace pillarfield::cli

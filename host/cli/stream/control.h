@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/un.h>
+
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -52,5 +54,12 @@ class ControlChannel {
   std::vector<Client> clients_;
   std::chrono::steady_clock::time_point next_poll_;
 };
+
+/// The path of a control socket: a name without a slash lies in $XDG_RUNTIME_DIR, which only this
+/// user may enter, where that is set.
+[[nodiscard]] std::string control_place(const std::string& name);
+
+/// Throws Error if the path is too long for a socket.
+[[nodiscard]] sockaddr_un control_address(const std::string& path);
 
 }  // namespace pillarfield::cli
