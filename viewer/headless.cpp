@@ -1,5 +1,3 @@
-#include "viewer/headless.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -11,12 +9,13 @@
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
+#include "viewer/app/app.h"
 #include "viewer/app/export/export.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/source/loaded_source.h"
 #include "viewer/render/renderer.h"
 #include "viewer/render/scene.h"
-#include "viewer/source/peak_hold.h"
+#include "viewer/source/plane_block.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -8,8 +8,6 @@
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
 #include "viewer/app/app.h"
-#include "viewer/gpu/lost.h"
-#include "viewer/headless.h"
 
 namespace {
 
@@ -46,7 +44,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return complain("out of memory; take a smaller patch, or fewer frames");
   } catch (const std::exception& error) {
-    if (pillarfield::viewer::gpu::is_device_lost(error)) {
+    if (pillarfield::viewer::is_device_lost(error)) {
       return complain("the graphics device was lost; start again, or choose another with --gpu");
     }
     return complain_of(error);

@@ -4,16 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "pillarfield/error.h"
+#include "cli/options/shared_arguments.h"
 #include "pillarfield/live.h"
-#include "pillarfield/skin.h"
-#include "pillarfield/tare.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::viewer {
@@ -57,12 +54,15 @@ void require(bool holds, const std::string& complaint) {
   if (!holds) throw CLI::ValidationError(complaint);
 }
 
-std::string quantity_names() {
-  std::string names;
-  for (int i = 0; i < kQuantities; ++i) {
-    names += fmt::format("{}{}", i == 0 ? "" : ", ", info_of(static_cast<Quantity>(i)).name);
+/// The words of an enumeration of `count` values.
+template <class Value>
+std::vector<std::pair<std::string, Value>> choices_of(int count,
+                                                      const char* (*word_of)(Value value)) {
+  std::vector<std::pair<std::string, Value>> choices;
+  for (int i = 0; i < count; ++i) {
+    choices.emplace_back(word_of(static_cast<Value>(i)), static_cast<Value>(i));
   }
-  return names;
+  return choices;
 }
 
 bool is_whole(double value) { return value == std::floor(value); }
@@ -74,22 +74,6 @@ void take_size(Options& options, const std::string& text) {
           "the size must lie between 320x240 and 8192x8192 pixels");
   options.width = static_cast<std::uint32_t>(size[0]);
   options.height = static_cast<std::uint32_t>(size[1]);
-}
-
-void take_layer(Options& options, const std::string& text) {
-  const auto quantity = quantity_named(text);
-  require(quantity.has_value(),
-          fmt::format("'{}' is not a layer; choose {}", text, quantity_names()));
-  options.quantity = *quantity;
-}
-
-void take_map(Options& options, const std::string& text) {
-  for (int i = 0; i < kColourMaps; ++i) {
-    if (text == name_of(static_cast<ColourMap>(i))) options.map = static_cast<ColourMap>(i);
-  }
-  require(
-      options.map.has_value(),
-      fmt::format("'{}' is not a colour map; choose cividis, viridis, diverging or cyclic", text));
 }
 
 void take_view(Options& options, const std::string& text) {
@@ -130,16 +114,6 @@ void take_frames(Options& options, const std::string& text) {
   options.end_frame = static_cast<std::uint64_t>(frames[1]);
 }
 
-void take_fps(Options& options, const std::string& text) {
-  options.fps = numbers(text, "", 1, "NUMBER")[0];
-  require(*options.fps >= 0.1 && *options.fps <= 1000, "--fps must lie in [0.1, 1000]");
-}
-
-void take_speed(Options& options, const std::string& text) {
-  options.speed = numbers(text, "", 1, "NUMBER")[0];
-  require(options.speed >= 0.001 && options.speed <= 1000, "--speed must lie in [0.001, 1000]");
-}
-
 void take_range(Options& options, const std::string& text) {
   const auto ends = numbers(text, ":", 2, "LOW:HIGH");
   constexpr double kMost = 1e30;  // Well within single precision.
@@ -156,93 +130,31 @@ void take_centre(Options& options, const std::string& text) {
   options.centre_mm = Vec2{point[0], point[1]};
 }
 
-void take_zoom(Options& options, const std::string& text) {
-  options.zoom = numbers(text, "", 1, "NUMBER")[0];
-  require(options.zoom >= 0.05 && options.zoom <= 1000, "the zoom must lie in [0.05, 1000]");
-}
-
-void take_scale(Options& options, const std::string& text) {
-  options.scale = numbers(text, "", 1, "NUMBER")[0];
-  require(options.scale >= 0.5 && options.scale <= 4, "the scale must lie in [0.5, 4]");
-}
-
-void take_shape(Options& options, const std::string& text) {
-  const auto shape = numbers(text, "x", 2, "ROWSxCOLS, in sensels");
-  for (const double size : shape) {
-    require(is_whole(size) && size >= 2 && size <= kMaxSensels,
-            fmt::format("rows and columns must lie in [2, {}]", kMaxSensels));
-  }
-  options.plain.frame_size =
-      FrameSize{static_cast<std::uint32_t>(shape[0]), static_cast<std::uint32_t>(shape[1])};
-}
-
-void take_axes(Options& options, const std::string& text) {
-  try {
-    options.plain.axes = parse_axes(text);
-  } catch (const Error& error) {
-    throw CLI::ValidationError(error.what());
-  }
-}
-
-/// Adds what files of plain numbers leave open.
-void add_plain_data(CLI::App& app, Options& options) {
-  ReadOptions& plain = options.plain;
-  const auto above = [](double least, double most) { return CLI::Range(least, most); };
-  const auto group = [](CLI::Option* option) { option->group("Plain data"); };
-  group(app.add_option("--dataset", plain.dataset, "Array of frames in an HDF5 file or .npz"));
-  group(app.add_option("--times", plain.times, "Array of their times in that file, s"));
-  group(app.add_option_function<std::string>(
-      "--shape", [&](const std::string& text) { take_shape(options, text); },
-      "Sensels of a frame whose readings lie in one line, ROWSxCOLS"));
-  group(app.add_option_function<std::string>(
-      "--axes", [&](const std::string& text) { take_axes(options, text); },
-      "Order of the array's axes [frames,rows,columns]"));
-  group(app.add_option("--rate", plain.rate_hz, "Frames per second, if the file has no times")
-            ->check(above(1e-6, 1e9)));
-  group(app.add_option("--pitch-mm", plain.sensel_pitch_mm, "Distance of neighbouring sensels")
-            ->check(above(0.001, 1000)));
-  group(
-      app.add_option("--counts-per-newton", plain.counts_per_newton, "Counts per newton and pillar")
-          ->check(above(kMinCountsPerNewton, kMaxCountsPerNewton)));
-  group(app.add_option("--threshold", plain.threshold_counts, "Readings above this are usable")
-            ->check(above(0, kMaxCounts)));
-  group(app.add_option("--full-scale", plain.full_scale_counts,
-                       "Readings of this or more are saturated")
-            ->check(above(0, kMaxCounts)));
-  group(app.add_option("--tare-frames", plain.tare_frames,
-                       "Measure tare, noise and threshold in the first N frames, without load")
-            ->check(CLI::Range(std::uint64_t{kLeastTareFrames}, std::uint64_t{1} << 32)));
-}
-
-void add_texts(CLI::App& app, Options& options) {
-  const auto add = [&](const char* name, const char* help,
+void add_picture(CLI::App& app, Options& options) {
+  const auto add = [&](const char* name, const char* form, const char* help,
                        void (*take)(Options&, const std::string&)) {
     app.add_option_function<std::string>(
-        name, [&options, take](const std::string& text) { take(options, text); }, help);
+           name, [&options, take](const std::string& text) { take(options, text); }, help)
+        ->type_name(form)
+        ->group("Picture");
   };
-  add("--size", "Size of the picture or the window, pixels [1280x720]", take_size);
-  static const std::string layers = fmt::format("Quantity of the heat map: {}", quantity_names());
-  add("--layer", layers.c_str(), take_layer);
-  add("--range", "Ends of the colour bar, LOW:HIGH in the displayed unit [fitted to the source]",
+  cli::Group picture(&app, "Picture");
+  add("--size", "WIDTHxHEIGHT", "Size of the picture or the window, pixels [1280x720]", take_size);
+  picture.choice<Quantity>(
+      "--layer", options.quantity,
+      choices_of<Quantity>(kQuantities, [](Quantity each) { return info_of(each).name; }),
+      "Quantity of the heat map [normal]");
+  add("--range", "LOW:HIGH", "Ends of the colour bar in the displayed unit [fitted to the source]",
       take_range);
-  add("--map", "Colours: cividis, viridis, diverging or cyclic [by layer]", take_map);
-  add("--view", "top, orbit or orbit:AZIMUTH,ELEVATION in degrees [top]", take_view);
-  add("--surface", "In 3-D: plane, cylinder:RADIUS or sphere:RADIUS in mm [that of the source]",
-      take_surface);
-  add("--frames", "Render frames FIRST:LAST, counted from 1", take_frames);
-  add("--fps", "Pictures a second of the video [rate of the source times --speed, at most 60]",
-      take_fps);
-  add("--speed", "Speed of the video: 0.1 is slow motion [1]", take_speed);
-  add("--centre", "Centre of the top view, X,Y in mm [0,0]", take_centre);
-  add("--zoom", "Zoom factor [1]", take_zoom);
-  add("--scale", "Size of letters and lines [the display's, or 1]", take_scale);
-}
-
-void take_png(Options& options, const std::string& text) {
-  options.png = text;
-  std::string ending = options.png.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  require(ending == ".png", fmt::format("a picture must end in .png, unlike '{}'", text));
+  picture.choice<ColourMap>("--map", options.map, choices_of<ColourMap>(kColourMaps, name_of),
+                            "Colours [by layer]");
+  add("--view", "VIEW", "top, orbit or orbit:AZIMUTH,ELEVATION in degrees [top]", take_view);
+  add("--surface", "SURFACE",
+      "In 3-D: plane, cylinder:RADIUS or sphere:RADIUS in mm [that of the source]", take_surface);
+  add("--centre", "X,Y", "Centre of the top view, mm [0,0]", take_centre);
+  picture.number("--zoom", options.zoom, "FACTOR", "Zoom factor [1]", 0.05, 1000);
+  picture.number("--scale", options.scale, "FACTOR",
+                 "Size of letters and lines [the display's, or 1]", 0.5, 4);
 }
 
 void check_together(const Options& options, bool has_frame, bool has_frames) {
@@ -269,50 +181,68 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
           "--headless needs something to write: --png, --video or --csv");
 }
 
-void add_view_flags(CLI::App& app, Options& options) {
+void add_layers(CLI::App& app, Options& options) {
+  const auto clear = [&](const char* name, bool& shown, const char* help) {
+    app.add_flag_callback(
+           name, [&shown] { shown = false; }, help)
+        ->group("Layers");
+  };
+  cli::Group layers(&app, "Layers");
   app.add_flag_callback(
-      "--light", [&] { options.theme = Theme::light; }, "Dark on white");
-  app.add_flag_callback(
-      "--no-arrows", [&] { options.arrows = false; }, "No arrows");
-  app.add_flag("--sectors,--fans", options.sectors,
-               "Uncertainty sectors of ambiguous shear, at large zoom");
-  app.add_flag_callback(
-      "--no-hatch", [&] { options.hatch = false; }, "No hatching of ambiguous pillars");
-  app.add_flag("--contacts", options.contacts,
-               "Mark contacts: extent, id, force, centre of pressure, shear");
-  app.add_flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
-  app.add_flag_callback(
-      "--no-legend", [&] { options.legend = false; },
-      "Only the field, without axes and colour bar");
+         "--light", [&] { options.theme = Theme::light; }, "Dark on white")
+      ->group("Layers");
+  clear("--no-arrows", options.arrows, "No arrows");
+  layers.flag("--sectors,--fans", options.sectors,
+              "Uncertainty sectors of ambiguous shear, at large zoom");
+  clear("--no-hatch", options.hatch, "No hatching of ambiguous pillars");
+  layers.flag("--contacts", options.contacts,
+              "Mark contacts: extent, id, force, centre of pressure, shear");
+  layers.flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
+  clear("--no-legend", options.legend, "Only the field, without axes and colour bar");
+}
+
+CLI::Validator png_name() {
+  return {[](const std::string& text) -> std::string {
+            return CLI::detail::to_lower(std::filesystem::path(text).extension()) == ".png"
+                       ? ""
+                       : fmt::format("a picture must end in .png, unlike '{}'", text);
+          },
+          ""};
 }
 
 void add_files(CLI::App& app, Options& options) {
-  app.add_flag("--headless", options.headless, "Write files without a window")->group("Files");
+  cli::Group files(&app, "Files");
+  files.flag("--headless", options.headless, "Write files without a window");
+  files
+      .text("--png", options.png, "FILE",
+            "Picture to write; NAME_001.png and so on for several frames")
+      ->check(png_name());
+  files.text("--video", options.video, "FILE", "Video to write with ffmpeg, .mp4 or .webm");
+  files.text("--csv", options.csv, "FILE", "Table to write: visible forces of the first frame");
+  files.flag("--overwrite", options.overwrite,
+             "Replace existing files of any kind, but never the source");
   app.add_option_function<std::string>(
-         "--png", [&](const std::string& text) { take_png(options, text); },
-         "Picture to write; NAME_001.png and so on for several frames")
+         "--frames", [&](const std::string& text) { take_frames(options, text); },
+         "Render these frames, counted from 1")
+      ->type_name("FIRST:LAST")
       ->group("Files");
-  app.add_option("--video", options.video, "Video to write with ffmpeg, .mp4 or .webm")
-      ->group("Files");
-  app.add_option("--csv", options.csv, "Table to write: visible forces of the first frame")
-      ->group("Files");
-  app.add_flag("--overwrite", options.overwrite,
-               "Replace existing files of any kind, but never the source")
-      ->group("Files");
+  files.number("--fps", options.fps, "HZ",
+               "Pictures a second of the video [rate of the source times --speed, at most 60]", 0.1,
+               1000);
+  files.number("--speed", options.speed, "FACTOR", "Speed of the video: 0.1 is slow motion [1]",
+               0.001, 1000);
 }
 
 void add_devices(CLI::App& app, Options& options) {
-  app.add_option("--device", options.device, "OpenCL device that solves [the best]")
-      ->group("Devices");
-  app.add_option("--gpu", options.gpu, "Vulkan device that draws, by a part of its name [the best]")
-      ->group("Devices");
-  app.add_flag("--copy", options.copy_fields, "Always copy fields to the Vulkan device")
-      ->group("Devices");
-  app.add_flag("--validate", options.validate, "Enable the Vulkan validation layer")
-      ->group("Devices");
-  app.add_flag("--paused", options.paused, "Start paused")->group("Window");
-  app.add_flag("--statistics", options.statistics, "Print rates and times as JSON at the end")
-      ->group("Window");
+  cli::Group devices(&app, "Devices");
+  devices.text("--device", options.device, "DEVICE", "OpenCL device that solves [the best]");
+  devices.text("--gpu", options.gpu, "DEVICE",
+               "Vulkan device that draws, by a part of its name [the best]");
+  devices.flag("--copy", options.copy_fields, "Always copy fields to the Vulkan device");
+  devices.flag("--validate", options.validate, "Enable the Vulkan validation layer");
+  cli::Group window(&app, "Window");
+  window.flag("--paused", options.paused, "Start paused");
+  window.flag("--statistics", options.statistics, "Print rates and times as JSON at the end");
 }
 
 }  // namespace
@@ -329,17 +259,20 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_flag("--truth", options.truth,
                "Show the true forces of a simulation beside those solved");
   app.add_option("--calibration", options.calibration, "Calibration file of a live sensor")
-      ->check(CLI::ExistingFile);
-  app.add_flag("--trust-input", options.trust_input,
-               "Read HDF5 files without probing them in a separate process first");
-  add_texts(app, options);
-  add_plain_data(app, options);
+      ->check(CLI::ExistingFile)
+      ->group("Input");
+  cli::add_trust(&app, options.plain);
+  cli::add_tare_frames(&app, options.plain);
   std::uint64_t frame = 1;
-  auto* const one =
-      app.add_option("--frame", frame,
-                     "Frame to show first, counted from 1 [1; headless: the most loaded]")
-          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
-  add_view_flags(app, options);
+  auto* const one = cli::Group(&app, "Input")
+                        .whole("--frame", frame, "N",
+                               "Frame to show first, counted from 1 [1; headless: the most loaded]",
+                               1, std::uint64_t{1} << 50);
+  cli::add_plain_data(&app, options.plain, true);
+  cli::Group sensor(&app, "Sensor");
+  cli::add_constants(sensor, options.plain);
+  add_picture(app, options);
+  add_layers(app, options);
   add_files(app, options);
   add_devices(app, options);
   try {

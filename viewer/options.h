@@ -23,7 +23,6 @@ struct Options {
   double scale = 0;          ///< 0: the display's scale, 1 without a display
   bool copy_fields = false;  ///< copy fields even where the graphics device could import them
   bool validate = false;
-  bool trust_input = false;
   bool truth = false;  ///< the true forces beside those solved
   bool headless = false;
   bool paused = false;

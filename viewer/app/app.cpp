@@ -180,4 +180,8 @@ int run_window(const Options& options) {
   return 0;
 }
 
+bool is_device_lost(const std::exception& error) {
+  return dynamic_cast<const vk::DeviceLostError*>(&error) != nullptr;
+}
+
 }  // namespace pillarfield::viewer

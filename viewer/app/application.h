@@ -8,13 +8,12 @@
 #include "viewer/app/input/actions.h"
 #include "viewer/app/input/controls.h"
 #include "viewer/app/input/gui_input.h"
-#include "viewer/app/panels/start_page.h"
+#include "viewer/app/panels/panels.h"
 #include "viewer/app/source/loading.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/app/window/draw_clock.h"
+#include "viewer/app/window/panel_layout.h"
 #include "viewer/app/window/presenter.h"
 #include "viewer/app/window/redraws.h"
-#include "viewer/app/window/screen.h"
 #include "viewer/app/window/window.h"
 
 namespace pillarfield::viewer {

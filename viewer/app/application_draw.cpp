@@ -2,7 +2,7 @@
 
 #include "viewer/app/application.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/window/gui.h"
+#include "viewer/app/window/docks.h"
 #include "viewer/app/window/style.h"
 
 // What an Application draws, and when.

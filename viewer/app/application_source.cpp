@@ -4,7 +4,7 @@
 
 #include "pillarfield/error.h"
 #include "viewer/app/application.h"
-#include "viewer/app/input/pins.h"
+#include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panels.h"
 
 // The source of an Application: opening, showing and closing it, and what its threads report.

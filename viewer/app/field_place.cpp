@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/app/window/screen.h"
+#include "viewer/app/window/panel_layout.h"
 #include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {

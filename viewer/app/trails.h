@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "viewer/source/shown_field.h"
-#include "viewer/style/vectors.h"
+#include "viewer/style/view.h"
 
 namespace pillarfield::viewer {
 

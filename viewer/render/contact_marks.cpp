@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/render/imgui_point.h"
+#include "viewer/render/gui_context.h"
+#include "viewer/render/overlay.h"
 #include "viewer/render/scene.h"
-#include "viewer/render/skin_outline.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {

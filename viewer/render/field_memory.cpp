@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "viewer/gpu/commands.h"
+#include "viewer/gpu/device.h"
 
 namespace pillarfield::viewer {
 namespace {

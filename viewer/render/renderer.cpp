@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "viewer/gpu/commands.h"
+#include "viewer/gpu/device.h"
 #include "viewer/render/overlay.h"
 #include "viewer/render/scene.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "viewer/gpu/image.h"
+#include "viewer/gpu/buffer.h"
 
 namespace pillarfield::viewer {
 

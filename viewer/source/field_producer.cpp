@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -15,9 +17,7 @@
 #include "pillarfield/simulator.h"
 #include "viewer/source/force_file_producer.h"
 #include "viewer/source/frame_provider.h"
-#include "viewer/source/frame_rate.h"
 #include "viewer/source/solved_producer.h"
-#include "viewer/source/truth_producer.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -214,6 +214,23 @@ std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
     return producer;
   }
   return open_recording(path, options);
+}
+
+double frame_rate(std::uint64_t frames, const std::function<double(std::uint64_t)>& time_of) {
+  constexpr double kUnknown = 100;
+  constexpr std::uint64_t kMostTimes = 8;  // The time of a frame costs reading all of it.
+  std::vector<double> steps;
+  for (std::uint64_t index = 0; index < std::min(frames, kMostTimes); ++index) {
+    const double time_s = time_of(index);
+    if (index > 0) steps.back() = time_s - steps.back();
+    steps.push_back(time_s);
+  }
+  if (steps.size() < 2) return kUnknown;
+  steps.pop_back();  // Holds the last time, not a step.
+  const auto middle = steps.begin() + std::ssize(steps) / 2;
+  std::ranges::nth_element(steps, middle);
+  const double rate_hz = 1 / *middle;
+  return *middle > 0 && std::isfinite(rate_hz) ? rate_hz : kUnknown;
 }
 
 }  // namespace pillarfield::viewer

@@ -97,4 +97,9 @@ struct ProducerOptions {
     const std::filesystem::path& path, const ProducerOptions& options,
     const std::function<void(double)>& progress = {});
 
+/// Frames per second: the inverse of the median step between the times of the first frames; 100
+/// where the times do not rise.
+[[nodiscard]] double frame_rate(std::uint64_t frames,
+                                const std::function<double(std::uint64_t)>& time_of);
+
 }  // namespace pillarfield::viewer

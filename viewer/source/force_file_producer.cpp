@@ -7,7 +7,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/solver_plan.h"
-#include "viewer/source/frame_rate.h"
+#include "viewer/source/field_producer.h"
 
 namespace pillarfield::viewer {
 namespace {

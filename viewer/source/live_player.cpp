@@ -13,7 +13,6 @@
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
 #include "viewer/source/object_pool.h"
-#include "viewer/source/peak_hold.h"
 #include "viewer/source/plane_block.h"
 #include "viewer/source/recent_times.h"
 

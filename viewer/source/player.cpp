@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "viewer/source/peak_hold.h"
+#include "viewer/source/plane_block.h"
 #include "viewer/source/recent_times.h"
 
 namespace pillarfield::viewer {

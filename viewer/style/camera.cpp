@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "viewer/style/vectors.h"
+#include "viewer/style/view.h"
 
 namespace pillarfield::viewer {
 namespace {

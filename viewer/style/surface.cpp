@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "pillarfield/surface.h"
-#include "viewer/style/vectors.h"
+#include "viewer/style/view.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,7 +1,6 @@
 #include "viewer/style/view.h"
 
 #include "viewer/style/camera.h"
-#include "viewer/style/vectors.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <variant>
@@ -94,5 +95,11 @@ void keep_on_skin(View& view, const SkinSize& skin);
 
 /// Pixels per millimetre of the sheet in the middle of the viewport.
 [[nodiscard]] double pixels_per_mm(const View& view, const Viewport& viewport);
+
+[[nodiscard]] constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+[[nodiscard]] constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+[[nodiscard]] constexpr Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+[[nodiscard]] constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] inline double length(Vec3 a) { return std::sqrt(dot(a, a)); }
 
 }  // namespace pillarfield::viewer

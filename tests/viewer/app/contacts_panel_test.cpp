@@ -4,7 +4,7 @@
 
 #include "tests/viewer/app/fake_app_state.h"
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/app/panels/format_contact.h"
+#include "viewer/app/panels/format_value.h"
 #include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {

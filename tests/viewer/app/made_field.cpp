@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "viewer/source/direction.h"
+#include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
 namespace {

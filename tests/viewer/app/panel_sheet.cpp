@@ -6,7 +6,7 @@
 
 #include "tests/viewer/app/made_field.h"
 #include "viewer/app/export/export.h"
-#include "viewer/app/input/pins.h"
+#include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/render/gui_context.h"

@@ -5,7 +5,6 @@
 #include "tests/viewer/app/made_field.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/selection_sums.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -9,9 +9,9 @@
 #include <random>
 
 #include "tests/viewer/app/made_field.h"
-#include "viewer/app/input/pins.h"
-#include "viewer/app/panels/reading_bars.h"
-#include "viewer/source/direction.h"
+#include "viewer/app/input/marks.h"
+#include "viewer/app/panels/widgets.h"
+#include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
 namespace {

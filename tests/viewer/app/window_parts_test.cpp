@@ -5,10 +5,8 @@
 #include "tests/viewer/source/touched_field.h"
 #include "viewer/app/panels/time_window.h"
 #include "viewer/app/trails.h"
-#include "viewer/app/window/draw_clock.h"
 #include "viewer/app/window/panel_layout.h"
 #include "viewer/app/window/redraws.h"
-#include "viewer/app/window/screen.h"
 #include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/render/skin_outline.h"
+#include "viewer/render/overlay.h"
 
 namespace pillarfield::viewer {
 namespace {

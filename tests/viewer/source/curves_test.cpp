@@ -9,7 +9,7 @@
 
 #include "pillarfield/error.h"
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/source/peak_hold.h"
+#include "viewer/source/plane_block.h"
 #include "viewer/source/survey.h"
 
 namespace pillarfield::viewer {

@@ -17,9 +17,8 @@
 #include "tests/io/sample_files.h"
 #include "tests/viewer/source/solved_scene.h"
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/source/direction.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/source/frame_rate.h"
+#include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "pillarfield/error.h"
-#include "viewer/source/direction.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "random_view.h"
 #include "viewer/style/camera.h"
-#include "viewer/style/vectors.h"
 
 namespace pillarfield::viewer {
 namespace {

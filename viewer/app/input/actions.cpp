@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "viewer/app/input/pins.h"
-#include "viewer/app/panels/selection_sums.h"
-#include "viewer/app/window/screen.h"
+#include "viewer/app/input/marks.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "viewer/render/imgui_point.h"
+#include "viewer/render/gui_context.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -2,6 +2,7 @@
 
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
+#include "viewer/style/colour_map.h"
 
 namespace pillarfield::viewer {
 
@@ -12,5 +13,20 @@ void draw_marks(const AppState& state, const FieldPlace& place);
 
 /// The place of the second source, at the right of the first.
 [[nodiscard]] FieldPlace beside_place(const AppState& state, const FieldPlace& place);
+
+/// Gives each unnumbered pin the least free number; a pin keeps its number and colour.
+void number_pins(AppState& state);
+
+/// The pin's pillar alone.
+[[nodiscard]] PillarRect rect_of(const Pin& pin);
+
+/// Makes a pin the inspected one; the others keep their order.
+void inspect_pin(AppState& state, std::size_t index);
+
+void remove_pin(AppState& state, std::size_t index);
+
+/// Colour of a pin by its number: legible in the theme, distinct for colour-blind readers; 0 has
+/// the colour of 1.
+[[nodiscard]] Colour pin_colour(int number, Theme theme);
 
 }  // namespace pillarfield::viewer

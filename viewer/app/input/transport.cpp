@@ -1,5 +1,3 @@
-#include "viewer/app/input/transport.h"
-
 #include <fmt/format.h>
 #include <imgui.h>
 

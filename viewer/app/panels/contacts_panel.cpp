@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "viewer/app/input/actions.h"
-#include "viewer/app/panels/format_contact.h"
+#include "viewer/app/panels/format_value.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/render/contact_marks.h"

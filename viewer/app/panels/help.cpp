@@ -1,11 +1,10 @@
-#include "viewer/app/panels/help.h"
-
 #include <imgui.h>
 
 #include <algorithm>
 #include <string>
 
 #include "viewer/app/input/shortcuts.h"
+#include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {
 namespace {

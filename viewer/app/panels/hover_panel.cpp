@@ -1,8 +1,8 @@
 #include <vector>
 
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/status_line.h"
-#include "viewer/app/panels/value_table.h"
+#include "viewer/app/panels/widgets.h"
 #include "viewer/style/quantity.h"
 #include "viewer/style/ticks.h"
 

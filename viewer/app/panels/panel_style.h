@@ -4,7 +4,9 @@
 
 #include <string>
 
-#include "viewer/render/imgui_point.h"
+#include "pillarfield/status.h"
+#include "viewer/app/app_state.h"
+#include "viewer/render/gui_context.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
 
@@ -51,5 +53,15 @@ void faint_text(const PanelStyle& style, const char* words);
 
 /// The title of a part of a panel, with `further` in the faint colour.
 void heading(const PanelStyle& style, const std::string& words, const std::string& further = {});
+
+[[nodiscard]] Colour region_colour(Region region, Theme theme);
+
+/// A pillar's status after a swatch in the colour of its region or fault; "no sensel" for one that
+/// has none.
+void status_line(const PanelStyle& style, const AppState& state, PillarIndex pillar,
+                 std::uint8_t status);
+
+/// A swatch of a digit's height; the next item follows on the same line.
+void swatch(const PanelStyle& style, ImU32 colour);
 
 }  // namespace pillarfield::viewer

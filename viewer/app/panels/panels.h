@@ -1,8 +1,15 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
+#include "viewer/app/window/panel_layout.h"
+#include "viewer/style/colour_map.h"
+#include "viewer/style/view.h"
 
 namespace pillarfield::viewer {
 
@@ -36,5 +43,40 @@ inline constexpr double kSilentSeconds = 1;
 
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
+
+/// Draws the help on keys and mouse over the field.
+void help_overlay(const Viewport& area);
+
+/// Settings of the picture: quantity, range, colours, layers, view, surface, theme.
+void view_panel(const Command& command);
+
+/// Buttons that write files.
+void write_panel(const Command& command);
+
+/// Measurements in fixed columns and, at the end, the last notice or else solver and graphics
+/// device. Fills the current ImGui window.
+void status_row(const AppState& state, const std::string& gpu);
+
+/// What the start page offers.
+struct StartChoices {
+  std::vector<std::string> recent;
+  std::vector<std::filesystem::path> scenes;
+};
+
+/// The page of a window without a source: recent sources, scenes, a line for the name of another.
+/// Returns the source that was chosen; empty: none.
+[[nodiscard]] std::string start_page(const StartChoices& choices, const Viewport& area,
+                                     const std::string& notice, double scale);
+
+/// What the window waits for while a source is opened.
+void loading_page(const std::string& source, const std::string& message, const Viewport& area);
+
+/// Controls of the play head in one row: play, step, position, speed, loop, follow. Fills the
+/// current ImGui window.
+void transport(const Command& command);
+
+/// Sums over the selection in the field on display; both must exist. Cached per frame and
+/// rectangle, since a square metre takes milliseconds.
+[[nodiscard]] const SelectionSums& selection_sums(AppState& state);
 
 }  // namespace pillarfield::viewer

@@ -5,12 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/app/input/pins.h"
+#include "viewer/app/input/marks.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/reading_bars.h"
 #include "viewer/app/panels/region_plot.h"
-#include "viewer/app/panels/status_line.h"
-#include "viewer/app/panels/value_table.h"
+#include "viewer/app/panels/widgets.h"
 
 namespace pillarfield::viewer {
 namespace {

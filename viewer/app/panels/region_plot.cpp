@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "viewer/app/panels/format_value.h"
-#include "viewer/app/panels/status_line.h"
-#include "viewer/source/direction.h"
+#include "viewer/app/panels/panel_style.h"
+#include "viewer/source/selection.h"
 #include "viewer/style/region_diagram.h"
 
 namespace pillarfield::viewer {

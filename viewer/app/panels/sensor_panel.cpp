@@ -5,7 +5,7 @@
 #include "viewer/app/input/actions.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/value_table.h"
+#include "viewer/app/panels/widgets.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,11 +1,10 @@
-#include "viewer/app/panels/start_page.h"
-
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 
 #include "viewer/app/panels/panel_style.h"
+#include "viewer/app/panels/panels.h"
 #include "viewer/app/window/docks.h"
 
 namespace pillarfield::viewer {

@@ -1,5 +1,3 @@
-#include "viewer/app/panels/status_row.h"
-
 #include <fmt/format.h>
 #include <imgui.h>
 

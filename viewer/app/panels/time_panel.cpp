@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "viewer/app/input/pins.h"
+#include "viewer/app/input/marks.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
-#include "viewer/app/panels/status_line.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,5 +1,3 @@
-#include "viewer/app/panels/view_panel.h"
-
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -7,6 +5,7 @@
 #include <array>
 
 #include "viewer/app/input/actions.h"
+#include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/widgets.h"
 #include "viewer/render/scene.h"
 

@@ -78,7 +78,6 @@ ProducerOptions producer_options(const Options& options, LoadProgress tell) {
   ProducerOptions wanted;
   wanted.device = options.device;
   wanted.read = options.plain;
-  wanted.read.trust = options.trust_input;
   if (!tell) return wanted;
   wanted.on_compiling = [tell = std::move(tell)](const std::string& line) {
     try {

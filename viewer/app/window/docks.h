@@ -1,7 +1,9 @@
 #pragma once
 
+#include <string>
+
 #include "viewer/app/input/shortcuts.h"
-#include "viewer/app/window/screen.h"
+#include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
 
@@ -15,5 +17,9 @@ void begin_part(const char* name, const Viewport& box, Theme theme, int flags = 
 
 /// Flags of a fixed part of the window.
 [[nodiscard]] int fixed_window_flags();
+
+/// Builds all of the window except the picture, in the current ImGui frame, between NewFrame() and
+/// Render().
+void draw_gui(const Command& command, const Screen& screen, const std::string& gpu);
 
 }  // namespace pillarfield::viewer
