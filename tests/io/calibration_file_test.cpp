@@ -2,25 +2,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gtest/gtest.h>
-#include <hdf5.h>
 
-#include <functional>
 #include <limits>
 
 #include "pillarfield/recording.h"
 #include "skin/effect_parameters.h"
-#include "tests/io/sample_files.h"
+#include "tests/io/damage.h"
 
 namespace pillarfield {
 namespace {
 
-using io_test::bytes_of;
-using io_test::error_of;
-using io_test::has_all;
-using io_test::number_at;
-using io_test::TemporaryDirectory;
-using io_test::write_bytes;
+// NOLINTNEXTLINE(google-build-using-namespace): tests of these files
+using namespace io_test;
 
 using Names = std::vector<std::string>;
 
@@ -192,33 +185,13 @@ TEST(CalibrationFile, RefusesOtherFormats) {
                       {"text", "is not an HDF5 file"}));
 }
 
-// Edits of the cases below, by calls of HDF5.
-
-void set_number(hid_t file, const char* object, const char* name, double value) {
-  if (H5Aexists_by_name(file, object, name, H5P_DEFAULT) > 0) {
-    H5Adelete_by_name(file, object, name, H5P_DEFAULT);
-  }
-  const hid_t space = H5Screate(H5S_SCALAR);
-  const hid_t attribute = H5Acreate_by_name(file, object, name, H5T_IEEE_F64BE, space, H5P_DEFAULT,
-                                            H5P_DEFAULT, H5P_DEFAULT);
-  H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
-  H5Aclose(attribute);
-  H5Sclose(space);
-}
-
-struct Damage {
-  std::string name;
-  std::function<void(hid_t)> action;
-  std::vector<std::string> message;
-};
-
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const Damage kDamages[] = {
     {"version 2", [](hid_t f) { set_number(f, "/", "version", 2); }, {"version is 2"}},
-    {"no skin", [](hid_t f) { H5Ldelete(f, "/skin", H5P_DEFAULT); }, {"has no /skin"}},
+    {"no skin", [](hid_t f) { remove_link(f, "/skin"); }, {"has no /skin"}},
     {"no rows",
-     [](hid_t f) { H5Adelete_by_name(f, "/skin", "rows", H5P_DEFAULT); },
+     [](hid_t f) { remove_attribute(f, "/skin", "rows"); },
      {"/skin", "no attribute 'rows'"}},
     {"half a column", [](hid_t f) { set_number(f, "/skin", "cols", 7.5); }, {"cols is 7.5"}},
     {"NaN rows", [](hid_t f) { set_number(f, "/skin", "rows", kNan); }, {"rows is nan"}},
@@ -236,7 +209,7 @@ const Damage kDamages[] = {
      [](hid_t f) { set_number(f, "/calibration/effects", "leak_inside", 0.5); },
      {"leak inside a pillar is 0.5"}},
     {"leak half there",
-     [](hid_t f) { H5Adelete_by_name(f, "/calibration/effects", "leak_across", H5P_DEFAULT); },
+     [](hid_t f) { remove_attribute(f, "/calibration/effects", "leak_across"); },
      {"/calibration/effects", "no 'leak_across'"}},
     {"half a tile",
      [](hid_t f) { set_number(f, "/calibration/effects", "wire_tile_rows", 0.5); },
@@ -251,11 +224,11 @@ const Damage kDamages[] = {
      [](hid_t f) { set_number(f, "/calibration/effects", "curve_readings", 3); },
      {"1 readings and 0 loads"}},
     {"one bend plane",
-     [](hid_t f) { H5Ldelete(f, "/calibration/bend_y", H5P_DEFAULT); },
+     [](hid_t f) { remove_link(f, "/calibration/bend_y"); },
      {"bend_x, bend_y and bend_xy"}},
     {"a step of text frames",
      [](hid_t f) {
-       H5Ldelete(f, "/history/1", H5P_DEFAULT);
+       remove_link(f, "/history/1");
        H5Gclose(H5Gcreate2(f, "/history/1", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
        set_number(f, "/history/1", "step", 1);
      },
@@ -264,18 +237,10 @@ const Damage kDamages[] = {
 
 TEST(CalibrationFile, DamageEndsInOneError) {
   const TemporaryDirectory directory;
-  const auto path = directory / "cal.h5";
-  for (const Damage& damage : kDamages) {
-    SCOPED_TRACE(damage.name);
-    write_calibration_file(path, full_calibration(), Replace::anything);
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    ASSERT_GE(file, 0);
-    damage.action(file);
-    ASSERT_GE(H5Fclose(file), 0);
-    const std::string error = error_of([&] { (void)read_calibration_file(path); });
-    EXPECT_TRUE(has_all(error, {path.string()}));
-    EXPECT_TRUE(has_all(error, damage.message));
-  }
+  expect_refused(
+      directory / "cal.h5", kDamages,
+      [](const auto& path) { write_calibration_file(path, full_calibration()); },
+      [](const auto& path) { (void)read_calibration_file(path); });
 }
 
 /// A damaged file gives an Error or a calibration in range, never a crash.
@@ -283,27 +248,14 @@ TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   const TemporaryDirectory directory;
   write_calibration_file(directory / "whole.h5", full_calibration());
   const std::string whole = bytes_of(directory / "whole.h5");
-  const auto path = directory / "broken.h5";
-  // The checksums of our own files keep HDF5 from crashing in the test process.
-  const ReadOptions trusted = {.trust = true};
-  const auto try_to_read = [&](const std::string& bytes) {
-    write_bytes(path, bytes);
-    try {
-      check(read_calibration_file(path, trusted), "read");
-    } catch (const Error& error) {
-      EXPECT_TRUE(has_all(error.what(), {path.string()}));
-    }
+  const auto read = [](const auto& path) {
+    check(read_calibration_file(path, {.trust = true}), "read");
   };
-  for (std::uint64_t trial = 0; trial < 300; ++trial) {
-    std::string bytes = whole;
-    bytes[number_at(trial, 0) % bytes.size()] = static_cast<char>(number_at(trial, 1));
-    try_to_read(bytes);
-  }
-  for (std::size_t part = 1; part < 100; ++part) {
-    write_bytes(path, whole.substr(0, whole.size() * part / 100));
-    EXPECT_TRUE(
-        has_all(error_of([&] { (void)read_calibration_file(path, trusted); }), {path.string()}));
-  }
+  read_changed(directory / "broken.h5", whole, 300, read);
+  read_cut(directory / "cut.h5", whole, 100, [&](const auto& path) {
+    read(path);
+    ADD_FAILURE() << "a part was read";
+  });
 }
 
 }  // namespace

@@ -1,29 +1,19 @@
 #include "pillarfield/contact_file.h"
 
-#include <gtest/gtest.h>
-#include <hdf5.h>
-
 #include <algorithm>
 #include <limits>
 #include <set>
 #include <sstream>
 
 #include "pillarfield/force_file.h"
+#include "tests/io/damage.h"
 #include "tests/io/sample_contacts.h"
-#include "tests/io/sample_files.h"
 
 namespace pillarfield {
 namespace {
 
-using io_test::bytes_of;
-using io_test::cells_of;
-using io_test::error_of;
-using io_test::has_all;
-using io_test::sample_contacts;
-using io_test::sample_forces;
-using io_test::TemporaryDirectory;
-using io_test::write_bytes;
-using io_test::written_out;
+// NOLINTNEXTLINE(google-build-using-namespace): tests of these files
+using namespace io_test;
 
 using Names = std::vector<std::string>;
 
@@ -76,7 +66,7 @@ TEST(ContactColumns, HaveNamesOfTheirOwn) {
 }
 
 TEST(ContactColumns, SetWhatTheyGet) {
-  ContactQuantities expected = io_test::sample_quantities(3);
+  ContactQuantities expected = sample_quantities(3);
   ContactQuantities set;
   for (const auto& column : quantity_columns(true)) column.set(set, column.get(expected));
   EXPECT_EQ(cells_of(quantity_columns(true), set), cells_of(quantity_columns(true), expected));
@@ -266,23 +256,17 @@ TEST(ContactsOfForceFile, ComeWithEachFrame) {
 /// Changes the one value of an unsigned column at `row`.
 void overwrite(const std::filesystem::path& path, const char* column, hsize_t row,
                std::uint64_t value) {
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
-  const hid_t space = H5Dget_space(dataset);
-  const hsize_t one = 1;
-  H5Sselect_hyperslab(space, H5S_SELECT_SET, &row, nullptr, &one, nullptr);
-  const hid_t memory = H5Screate_simple(1, &one, nullptr);
-  EXPECT_GE(H5Dwrite(dataset, H5T_NATIVE_UINT64, memory, space, H5P_DEFAULT, &value), 0);
-  H5Sclose(memory);
-  H5Sclose(space);
-  H5Dclose(dataset);
-  H5Fclose(file);
-}
-
-void remove_link(const std::filesystem::path& path, const char* name) {
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  EXPECT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0);
-  H5Fclose(file);
+  edit(path, [&](hid_t file) {
+    const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(dataset);
+    const hsize_t one = 1;
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &row, nullptr, &one, nullptr);
+    const hid_t memory = H5Screate_simple(1, &one, nullptr);
+    EXPECT_GE(H5Dwrite(dataset, H5T_NATIVE_UINT64, memory, space, H5P_DEFAULT, &value), 0);
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(dataset);
+  });
 }
 
 TEST(ContactsOfForceFile, DamageIsAnError) {
@@ -301,7 +285,7 @@ TEST(ContactsOfForceFile, DamageIsAnError) {
   for (const char* name : {"/contacts/id", "/contacts/slip_margin", "/contacts/patch",
                            "/contacts/patch/normal_n", "/contacts/ended/id"}) {
     write_forces(path, 2);
-    remove_link(path, name);
+    edit(path, [&](hid_t file) { remove_link(file, name); });
     EXPECT_TRUE(has_all(error_of([&] { const ForceFileReader reader(path); }), {"has no", name}));
   }
 }
@@ -311,8 +295,10 @@ TEST(ContactTables, WithoutTheFrictionsDeviationAreRead) {
   const TemporaryDirectory directory;
   const auto path = directory / "f.h5";
   write_forces(path, 2);
-  remove_link(path, "/contacts/friction_deviation");
-  remove_link(path, "/contacts/patch/friction_deviation");
+  edit(path, [](hid_t file) {
+    remove_link(file, "/contacts/friction_deviation");
+    remove_link(file, "/contacts/patch/friction_deviation");
+  });
   FrameContacts expected = sample_contacts(1);
   expected.total.friction_deviation.reset();
   for (TrackedContact& contact : expected.contacts) contact.quantities.friction_deviation.reset();

@@ -1,21 +1,22 @@
-// Files that once crashed a reader, hung it, or were read without an error.
+// Files that once crashed a reader, hung it, or were read without an error, and files with a few
+// changed bytes.
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <array>
+#include <numeric>
 #include <thread>
 
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/recording.h"
-#include "tests/io/sample_files.h"
+#include "tests/io/damage.h"
 
 namespace pillarfield {
 namespace {
 
-using io_test::error_of;
-using io_test::has_all;
+// NOLINTNEXTLINE(google-build-using-namespace): tests of these files
+using namespace io_test;
 
 const std::filesystem::path kDamagedFiles = PILLARFIELD_DAMAGED_FILES;
 
@@ -112,6 +113,70 @@ TEST(DamagedFiles, AreDetectedWhileOtherThreadsRead) {
                      Error);
       }
     });
+  }
+}
+
+/// Compressed if `gzip`.
+void put_values(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& extent,
+                bool gzip) {
+  std::size_t values = 1;
+  for (const hsize_t size : extent) values *= size;
+  std::vector<float> rising(values);
+  std::iota(rising.begin(), rising.end(), 1.0f);
+  const int rank = static_cast<int>(extent.size());
+  const hid_t space = H5Screate_simple(rank, extent.data(), nullptr);
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  if (gzip) {
+    const std::vector<hsize_t> chunk(extent.size(), 3);
+    H5Pset_chunk(layout, rank, chunk.data());
+    H5Pset_shuffle(layout);
+    H5Pset_deflate(layout, 4);
+  }
+  const hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+  H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, rising.data());
+  H5Dclose(dataset);
+  H5Pclose(layout);
+  H5Sclose(space);
+}
+
+/// A recording with and without checksums: older formats, compressed values and strings of variable
+/// length have none.
+struct Seed {
+  const char* name;
+  bool latest;  ///< format of HDF5
+  bool variable_texts;
+  bool gzip;
+};
+
+void write_seed(const std::filesystem::path& path, const Seed& seed) {
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  if (seed.latest) H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  ASSERT_GE(file, 0);
+  set_text(file, "/", "format", "pillarfield-recording", seed.variable_texts);
+  set_number(file, "/", "version", 1);
+  for (const char* group : {"/frames", "/skin", "/calibration"}) {
+    H5Gclose(H5Gcreate2(file, group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  }
+  put_values(file, "/frames/raw", H5T_STD_U8LE, {5, 6, 6}, seed.gzip);
+  put_values(file, "/frames/time", H5T_IEEE_F64LE, {5}, seed.gzip);
+  put_values(file, "/calibration/gain", H5T_IEEE_F32LE, {6, 6}, seed.gzip);
+  set_number(file, "/skin", "counts_per_newton", 320);
+  H5Pclose(access);
+  EXPECT_GE(H5Fclose(file), 0);
+}
+
+TEST(Mutants, NeverCrash) {
+  const TemporaryDirectory directory;
+  for (const Seed& seed : {Seed{"old", false, false, false}, Seed{"old, gzip", false, false, true},
+                           Seed{"old, variable strings", false, true, true},
+                           Seed{"new, variable strings", true, true, true}}) {
+    SCOPED_TRACE(seed.name);
+    const auto path = directory / "whole.h5";
+    write_seed(path, seed);
+    ASSERT_NO_THROW(read_recording_whole(path));
+    read_changed(directory / "broken.h5", bytes_of(path), 40, read_recording_whole);
+    std::filesystem::remove(path);
   }
 }
 
