@@ -22,7 +22,8 @@ set(PILLARFIELD_TEST_PREFIX "")
 # in programs without them (LEAKS in pillarfield_test); device_leaks counts leaks of devices.
 set(PILLARFIELD_LEAKS_SOUGHT "")
 if(PILLARFIELD_SANITIZE)
-  set(asan_options "detect_stack_use_after_return=1:strict_string_checks=1")
+  # A small quarantine: forking copies its page tables.
+  set(asan_options "detect_stack_use_after_return=1:strict_string_checks=1:quarantine_size_mb=16")
   list(APPEND PILLARFIELD_TEST_ENVIRONMENT
     "ASAN_OPTIONS=${asan_options}:detect_leaks=0"
     "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1")

@@ -79,7 +79,7 @@ class WireFit {
         good.push_back(i);
       }
     }
-    if (!good.empty()) find_indenters(good);
+    if (!good.empty()) find_bodies(good);
   }
 
   /// From now on tares are an offset, and no load of the wires.
@@ -149,7 +149,7 @@ class WireFit {
 
  private:
   /// Finds the sensels under the body at rest, and those that nothing touches beside it.
-  void find_indenters(const std::vector<std::size_t>& good) {
+  void find_bodies(const std::vector<std::size_t>& good) {
     const std::span<const float> alone = std::as_const(means_[0]).readings<float>();
     std::vector<float> values;
     for (const std::size_t i : good) values.push_back(alone[i]);

@@ -258,8 +258,8 @@ PF_INLINE ShearWeights shear_weights(Stages stages) {
 #ifdef PF_SHEAR_COEFFICIENT
   if (PF_NAMED(shear_coefficient)) {
     weights.are_one = false;
-    weights.x = PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
-    weights.y = PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+    weights.x = PF_VALUE(Real, per_coefficient_x);
+    weights.y = PF_VALUE(Real, per_coefficient_y);
   }
 #endif
   return weights;
@@ -396,7 +396,7 @@ PF_INLINE Solution correct_solution(Solution solution, ShearRatios ratios, Stage
   if (PF_NAMED(uncertainty)) {
     const DirectionInterval interval =
         corrected_interval(solution.interval, solution.force, solution.direction, solution.status,
-                           PF_CONSTANT(Real, PF_SEGMENT_POINT), moved, shear_weights(stages));
+                           PF_VALUE(Real, segment_point), moved, shear_weights(stages));
     solution.interval = either_interval(loaded, interval, solution.interval);
   }
 #endif

@@ -272,7 +272,7 @@ TEST(WireNetwork, OfASceneReadsThroughItsOhms) {
   scene.skin.counts_per_newton = 100;
   scene.skin.full_scale_counts = 200;
   scene.load = DirectionSweep{1, 1, 0, {0.5}};
-  scene.sensor.wires = Wires{2, 2, 30, 0, 0.0, 1e4};
+  scene.sensor.wires = Wires{2, 2, 30, 0, 1e4};
   FrameBuffer raw(SenselType::f32, 2, 2);
   ForceField truth(1, 1);
   const Simulator simulator(scene);
@@ -288,7 +288,7 @@ TEST(WireNetwork, OfASceneMayLieBeforeTheTare) {
   scene.skin.full_scale_counts = 200;
   scene.load = DirectionSweep{1, 1, 0, {0.5}};
   scene.sensor.tare_counts = 60;
-  scene.sensor.wires = Wires{2, 2, 30, 0, 0.0, 1e4, TareOrigin::offset};
+  scene.sensor.wires = Wires{2, 2, 30, 0, 1e4, TareOrigin::offset};
   FrameBuffer raw(SenselType::f32, 2, 2);
   ForceField truth(1, 1);
   Simulator(scene).render(0, raw, truth);
@@ -313,7 +313,7 @@ TEST(SensorEffectsOfAScene, FollowTheOrderOfTheSignal) {
   model.response_curve = {{20, 70}, {15, 90}};
   model.gain_spread = 0.2;
   model.tare_counts = 6;
-  model.wires = Wires{4, 4, 100, 80, {}, 1e4};
+  model.wires = Wires{4, 4, 100, 80, 1e4};
   scene.bending = Bending{50, {{0, 0.02, 0, 0}}};
   const Simulator simulator(scene);
   const Calibration& calibration = simulator.calibration();

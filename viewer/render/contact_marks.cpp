@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/render/gui_context.h"
+#include "viewer/render/imgui_point.h"
 #include "viewer/render/overlay.h"
 #include "viewer/render/scene.h"
 #include "viewer/style/ticks.h"

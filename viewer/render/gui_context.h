@@ -1,11 +1,8 @@
 #pragma once
 
-#include <imgui.h>
-
 #include <functional>
 
 #include "viewer/gpu/device.h"
-#include "viewer/style/view.h"
 
 struct ImGuiContext;
 
@@ -37,10 +34,5 @@ class GuiContext {
   ImGuiContext* context_;
   vk::raii::DescriptorPool pool_ = nullptr;
 };
-
-/// Converts pixels to Dear ImGui's type.
-inline ImVec2 to_imgui(Vec2 point) {
-  return {static_cast<float>(point.x), static_cast<float>(point.y)};
-}
 
 }  // namespace pillarfield::viewer

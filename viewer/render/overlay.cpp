@@ -10,6 +10,7 @@
 
 #include "viewer/render/contact_marks.h"
 #include "viewer/render/gui_context.h"
+#include "viewer/render/imgui_point.h"
 #include "viewer/render/scene.h"
 #include "viewer/style/ticks.h"
 

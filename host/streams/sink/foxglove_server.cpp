@@ -41,7 +41,7 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
 }
 
 /// The first subprotocol of the client's list that the server speaks; empty if there is none.
-std::string chosen_subprotocol(const http::request<http::empty_indenter>& request) {
+std::string chosen_subprotocol(const http::request<http::empty_body>& request) {
   for (const auto word : http::token_list(request[http::field::sec_websocket_protocol])) {
     std::string name(word.data(), word.size());
     if (is_foxglove_subprotocol(name)) return name;
@@ -115,7 +115,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Hub& hub_;
   websocket::stream<beast::tcp_stream> socket_;
   asio::steady_timer pause_;
-  http::request<http::empty_indenter> request_;
+  http::request<http::empty_body> request_;
   http::response<http::string_body> forbidden_;
   beast::flat_buffer buffer_;
   Subscriptions subscriptions_;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "viewer/render/gui_context.h"
+#include "viewer/render/imgui_point.h"
 
 namespace pillarfield::viewer {
 namespace {

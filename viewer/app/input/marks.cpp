@@ -12,7 +12,7 @@
 
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/window/style.h"
-#include "viewer/render/gui_context.h"
+#include "viewer/render/imgui_point.h"
 #include "viewer/render/overlay.h"
 
 namespace pillarfield::viewer {

@@ -6,7 +6,7 @@
 
 #include "pillarfield/status.h"
 #include "viewer/app/app_state.h"
-#include "viewer/render/gui_context.h"
+#include "viewer/render/imgui_point.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
 

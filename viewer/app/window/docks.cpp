@@ -9,7 +9,7 @@
 #include "viewer/app/panels/widgets.h"
 #include "viewer/app/window/panel_layout.h"
 #include "viewer/app/window/style.h"
-#include "viewer/render/gui_context.h"
+#include "viewer/render/imgui_point.h"
 
 namespace pillarfield::viewer {
 namespace {
