@@ -346,9 +346,15 @@ TEST(Simulator, RefusesScenesOutOfRange) {
       [](Scene& s) {
         s.sensor.response_curve.readings = {1, 2};
       },
-      [](Scene& s) { s.sensor.wires = Wires{1, 64, 0, 0, 1e4}; },
-      [](Scene& s) { s.sensor.wires = Wires{64, 64, 0, 0, 0}; },
-      [](Scene& s) { s.sensor.wires = Wires{64, 64, 0, kNan, 1e4}; },
+      [](Scene& s) {
+        s.sensor.wires = Wires{1, 64, 0, 0, 1e4};
+      },
+      [](Scene& s) {
+        s.sensor.wires = Wires{64, 64, 0, 0, 0};
+      },
+      [](Scene& s) {
+        s.sensor.wires = Wires{64, 64, 0, kNan, 1e4};
+      },
       [](Scene& s) {
         s.bending = Bending{1, {}};
       },
