@@ -8,7 +8,9 @@ if(NOT PILLARFIELD_CLANG)
 endif()
 
 # The constants of the stages, from their table.
-file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/../kernels/frame/stage_table.h" lint_constants REGEX "X\\([a-z_]+, [a-z].*(exact|above|from|per_count|fraction),")
+file(READ "${CMAKE_CURRENT_LIST_DIR}/../kernels/frame/stage_table.h" lint_table)
+string(REGEX MATCHALL "X\\([a-z_]+, [^\n]*(exact|above|from|per_count|fraction),"
+  lint_constants "${lint_table}")
 list(TRANSFORM lint_constants REPLACE ".*X\\(([a-z_]+),.*" "-DPF_VALUE_\\1=1.0f")
 list(TRANSFORM lint_constants REPLACE "=1.0f" "=1" OUTPUT_VARIABLE lint_whole_constants)
 set(lint_all_stages -DPF_RANGE -DPF_SATURATION -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
