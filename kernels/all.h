@@ -19,6 +19,7 @@
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"
 #include "pillar/uncertainty.h"
+#include "pillar/direction_interval.h"
 #include "pillar/corrected_interval.h"
 #endif
 #include "frame/layout.h"
