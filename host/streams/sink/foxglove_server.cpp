@@ -1,5 +1,6 @@
 #include "streams/sink/foxglove_server.h"
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -311,7 +312,6 @@ struct FoxgloveServer::State {
   void take(tcp::socket socket);
   /// Runs `action` in the server's thread, and waits for it.
   void run(const std::function<void()>& action);
-  [[nodiscard]] bool all(bool (*condition)(const Session&));
 
   Hub hub;
   asio::io_context context{1};
@@ -402,14 +402,6 @@ void FoxgloveServer::State::run(const std::function<void()>& action) {
   if (error) std::rethrow_exception(error);
 }
 
-bool FoxgloveServer::State::all(bool (*condition)(const Session&)) {
-  bool holds = true;
-  run([&] {
-    for (const auto& session : hub.sessions) holds = holds && condition(*session);
-  });
-  return holds;
-}
-
 FoxgloveServer::FoxgloveServer(const SocketAddress& address, const std::string& target,
                                const ServerLimits& limits)
     : state_(std::make_unique<State>(address, target, limits)) {}
@@ -430,29 +422,29 @@ void FoxgloveServer::send(std::span<const ServerMessage> messages) {
 void FoxgloveServer::finish() {
   constexpr std::chrono::milliseconds kStep{5};
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
-  const auto wait_until_all = [&](bool (*condition)(const Session&)) {
-    while (!state_->all(condition) && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(kStep);
+  const auto wait_until_all = [&](auto condition) {
+    bool holds = false;
+    while (!holds && std::chrono::steady_clock::now() < deadline) {
+      state_->run([&] { holds = std::ranges::all_of(state_->hub.sessions, condition); });
+      if (!holds) std::this_thread::sleep_for(kStep);
     }
   };
-  wait_until_all([](const Session& session) { return session.is_idle(); });
+  wait_until_all([](const auto& session) { return session->is_idle(); });
   state_->run([&] {
     state_->acceptor.close();
     const auto sessions = state_->hub.sessions;
     for (const auto& session : sessions) session->close(websocket::close_code::going_away);
   });
-  wait_until_all([](const Session&) { return false; });  // gone
+  wait_until_all([](const auto&) { return false; });  // gone
 }
 
 void FoxgloveServer::add_to(LiveSinkStatistics& statistics) const {
   const Hub& hub = state_->hub;
   statistics.clients = hub.clients;
   statistics.refused = hub.refused;
-  {
-    const std::scoped_lock lock(hub.mutex);
-    statistics.notice = hub.notice;
-  }
   statistics.dropped += hub.lost;
+  const std::scoped_lock lock(hub.mutex);
+  statistics.notice = hub.notice;
 }
 
 }  // namespace pillarfield
