@@ -15,7 +15,7 @@ constexpr double kContactFraction = 0.05;  ///< of the skin
 constexpr int kIndenters = 8;
 constexpr double kLoadN = 600;
 constexpr double kTravelMm = 30;
-constexpr double kNoiseCounts = 0.5;
+constexpr double kContactNoiseCounts = 0.5;
 constexpr double kThresholdCounts = 2.5;
 
 struct Motion {
@@ -60,7 +60,7 @@ Scene scene_of(Indenters indenters, std::size_t frames) {
   Scene scene;
   scene.skin = bare_plan(kSquareMetre).skin;
   scene.skin.threshold_counts = kThresholdCounts;
-  scene.sensor.noise_counts = kNoiseCounts;
+  scene.sensor.noise_counts = kContactNoiseCounts;
   scene.sensor.adc_bits = 8;
   scene.rate_hz = static_cast<double>(frames);
   scene.frames = static_cast<std::uint32_t>(frames);

@@ -59,6 +59,7 @@ template <class Value>
 std::vector<std::pair<std::string, Value>> choices_of(int count,
                                                       const char* (*word_of)(Value value)) {
   std::vector<std::pair<std::string, Value>> choices;
+  choices.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     choices.emplace_back(word_of(static_cast<Value>(i)), static_cast<Value>(i));
   }

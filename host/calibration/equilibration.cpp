@@ -387,8 +387,8 @@ StepKind equilibrate_step() {
                          "share, from two pressures or more [the better one on held-out "
                          "pressures]")};
   step.examples = {kSimulateIdle, kSimulatePressed, kTareIdle, kEquilibratePressed,
-                   "calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --model linear "
-                   "--calibration tared.h5 -o lines.h5"};
+                   ("calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --model linear "
+                    "--calibration tared.h5 -o lines.h5")};
   return step;
 }
 

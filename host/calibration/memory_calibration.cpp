@@ -132,6 +132,7 @@ ResponseCurve followed_by(const SkinCalibration& calibration, const MemoryFit& f
                           const std::vector<CurveStretch>& pieces) {
   const double leaks = sensel_leak_sum(calibration.planes.effects);
   std::vector<double> knots;
+  knots.reserve(pieces.size() + calibration.planes.effects.curve.loads.size());
   for (const CurveStretch& piece : pieces) knots.push_back(piece.end);
   for (const double load : calibration.planes.effects.curve.loads) {
     if (load / leaks > pieces.front().end) knots.push_back(load / leaks);

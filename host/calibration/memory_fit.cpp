@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "calibration/golden_section.h"
 #include "calibration/normal_equations.h"
@@ -45,6 +46,17 @@ std::array<double, kCreepTimes> creep_times(const Samples& samples) {
   return times;
 }
 
+/// Brings the columns of creep from the load `before` a sample to the sample.
+void creep_on(std::span<double> states, const std::array<double, kCreepTimes>& times,
+              double interval_s, double before) {
+  const bool first = interval_s <= 0;
+  for (std::size_t i = 0; i < kCreepTimes; ++i) {
+    const double crept = first ? 0 : -states[i];
+    const double rate = -std::expm1(-interval_s / times.at(i));
+    states[i] = -(crept + (first ? 0 : rate * (before - crept)));
+  }
+}
+
 /// Columns: the pieces of c, the plays, all creep times, the remainder.
 NormalEquations equations_of(const Samples& samples, const std::vector<CurveStretch>& stretches,
                              double zone, double range) {
@@ -67,12 +79,8 @@ NormalEquations equations_of(const Samples& samples, const std::vector<CurveStre
       const double held = first ? 0 : -play;
       play = -std::clamp(held, std::max(0.0, load - kWidths.at(i) * range), load);
     }
-    for (std::size_t i = 0; i < kCreepTimes; ++i) {
-      double& state = row[pieces + kMaxPlays + i];
-      const double crept = first ? 0 : -state;
-      const double rate = -std::expm1(-sample.interval_s / times.at(i));
-      state = -(crept + (first ? 0 : rate * (before - crept)));
-    }
+    creep_on(std::span(row).subspan(pieces + kMaxPlays, kCreepTimes), times, sample.interval_s,
+             before);
     // It grows with the first load to the full.
     row.back() = std::min(first ? 0 : row.back(), -std::min(1.0, load / (kWidths[0] * range)));
     before = load;

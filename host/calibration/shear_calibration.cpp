@@ -244,8 +244,8 @@ StepKind shear_step() {
                    kTareIdle,
                    "simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5",
                    kEquilibratePressed,
-                   "calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 "
-                   "-o shear.h5"};
+                   ("calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 "
+                    "-o shear.h5")};
   return step;
 }
 

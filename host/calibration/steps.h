@@ -83,7 +83,7 @@ struct StepFrames {
 };
 
 /// What a step tells. Programs read the facts, people the lines of text.
-struct StepReport {
+struct StepReport {  // NOLINT(bugprone-exception-escape): JSON's move constructor does not throw
   std::string headline;
   nlohmann::ordered_json facts;
   std::vector<std::string> measures;
@@ -106,7 +106,7 @@ enum class WireUse : std::uint8_t {
 };
 
 /// A step at work.
-class StepWork {
+class StepWork {  // NOLINT(bugprone-exception-escape): as StepReport
  public:
   SkinCalibration before;
   std::vector<StepFrames> files;

@@ -54,11 +54,14 @@ Share share_of(std::vector<std::pair<double, double>> changes) {
     squares += expected * expected;
   }
   auto middle = changes.begin();
-  for (double sum = std::abs(middle->first); sum < weights / 2; sum += std::abs(middle->first)) {
+  double sum = std::abs(middle->first);
+  while (sum < weights / 2) {
     ++middle;
+    sum += std::abs(middle->first);
   }
   const double share = middle->second / middle->first;
   std::vector<double> left;
+  left.reserve(changes.size());
   for (const auto& [expected, seen] : changes) left.push_back(std::abs(seen - share * expected));
   // 1.4826 median distances are a standard deviation; that of a median is sqrt(pi/2) of a mean's.
   return {share, 1.2533 * 1.4826 * median(left) / std::sqrt(squares)};
@@ -152,6 +155,7 @@ class WireFit {
   void find_bodies(const std::vector<std::size_t>& good) {
     const std::span<const float> alone = std::as_const(means_[0]).readings<float>();
     std::vector<float> values;
+    values.reserve(good.size());
     for (const std::size_t i : good) values.push_back(alone[i]);
     const float most = *std::ranges::max_element(values);
     const float unloaded = median(values);

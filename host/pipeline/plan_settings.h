@@ -13,14 +13,14 @@ namespace pillarfield {
 
 /// A number of the settings.
 struct PlanSetting {
-  const char* name;  ///< in Python
-  std::optional<double> PlanSettings::*member;
-  const char* option;   ///< of the command line; nullptr: none
-  const char* heading;  ///< of its help
-  const char* unit;
+  const char* name = "";  ///< in Python
+  std::optional<double> PlanSettings::*member = nullptr;
+  const char* option = nullptr;  ///< of the command line; nullptr: none
+  const char* heading = "";      ///< of its help
+  const char* unit = "";
   Range range;
-  bool whole;
-  const char* help;  ///< one sentence, with the default in brackets
+  bool whole = false;
+  const char* help = "";  ///< one sentence, with the default in brackets
 };
 
 inline constexpr Range kAnyNumber = {-1e300, 1e300};

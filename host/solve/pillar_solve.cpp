@@ -196,10 +196,12 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
   for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
     if (row / 2 % interval != index % interval) continue;
     for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
-      const bool untouched = !is_touched(forces, row / 2, col / 2);
+      const std::size_t pillar_row = row / 2;
+      const std::size_t pillar_col = col / 2;
+      const bool untouched = !is_touched(forces, pillar_row, pillar_col);
       float& tare = plan.calibration.tare[row * frame.cols + col];
       const float shift =
-          maths::drift_at(drift, static_cast<float>(col / 2), static_cast<float>(row / 2));
+          maths::drift_at(drift, static_cast<float>(pillar_col), static_cast<float>(pillar_row));
       tare = maths::follow_tare(tare, sensel.untared(row, col), untouched, rate, shift);
     }
   }

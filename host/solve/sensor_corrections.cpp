@@ -81,9 +81,14 @@ PillarTaps pillar_leak_taps(const PillarLeak& leak) {
   // weights whole + edge * by_edge + corner * by_corner.
   constexpr int kWaves = 8;  // along each axis: sums of these polynomials are exact
   const double whole = 1 / (1 + 4 * (leak.edge + leak.corner));
-  double ee = 0, ec = 0, cc = 0, er = 0, cr = 0;  // normal equations
+  double ee = 0;  // normal equations
+  double ec = 0;
+  double cc = 0;
+  double er = 0;
+  double cr = 0;
   for (int i = 0; i < kWaves * kWaves; ++i) {
-    const double x = std::cos(2 * std::numbers::pi * (i / kWaves) / kWaves);
+    const int row = i / kWaves;
+    const double x = std::cos(2 * std::numbers::pi * row / kWaves);
     const double y = std::cos(2 * std::numbers::pi * (i % kWaves) / kWaves);
     const double response = 1 + 2 * leak.edge * (x + y) + 4 * leak.corner * x * y;
     const double by_edge = response * (2 * (x + y) - 4);

@@ -66,7 +66,7 @@ Stages named_stages(const SolverPlan& plan) {
 /// and the model of hysteresis and creep.
 template <class Stages>
 Stages plan_constants(const SolverPlan& plan) {
-  Stages stages = named_stages<Stages>(plan);
+  auto stages = named_stages<Stages>(plan);
   const std::vector<StageConstant> constants = stage_constants(plan);
   std::size_t i = 0;
 #define PF_SET(name, needed, kind, formula) \

@@ -252,9 +252,11 @@ TEST(Equilibration, FindsAResponseCurveAndADeadZone) {
 /// The response V/(1 + V/600), from V = 1 to 300 counts.
 ResponseCurve saturating_curve() {
   ResponseCurve curve;
-  for (double load = 1; load < 300; load *= 1.2) {
+  double load = 1;
+  while (load < 300) {
     curve.loads.push_back(load);
     curve.readings.push_back(load / (1 + load / 600));
+    load *= 1.2;
   }
   return curve;
 }

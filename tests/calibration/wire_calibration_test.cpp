@@ -93,12 +93,13 @@ TEST(WireCorrection, TakesAnOffsetOffFirst) {
   const double per_count = 50 / (1e4 * 200);
   const WireCrosstalk wires = {64, 64, per_count, per_count, per_count, TareOrigin::offset};
   FrameBuffer frame(SenselType::f32, 64, 64);
-  std::vector<double> readings(64 * 64, 90);
+  std::vector<double> readings(std::size_t{64} * 64, 90);
   read_through_wires(wires, 64, 64, readings);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     frame.readings<float>()[i] = static_cast<float>(12 + readings[i]);
   }
-  WireCorrection correct("p.h5", skin, SenselType::f32, wires, std::vector<float>(64 * 64, 12));
+  WireCorrection correct("p.h5", skin, SenselType::f32, wires,
+                         std::vector<float>(std::size_t{64} * 64, 12));
   EXPECT_NEAR(static_cast<const float*>(correct(frame.view()).data)[0], 12 + 90, 0.05);
 }
 
@@ -109,7 +110,7 @@ TEST(WireCorrection, RefusesRowsThatLoseTooMuch) {
   const WireCrosstalk wires = {64, 64, per_count, per_count, per_count};
   const auto correct = [&](double counts) {
     FrameBuffer frame(SenselType::f32, 64, 64);
-    std::vector<double> readings(64 * 64, counts);
+    std::vector<double> readings(std::size_t{64} * 64, counts);
     read_through_wires(wires, 64, 64, readings);
     std::ranges::copy(readings, frame.readings<float>().begin());
     (void)WireCorrection("p240.h5", skin, SenselType::f32, wires, {})(frame.view());

@@ -223,7 +223,7 @@ TEST_F(KernelCacheTest, TemporaryDirectoriesOfKilledProcessesAreRemoved) {
 
 TEST_F(KernelCacheTest, WhatPoclLeavesIsRemoved) {
   const auto make = [&](const std::string& name, const char* text, std::chrono::hours age) {
-    const fs::path path = folder_ / "kernels" / name;
+    fs::path path = folder_ / "kernels" / name;
     fs::create_directories(path.parent_path());
     std::ofstream(path) << text;
     fs::last_write_time(path, fs::file_time_type::clock::now() - age);

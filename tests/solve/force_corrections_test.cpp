@@ -98,7 +98,8 @@ ForceField carried(const ForceField& truth, const PillarLeak& leak) {
       for (const int step : {-side - 1, -side, -side + 1, -1, 0, 1, side - 1, side, side + 1}) {
         const bool beside = std::abs(step) == 1 || std::abs(step) == side;
         const double part = step == 0 ? 1 : beside ? leak.edge : leak.corner;
-        all += part * (truth.*plane)[static_cast<std::size_t>(at + step)];
+        const int other = at + step;
+        all += part * (truth.*plane)[static_cast<std::size_t>(other)];
       }
       (sum.*plane)[static_cast<std::size_t>(at)] = static_cast<float>(all);
     }

@@ -51,7 +51,7 @@ class RawClient {
           (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n");
     while (received_.find("\r\n\r\n") == std::string::npos && receive()) {
     }
-    const std::string status = received_.substr(received_.find(' ') + 1, 3);
+    std::string status = received_.substr(received_.find(' ') + 1, 3);
     received_.erase(0, received_.find("\r\n\r\n") + 4);
     return status;
   }

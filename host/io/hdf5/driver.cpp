@@ -27,7 +27,7 @@ struct DriverOptions {
 };
 
 struct DriverFile : H5FD_t {
-  explicit DriverFile(int file) : descriptor(file), bytes(file) {}
+  explicit DriverFile(int file) : H5FD_t{}, descriptor(file), bytes(file) {}
 
   int descriptor;
   PartBytes bytes;  ///< for writing

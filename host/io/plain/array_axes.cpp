@@ -18,8 +18,8 @@ namespace {
 const std::vector<std::string> kAxisWords = {"frames", "rows", "columns"};
 
 /// Ratio of the longer to the shorter side of a frame.
-double elongation(double rows, double cols) {
-  return std::max(rows, cols) / std::max(1.0, std::min(rows, cols));
+double elongation(double one, double other) {
+  return std::max(one, other) / std::max(1.0, std::min(one, other));
 }
 
 /// Sum and number of the absolute differences of neighbours; NaN is left out.

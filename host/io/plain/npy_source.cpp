@@ -22,7 +22,7 @@ constexpr std::size_t kMostMembers = 1000;
 /// The header of an array of readings. Throws Error if it is damaged, or the array has booleans or
 /// Fortran order.
 NpyHeader header_of_readings(std::string_view head, const std::string& place) {
-  const NpyHeader header = parse_npy_header(head, place);
+  NpyHeader header = parse_npy_header(head, place);
   if (header.is_boolean) {
     throw Error(place, "holds bool, which is not a type of readings",
                 "store integers, float32 or float64");
