@@ -81,7 +81,10 @@ class LiveSessionTest : public testing::Test {
   LiveSession session_{sensor_, plan_, processor_, live_sink_info(plan_, "", "idle")};
 };
 
-std::vector<float> plane_of_20() { return std::vector<float>(16 * 16, 20); }
+std::vector<float> plane_of(float counts) {
+  std::vector<float> plane(std::size_t{16} * 16, counts);
+  return plane;
+}
 
 TEST_F(LiveSessionTest, ARecordingWithoutTareGetsTheFirstOneThatIsMeasured) {
   session_.record(path_);
@@ -101,8 +104,8 @@ TEST_F(LiveSessionTest, ARecordingWithoutTareGetsTheFirstOneThatIsMeasured) {
   events = run(200);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].recording, path_) << "it keeps the tare of its start";
-  EXPECT_EQ(processor_.tare(), std::vector<float>(16 * 16, 30));
-  EXPECT_EQ(recorded_tare(), plane_of_20());
+  EXPECT_EQ(processor_.tare(), plane_of(30));
+  EXPECT_EQ(recorded_tare(), plane_of(20));
 }
 
 TEST_F(LiveSessionTest, ARecordingStartsWithTheTareOfTheRun) {
@@ -111,7 +114,7 @@ TEST_F(LiveSessionTest, ARecordingStartsWithTheTareOfTheRun) {
   session_.record(path_);
   EXPECT_THROW(session_.record(path_), Error);
   run(20);
-  EXPECT_EQ(recorded_tare(), plane_of_20());
+  EXPECT_EQ(recorded_tare(), plane_of(20));
   EXPECT_FALSE(session_.stop_recording());
 }
 
@@ -122,7 +125,7 @@ TEST_F(LiveSessionTest, ATareBeingMeasuredIsThatOfTheRecording) {
   session_.start_tare(milliseconds(50));
   session_.record(path_);
   EXPECT_EQ(run(200)[0].recording, "");
-  EXPECT_EQ(recorded_tare(), std::vector<float>(16 * 16, 40));
+  EXPECT_EQ(recorded_tare(), plane_of(40));
 }
 
 TEST_F(LiveSessionTest, PausedFramesAreCountedButNotSolved) {
