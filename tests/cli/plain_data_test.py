@@ -140,7 +140,7 @@ class PlainData(CommandTest):
         for options in (("group/raw",), ("/packed",), ("lines", "--shape", "6x8")):
             self.assert_solved(path, "--times", "stamps", "--dataset", *options)
         self.assert_solved(path, "--dataset", "frame", frames=slice(3, 4), times=[0])
-        for name, words in (("mask", "booleans"), ("group", "no dataset"), ("nix", "/group/raw"),
+        for name, words in (("mask", "booleans"), ("group", "not a dataset"), ("nix", "/group/raw"),
                             ("stamps", "shape 5"), ("elsewhere", "another file")):
             self.assert_fails("solve", path, "-o", self.path("f.h5"), "--rate", 1, "--dataset", name,
                               names=[words])
