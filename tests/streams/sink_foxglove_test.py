@@ -113,7 +113,7 @@ class FoxgloveTest(SinkTest):
                     ({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 999}]}, "no channel"),
                     ({"op": "subscribe", "subscriptions": [{"id": -1, "channelId": channel}]}, "whole"),
                     ({"op": "subscribe", "subscriptions": [{"id": 2**32, "channelId": 1}]}, "whole"),
-                    ({"op": "subscribe", "subscriptions": 7}, "no list"),
+                    ({"op": "subscribe", "subscriptions": 7}, "not a list"),
                     ({"op": "unsubscribe", "subscriptionIds": [77]}, "no subscription"),
                     ({"op": "unsubscribe", "subscriptionIds": ["a"]}, "whole"),
                     ({"op": "advertise", "channels": []}, "only knows"),

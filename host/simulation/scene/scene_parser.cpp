@@ -341,13 +341,12 @@ void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& sc
   const char* const key = root.has("chart") ? "chart" : "direction_sweep";
   TomlSection sweep = root.table(key);
   auto contacts = root.tables("contact", "[[contact]]");
-  auto indenters = root.tables("indenter", "[[indenter]]");
-  if (!indenters) {
-    indenters = root.tables("body", "[[body]]");
-    if (indenters) {
-      scene.warnings.emplace_back(
-          "[[body]] is now [[indenter]]; the former name works in this release only");
-    }
+  const bool named_body = root.has("body");
+  auto indenters =
+      named_body ? root.tables("body", "[[body]]") : root.tables("indenter", "[[indenter]]");
+  if (named_body) {
+    scene.warnings.emplace_back(
+        "[[body]] is now [[indenter]]; the former name works in this release only");
   }
   if (sweep.is_present() && contacts) root.fail(key, "comes with [[contact]]", "one of the two");
   if (sweep.is_present() && indenters) root.fail(key, "comes with [[indenter]]", "one of the two");
