@@ -345,7 +345,7 @@ TEST(HostileRing, LyingSizesAreRefused) {
     }
     segment.put(0, ring);
     EXPECT_NE(
-        message_of([&] { (void)open_live_source(name.source(), {}); }).find("no ring of frames"),
+        message_of([&] { (void)open_live_source(name.source(), {}); }).find("not a ring of frames"),
         std::string::npos);
   }
 }

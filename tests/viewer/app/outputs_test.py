@@ -81,10 +81,10 @@ class Outputs(unittest.TestCase):
             self.assertIn("frame,time_s", notes.read_text(encoding="utf-8"))
 
     def test_a_picture_is_a_png(self):
-        for name in ("x.jpg", "-", "x"):
+        for name, words in (("x.jpg", "must end in .png"), ("-", "'-' is not a file"), ("x", "must end in .png")):
             ended = self.view("forces.h5", "--png", name)
             self.assertEqual(ended.returncode, 2, ended)
-            self.assertIn("must end in .png", ended.stderr)
+            self.assertIn(words, ended.stderr)
             self.assertFalse((self.folder / name).exists())
 
     def test_the_default_is_the_most_loaded_frame(self):
