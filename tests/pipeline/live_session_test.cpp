@@ -49,9 +49,10 @@ class IdleSensor final : public FrameStream {
 };
 
 class LiveSessionTest : public testing::Test {
- protected:
+ public:
   ~LiveSessionTest() override { std::filesystem::remove(path_); }
 
+ protected:
   /// Runs for this many more frames, and returns the events.
   std::vector<LiveEvent> run(std::uint64_t frames) {
     const std::uint64_t end = sensor_.sent + frames;
