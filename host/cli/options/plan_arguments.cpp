@@ -93,13 +93,7 @@ void add_device(CLI::App* command, std::string& name) {
   Group device(command, "Device");
   device.text("--device", name, "DEVICE",
               "OpenCL device, by index or part of its name [the best]; see info --devices");
-  command
-      ->add_option_function<std::string>(
-          "--memory",
-          [](const std::string& /*word*/) {
-            fmt::print(stderr, "pillarfield: '--memory' has no effect: the device decides\n");
-          })
-      ->group("");  // a former option, which works in this release only
+  add_former_option(command, "--memory", "'--memory' has no effect any more: the device decides");
 }
 
 void add_contacts(CLI::App* command, ContactOptions& options) {
