@@ -19,7 +19,7 @@ void write_part(const std::filesystem::path& output, ForceFileInfo info, const F
                 double first_time_s) {
   info.part = part;
   ForceField forces(info.rows, info.cols);
-  const std::vector<float> zeros(forces.pillars());
+  const std::vector<float> zeros(forces.elements());
   ForceFieldView view = forces.view();
   for (auto* plane : {&view.magnitude, &view.theta, &view.phi}) *plane = zeros;
   std::ranges::fill(view.uncertainty, zeros);

@@ -9,6 +9,7 @@
 #include "pillar/elementary.h"
 #endif
 #include "pillar/sensel.h"
+#include "pillar/sensel_force.h"
 #include "pillar/direct_solve.h"
 #ifndef PF_WHOLE
 #include "pillar/wires.h"

@@ -117,7 +117,7 @@ py::list ended_of(const FrameContacts& self) {
 class Tracker {
  public:
   Tracker(const SolverPlan& plan, std::uint64_t minimum_pillars, double reach_mm)
-      : tracker_(std::make_unique<ContactTracker>(plan.skin.pillar_pitch_mm(),
+      : tracker_(std::make_unique<ContactTracker>(plan.skin.element_pitch_mm(),
                                                   options_of(plan, minimum_pillars, reach_mm))) {}
 
   /// The contacts of each frame.

@@ -70,7 +70,7 @@ Skin skin_of(const ForceReader& reader) {
   Skin skin;
   skin.rows = 2 * reader.info().rows;
   skin.cols = 2 * reader.info().cols;
-  skin.sensel_pitch_mm = reader.info().pillar_pitch_mm / 2;
+  skin.sensel_pitch_mm = reader.info().element_pitch_mm / 2;
   skin.surface = reader.info().surface;
   return skin;
 }
@@ -115,7 +115,7 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   info.rows = forces.rows();
   info.cols = forces.cols();
   info.frames = forces.frames();
-  info.pillar_pitch_mm = skin.pillar_pitch_mm();
+  info.element_pitch_mm = skin.element_pitch_mm();
   info.angles = planes.contains("theta");
   info.uncertainty = planes.contains("uncertainty_normal");
   info.surface = skin.surface;

@@ -116,12 +116,12 @@ py::dict read_truth(Frames& frames, const IndexRange& range) {
   if (!source.has_truth()) {
     throw Error(source.format(), "it has no true forces", "simulate one that has");
   }
-  ForceStack stack(source.skin().pillar_rows(), source.skin().pillar_cols());
+  ForceStack stack(source.skin().element_rows(), source.skin().element_cols());
   {
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(frames.alone);
     SignalCheck check_signals;
-    ForceField truth(source.skin().pillar_rows(), source.skin().pillar_cols());
+    ForceField truth(source.skin().element_rows(), source.skin().element_cols());
     stack.reserve(range.count);
     for (std::size_t i = 0; i < range.count; ++i) {
       check_signals();

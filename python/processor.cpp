@@ -68,7 +68,7 @@ class Ring {
     if (!contacts) return;
     ContactOptions options;
     set_sensor(options, plan);
-    tracker_.emplace(std::make_unique<ContactTracker>(plan.skin.pillar_pitch_mm(), options));
+    tracker_.emplace(std::make_unique<ContactTracker>(plan.skin.element_pitch_mm(), options));
   }
 
   void submit(const py::array& readings, double time_s, const std::vector<Block>& missing) {

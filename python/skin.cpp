@@ -82,7 +82,7 @@ std::string skin_text(const Skin& skin) {
 /// vectors.
 py::array_t<double> poses(const Skin& skin) {
   std::vector<double> values;
-  const std::vector<Pose> all = poses_of(skin.surface.value_or(Surface{}), skin.pillar_layout());
+  const std::vector<Pose> all = poses_of(skin.surface.value_or(Surface{}), skin.element_grid());
   for (const auto part : {&Pose::position_mm, &Pose::tangent_x, &Pose::tangent_y, &Pose::normal}) {
     for (const Pose& pose : all) {
       const Vector3& vector = pose.*part;

@@ -69,7 +69,7 @@ class IteratorStream final : public FrameStream {
 class Collector final : public ForceSink {
  public:
   explicit Collector(const SolverPlan& plan)
-      : planes_(plan.skin.pillar_rows(), plan.skin.pillar_cols()), check_(plan) {}
+      : planes_(plan.skin.element_rows(), plan.skin.element_cols()), check_(plan) {}
 
   void reserve(std::size_t frames) {
     planes_.reserve(frames);
@@ -107,7 +107,7 @@ void run(FrameStream& stream, const SolverPlan& plan, bool contacts, const Devic
   if (contacts) {
     ContactOptions options;
     set_sensor(options, plan);
-    tracker.emplace(plan.skin.pillar_pitch_mm(), options);
+    tracker.emplace(plan.skin.element_pitch_mm(), options);
   }
   SignalCheck check_signals;
   Pipeline pipeline(stream, processor, {&collector},

@@ -84,7 +84,7 @@ std::uint64_t most_loaded_frame(FieldProducer& producer) {
     const ShownField field = producer.produce((2 * i + 1) * frames / (2 * compared));
     const ForceFieldView& forces = field.forces;
     const double total_n =
-        sums_over(field, {0, forces.rows, 0, forces.cols}, producer.info().skin.pillar_pitch_mm())
+        sums_over(field, {0, forces.rows, 0, forces.cols}, producer.info().skin.element_pitch_mm())
             .normal;
     if (total_n > most_n) {
       most_n = total_n;

@@ -78,7 +78,7 @@ bool has_ambiguous_sum(std::uint8_t bits) {
 
 NormalSum sum_normal(const ForceField& field) {
   NormalSum sum;
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     const std::uint8_t bits = field.status[i];
     if (bits == 0) continue;
     ++sum.touched;

@@ -75,7 +75,7 @@ PillarSums sum_pillars(const ForceField& field, const SkinCalibration& calibrati
   if (!planes.noise.empty()) noise /= static_cast<double>(planes.noise.size()) * frames;
   const double k = *calibration.counts_per_newton;
   PillarSums sums;
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     if (field.status[i] == 0) continue;
     const double normal = field.normal[i];
     sums.shear_x += field.shear_x[i];
@@ -239,6 +239,7 @@ StepKind shear_step() {
       {1e-6, 1e6});
   loads.required = false;
   step.arguments = {shears, loads};
+  step.needs_pillars = true;
   step.examples = {kSimulateIdle,
                    kSimulatePressed,
                    kTareIdle,

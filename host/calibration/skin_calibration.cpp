@@ -26,6 +26,7 @@ Skin skin_of(const SkinCalibration& calibration) {
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
   skin.counts_per_newton = calibration.counts_per_newton.value_or(skin.counts_per_newton);
   skin.power_law = calibration.power_law;
+  skin.layout = calibration.layout.value_or(skin.layout);
   return skin;
 }
 
@@ -79,6 +80,7 @@ SkinCalibration blank_calibration(const Skin& skin) {
   SkinCalibration calibration;
   calibration.rows = skin.rows;
   calibration.cols = skin.cols;
+  calibration.layout = skin.layout;
   return calibration;
 }
 
@@ -114,6 +116,7 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) 
   planes = calibration.planes;
   planes.mask = std::move(mask);
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
+  skin.layout = calibration.layout.value_or(skin.layout);
   if (!planes.effects.curve.empty()) skin.power_law.reset();
   // A power law applies only with the counts per newton fitted with it.
   if (!calibration.counts_per_newton) return;

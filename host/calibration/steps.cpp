@@ -142,6 +142,22 @@ void check(const StepKind& step, const StepValues& values, std::size_t files, st
   }
 }
 
+namespace {
+
+/// The layout that is given, else that of the calibration, else that of the frames.
+void take_layout(const StepKind& step, StepWork& work) {
+  std::optional<SkinLayout>& layout = work.before.layout;
+  for (StepFrames& each : work.files) {
+    if (each.layout) layout = each.layout;
+    each.skin.layout = layout.value_or(each.skin.layout);
+    if (!step.needs_pillars || each.skin.has_pillars()) continue;
+    throw Error(each.name(), fmt::format("the step {} needs pillars, and the skin has none", step.name),
+                "leave the step out, or give the layout pillars");
+  }
+}
+
+}  // namespace
+
 StepResult run_step(const StepKind& step, std::vector<StepFrames> files,
                     std::optional<SkinCalibration> before, StepValues values) {
   check(step, values, files.size(), values.logs.size());
@@ -149,6 +165,7 @@ StepResult run_step(const StepKind& step, std::vector<StepFrames> files,
   work.before = before ? *std::move(before) : blank_calibration(files.front().skin);
   work.files = std::move(files);
   work.values = std::move(values);
+  take_layout(step, work);
   for (const StepFrames& each : work.files) {
     require_fitting(work.before, each.skin, each.name());
     mask_missing(work.before, each.mask);

@@ -75,7 +75,8 @@ struct StepFrames {
   std::string file;  ///< empty for an array
   Skin skin;
   SenselType sensel_type = SenselType::u8;
-  std::vector<std::uint8_t> mask;  ///< as Calibration::mask
+  std::optional<SkinLayout> layout = {};  ///< given beside the frames; unset: that of `skin`
+  std::vector<std::uint8_t> mask;         ///< as Calibration::mask
   std::uint64_t frames = 0;
   std::function<void(const Use&)> for_each;  ///< calls it with each frame
 
@@ -137,6 +138,7 @@ struct StepKind {
   SkinCalibration (*run)(StepWork&);
   bool is_single = false;   ///< takes one file
   bool uses_times = false;  ///< of the frames
+  bool needs_pillars = false;
   Before before = Before::required;
   const char* before_help = "Calibration to extend";
   std::vector<StepArgument> arguments = {};

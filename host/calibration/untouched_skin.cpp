@@ -43,7 +43,7 @@ double untouched_share(const SkinCalibration& calibration) {
   plan.sensel_type = SenselType::f32;
   apply(calibration, plan.skin, plan.calibration);
   plan.calibration.effects.wires.reset();  // Tares and noise are without their crosstalk.
-  const std::size_t frames = 1 + kLeastPillars / std::max<std::size_t>(1, plan.skin.pillars());
+  const std::size_t frames = 1 + kLeastPillars / std::max<std::size_t>(1, plan.skin.elements());
   FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   std::size_t touched = 0;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -52,7 +52,7 @@ double untouched_share(const SkinCalibration& calibration) {
     touched += static_cast<std::size_t>(std::ranges::count_if(
         field.status, [](std::uint8_t bits) { return (bits & status::kUsable) != 0; }));
   }
-  return static_cast<double>(touched) / static_cast<double>(frames * plan.skin.pillars());
+  return static_cast<double>(touched) / static_cast<double>(frames * plan.skin.elements());
 }
 
 void require_untouched_idle(const SkinCalibration& before, const SkinCalibration& after,

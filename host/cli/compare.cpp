@@ -205,10 +205,10 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   }
   const Skin& skin = recording.skin();
   const ForceFileInfo& info = forces.info();
-  if (info.rows != skin.pillar_rows() || info.cols != skin.pillar_cols()) {
+  if (info.rows != skin.element_rows() || info.cols != skin.element_cols()) {
     throw Error(options.forces,
                 fmt::format("it has {} x {} pillars and {} has {} x {}", info.rows, info.cols,
-                            options.recording, skin.pillar_rows(), skin.pillar_cols()),
+                            options.recording, skin.element_rows(), skin.element_cols()),
                 "give the recording that these forces were solved from");
   }
   if (info.part) {
@@ -239,7 +239,7 @@ void compare(const CompareOptions& options) {
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
-  ResultantComparison resultants(info.pillar_pitch_mm);
+  ResultantComparison resultants(info.element_pitch_mm);
   std::optional<Coverage> coverage;
   if (info.uncertainty) coverage.emplace();
   {

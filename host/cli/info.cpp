@@ -138,7 +138,7 @@ Json facts_of_forces(const std::string& file, const InfoOptions& options) {
                 {"frames", reader.frames()},
                 {"pillar_rows", info.rows},
                 {"pillar_cols", info.cols},
-                {"pillar_pitch_mm", info.pillar_pitch_mm},
+                {"pillar_pitch_mm", info.element_pitch_mm},
                 {"estimator", info.estimator},
                 {"device", info.device},
                 {"source", info.source},

@@ -38,7 +38,7 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
   const std::string& file = options.contacts_file;
   if (file.empty()) return std::nullopt;
   check(options.contacts, "the command line");
-  if (name_same_file(file, options.output)) {
+  if (!options.output.empty() && name_same_file(file, options.output)) {
     if (is_hdf5_name(options.output)) return std::nullopt;
     throw Error(file, "forces and contacts cannot share this file",
                 "name another file for contacts");
@@ -68,8 +68,9 @@ SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
 ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {
   ForceFileInfo info =
       file_info(plan, device.info().name, std::filesystem::path(options.input).filename().string());
-  if (!options.contacts_file.empty() && is_hdf5_name(options.output))
+  if (!options.contacts_file.empty() && is_hdf5_name(options.output)) {
     info.contacts = options.contacts;
+  }
   return info;
 }
 
@@ -95,11 +96,6 @@ double per_second(double amount, double seconds) { return seconds > 0 ? amount /
 
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Device& device,
                 const SolveSummary& summary, const std::vector<std::string>& warnings) {
-  nlohmann::ordered_json regions;
-  for (const Region region :
-       {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
-    regions[name_of(region)] = summary.regions.of(region);
-  }
   nlohmann::ordered_json json = {{"input", options.input},
                                  {"output", options.output},
                                  {"estimator", name_of(plan.estimator)},
@@ -107,15 +103,25 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
                                  {"zero_copy", device.info().shares_memory},
                                  {"stages", kernel_stages(plan)},
                                  {"frames", summary.done.frames},
-                                 {"pillar_rows", plan.skin.pillar_rows()},
-                                 {"pillar_cols", plan.skin.pillar_cols()},
-                                 {"regions", regions},
-                                 {"resolved", summary.regions.resolved},
-                                 {"saturated", summary.regions.saturated},
-                                 {"inconsistent", summary.regions.inconsistent},
-                                 {"startup_seconds", summary.startup_seconds},
-                                 {"seconds", summary.seconds},
-                                 {"warnings", warnings}};
+                                 {"layout", name_of(plan.skin.layout)}};
+  if (plan.skin.has_pillars()) {
+    json["pillar_rows"] = plan.skin.pillar_rows();
+    json["pillar_cols"] = plan.skin.pillar_cols();
+    for (const Region region :
+         {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
+      json["regions"][name_of(region)] = summary.regions.of(region);
+    }
+    json["resolved"] = summary.regions.resolved;
+  } else {
+    json["sensel_rows"] = plan.skin.rows;
+    json["sensel_cols"] = plan.skin.cols;
+    json["in_contact"] = summary.regions.in_contact();
+  }
+  json["saturated"] = summary.regions.saturated;
+  json["inconsistent"] = summary.regions.inconsistent;
+  json["startup_seconds"] = summary.startup_seconds;
+  json["seconds"] = summary.seconds;
+  json["warnings"] = warnings;
   if (!options.part.part.empty()) {
     json["part"] = options.part.part;
     json["was_whole"] = summary.skipped;
@@ -141,39 +147,47 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
   if (summary.skipped) return print_part(options, summary);
   const RegionCount& regions = summary.regions;
   const auto frames = static_cast<double>(summary.done.frames);
-  const auto pillars = static_cast<double>(regions.all());
+  const auto elements = static_cast<double>(regions.all());
+  const char* const name = name_of(plan.skin.layout);
   const DeviceInfo& device = solver.info();
-  fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.done.frames, "frame"),
-             plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
+  fmt::print("Solved {} of {} x {} {} on {} ({}, {})\n", counted(summary.done.frames, "frame"),
+             plan.skin.element_rows(), plan.skin.element_cols(), name, device.name, device.type,
              device.shares_memory ? "zero copy" : "staged");
-  fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million pillars/s\n",
+  fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million {}/s\n",
              summary.seconds, rounded(per_second(frames, summary.seconds)),
-             per_second(pillars, summary.seconds) / 1e6);
+             per_second(elements, summary.seconds) / 1e6, name);
   fmt::print("  opening, compiling         {:.2f} s\n", summary.startup_seconds);
-  fmt::print("In contact: {} of {} pillars ({}), of which\n", grouped(regions.in_contact()),
-             grouped(regions.all()), percent(regions.in_contact(), regions.all()));
+  fmt::print("In contact: {} of {} {} ({}){}\n", grouped(regions.in_contact()),
+             grouped(regions.all()), name, percent(regions.in_contact(), regions.all()),
+             plan.skin.has_pillars() ? ", of which" : "");
   for (const Region region : kContactRegions) {
+    if (!plan.skin.has_pillars()) break;
     fmt::print("  {:<9} {:>7}  {}\n",
                region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
-  if (const auto absent = count_pillars_without_sensels(plan.calibration, plan.skin)) {
-    fmt::print("No sensel: {} of the {} pillars of a frame\n", grouped(absent),
-               grouped(plan.skin.pillars()));
+  if (const auto absent = count_absent_elements(plan.calibration, plan.skin)) {
+    fmt::print("No sensel: {} of the {} {} of a frame\n", grouped(absent),
+               grouped(plan.skin.elements()), name);
   }
   if (plan.estimator == Estimator::contact) {
     fmt::print("Resolved by the friction of their contacts: {} of {} pillars of region 3\n",
                grouped(regions.resolved), grouped(regions.of(Region::three)));
   }
-  fmt::print(
-      "Flagged: {} with a saturated sensel, {} with a missing sensel or inconsistent readings\n",
-      grouped(regions.saturated), grouped(regions.inconsistent));
+  if (plan.skin.has_pillars()) {
+    fmt::print(
+        "Flagged: {} with a saturated sensel, {} with a missing sensel or inconsistent readings\n",
+        grouped(regions.saturated), grouped(regions.inconsistent));
+  } else {
+    fmt::print("Flagged: {} saturated, {} missing\n", grouped(regions.saturated),
+               grouped(regions.inconsistent));
+  }
   if (!options.contacts_file.empty()) {
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
                summary.done.most_contacts, printable(options.contacts_file));
   }
   if (!options.part.part.empty()) return print_part(options, summary);
-  fmt::print("Wrote {}\n", printable(options.output));
+  if (!options.output.empty()) fmt::print("Wrote {}\n", printable(options.output));
 }
 
 /// What a solve of all frames or of a part needs.
@@ -193,16 +207,22 @@ void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveS
   ForceFileInfo info = file_info(options, job.plan, job.device);
   info.frames = job.source.frames();
   std::vector<std::unique_ptr<ForceSink>> files;
-  files.push_back(create_force_sink(options.output, info, options.replace));
+  if (!options.output.empty()) {
+    files.push_back(create_force_sink(options.output, info, options.replace));
+  }
   if (table) {
     files.push_back(create_contact_sink(
-        table->path, {info.pillar_pitch_mm, info.source, options.contacts}, options.replace));
+        table->path, {info.element_pitch_mm, info.source, options.contacts, info.layout},
+        options.replace));
   }
   std::vector<ForceSink*> sinks = {&job.counter, &job.check};
   for (const auto& file : files) sinks.push_back(file.get());
   summary.done =
       solve_range(job.source, job.device, job.plan, {0, job.source.frames()}, job.range, sinks);
-  if (summary.done.stopped) stop_if_interrupted(summary.done.frames, options.output);
+  if (summary.done.stopped) {
+    stop_if_interrupted(summary.done.frames,
+                        options.output.empty() ? options.contacts_file : options.output);
+  }
   for (const auto& file : files) file->finish();
 }
 
@@ -234,7 +254,13 @@ void check_part_options(const SolveOptions& options) {
 /// The files that this process writes.
 std::vector<PlannedOutput> outputs_of(const SolveOptions& options,
                                       const std::optional<PlannedOutput>& table) {
-  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
+  if (options.output.empty() && !table) {
+    throw Error("solve", "no output is named",
+                "give -o FILE for the forces of all elements, --contacts FILE for the totals of "
+                "patch and contacts, or both");
+  }
+  std::vector<PlannedOutput> outputs;
+  if (!options.output.empty()) outputs.push_back(planned_force_file(options.output));
   if (table) outputs.push_back(*table);
   return outputs;
 }

@@ -53,8 +53,10 @@ struct LastPillars {
   std::array<std::uint8_t, kLanes> status{};
 
   Place copy(const ForceFieldView& field, std::size_t at) {
-    std::ranges::copy(field.shear_x.subspan(at), forces.begin());
-    std::ranges::copy(field.shear_y.subspan(at), forces.begin() + kLanes);
+    if (!field.shear_x.empty()) {
+      std::ranges::copy(field.shear_x.subspan(at), forces.begin());
+      std::ranges::copy(field.shear_y.subspan(at), forces.begin() + kLanes);
+    }
     std::ranges::copy(field.normal.subspan(at), forces.begin() + std::ptrdiff_t{2} * kLanes);
     std::ranges::copy(field.status.subspan(at), status.begin());
     return {forces.data(), forces.data() + kLanes, forces.data() + std::size_t{2} * kLanes,
@@ -123,6 +125,7 @@ struct Lanes {
 template <class Value>
 PF_WIDE_INLINE void prefetch(std::span<const Value> plane, const ForceFieldView& forces,
                              std::span<const ContactRun> runs, std::size_t run) {
+  if (plane.empty()) return;
   constexpr std::size_t kAhead = 4;
   constexpr std::uint32_t kLine = 64 / sizeof(Value);
   const std::size_t end = std::min(run + kAhead + 1, runs.size());
@@ -144,6 +147,8 @@ PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run
                              std::optional<double> least_ratio, Lanes& lanes) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
   Floats peaks = {kNone, kNone, kNone, kNone};
+  static constexpr std::array<float, kLanes> kNoShear{};
+  const bool has_shear = !forces.shear_x.empty();
   LastPillars last;
   Doubles sum_x{};
   Doubles sum_y{};
@@ -152,8 +157,10 @@ PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run
   for (std::uint32_t col = run.first; col < run.end; col += kLanes, x += 2 * kLanes) {
     const std::size_t at = std::size_t{run.row} * forces.cols + col;
     const Ints present = Ints{0, 1, 2, 3} < static_cast<std::int32_t>(run.end - col);
-    Place from = {forces.shear_x.data() + at, forces.shear_y.data() + at, forces.normal.data() + at,
+    Place from = {kNoShear.data(), kNoShear.data(), forces.normal.data() + at,
                   forces.status.data() + at};
+    if (has_shear) from = {forces.shear_x.data() + at, forces.shear_y.data() + at, from.normal,
+                           from.status};
     if (at + kLanes > forces.status.size()) from = last.copy(forces, at);
     Floats values;
     Doubles shear_x;

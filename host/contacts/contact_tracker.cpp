@@ -21,15 +21,19 @@ constexpr double kMostNoiseN = 1e6;
 constexpr double kMostReachMm = 1000;
 constexpr std::uint32_t kMostThreads = 1024;
 
-void require_planes(const ForceFieldView& forces) {
-  const std::size_t pillars = std::size_t{forces.rows} * forces.cols;
-  for (const std::span<const float> plane : {forces.shear_x, forces.shear_y, forces.normal}) {
-    if (plane.size() == pillars) continue;
+void require_planes(const ForceFieldView& forces, SkinLayout layout) {
+  const std::size_t elements = std::size_t{forces.rows} * forces.cols;
+  const std::size_t shears = layout == SkinLayout::pillars ? elements : 0;
+  const auto require = [&](std::span<const float> plane, std::size_t values) {
+    if (plane.size() == values) return;
     throw Error(kPlace,
-                fmt::format("a plane of {} forces for {} x {} pillars", plane.size(), forces.rows,
-                            forces.cols),
-                "give one for each pillar");
-  }
+                fmt::format("a plane of {} forces for {} x {} {}", plane.size(), forces.rows,
+                            forces.cols, name_of(layout)),
+                values == 0 ? "give normal forces alone" : "give one for each");
+  };
+  require(forces.shear_x, shears);
+  require(forces.shear_y, shears);
+  require(forces.normal, elements);
 }
 
 void require_valid(const FoundContacts& found, const ForceFieldView& forces) {
@@ -77,6 +81,7 @@ void set_sensor(ContactOptions& options, const SolverPlan& plan) {
   options.hidden_n = hidden_normal_n(plan.skin);
   options.effects = plan.calibration.effects;
   options.surface = plan.skin.surface;
+  options.layout = plan.skin.layout;
 }
 
 void check(const ContactOptions& options, const std::string& where) {
@@ -101,7 +106,7 @@ void check(const ContactOptions& options, const std::string& where) {
 }
 
 struct ContactTracker::State {
-  State(double pillar_pitch_mm, const ContactOptions& contact_options);
+  State(double element_pitch_mm, const ContactOptions& contact_options);
 
   void require_size(const ForceFieldView& forces);
   const FrameContacts& track(const ForceFieldView& forces, double time_s,
@@ -128,18 +133,18 @@ struct ContactTracker::State {
   ContactSnapshot earlier_snapshot;
 };
 
-ContactTracker::State::State(double pillar_pitch_mm, const ContactOptions& contact_options)
-    : pitch_mm(pillar_pitch_mm),
+ContactTracker::State::State(double element_pitch_mm, const ContactOptions& contact_options)
+    : pitch_mm(element_pitch_mm),
       options(checked(contact_options)),
       moments(options.threads),
       friction_estimator(sensor_of(pitch_mm, options), options.friction, moments.threads()) {
   if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
-    throw Error(kPlace, fmt::format("a pillar pitch of {} mm", pitch_mm), "it must be above zero");
+    throw Error(kPlace, fmt::format("a pitch of {} mm", pitch_mm), "it must be above zero");
   }
 }
 
 void ContactTracker::State::require_size(const ForceFieldView& forces) {
-  require_planes(forces);
+  require_planes(forces, options.layout);
   if (any_frame && (forces.rows != rows || forces.cols != cols)) {
     throw Error(kPlace,
                 fmt::format("a frame of {} x {} pillars after frames of {} x {}", forces.rows,
@@ -149,7 +154,7 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
   rows = forces.rows;
   cols = forces.cols;
   if (any_frame || !options.surface) return;
-  const PillarLayout pillars = {rows, cols, pitch_mm};
+  const ElementGrid pillars = {rows, cols, pitch_mm};
   check(*options.surface, pillars, kPlace);
   poses = poses_of(*options.surface, pillars);
 }
@@ -169,13 +174,15 @@ void ContactTracker::State::measure_wrenches(const ForceFieldView& forces) {
 /// contact, unless `friction` holds it.
 void ContactTracker::State::measure(const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
-  const bool estimates = friction.empty() && labels.contacts() > 0;
+  const bool has_friction = options.layout == SkinLayout::pillars;
+  const bool estimates = has_friction && friction.empty() && labels.contacts() > 0;
   if (estimates) {
     friction_estimator.begin(forces, labels);
     friction = friction_estimator.friction();
   }
   const auto friction_of = [&](std::uint32_t contact, std::size_t member) {
     if (estimates) friction_estimator.update(forces, labels, contact, member);
+    if (!has_friction) return std::optional<double>();
     return known_friction(friction[contact]);
   };
   const std::vector<ContactSum>& sums = moments.measure(forces, labels, friction_of);
@@ -191,12 +198,12 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
     TrackedContact contact;
     contact.label = label;
     contact.quantities = quantities_of(sum, pitch_mm);
-    set_slip(contact.quantities, friction[label], sum);
+    if (has_friction) set_slip(contact.quantities, friction[label], sum);
     frame.contacts.push_back(contact);
   }
   frame.total = quantities_of(total, pitch_mm);
   if (options.surface) measure_wrenches(forces);
-  if (!options.friction.given || frame.total.pillars == 0) return;
+  if (!has_friction || !options.friction.given || frame.total.pillars == 0) return;
   set_slip(frame.total, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
            total);
 }
@@ -262,8 +269,8 @@ const FrameContacts& ContactTracker::State::track(const ForceFieldView& forces, 
   return frame;
 }
 
-ContactTracker::ContactTracker(double pillar_pitch_mm, const ContactOptions& options)
-    : state_(std::make_unique<State>(pillar_pitch_mm, options)) {}
+ContactTracker::ContactTracker(double element_pitch_mm, const ContactOptions& options)
+    : state_(std::make_unique<State>(element_pitch_mm, options)) {}
 ContactTracker::~ContactTracker() = default;
 ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;
 ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;

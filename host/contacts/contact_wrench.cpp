@@ -13,9 +13,11 @@ Wrench wrench_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
     for (std::uint32_t col = run.first; col < run.end; ++col) {
       const std::size_t pillar = std::size_t{run.row} * forces.cols + col;
       const Pose& pose = poses[pillar];
-      const Vector3 force_n = rotated(
-          pose, {finite_or_zero(forces.shear_x[pillar]), finite_or_zero(forces.shear_y[pillar]),
-                 -finite_or_zero(forces.normal[pillar])});
+      const auto of = [&](std::span<const float> plane) {
+        return plane.empty() ? 0 : finite_or_zero(plane[pillar]);
+      };
+      const Vector3 force_n =
+          rotated(pose, {of(forces.shear_x), of(forces.shear_y), -of(forces.normal)});
       add(wrench, {force_n, cross(pose.position_mm, force_n)});
     }
   }

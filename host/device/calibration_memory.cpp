@@ -5,47 +5,62 @@
 #include <span>
 
 #include "device/slot_memory.h"
+#include "skin/quads.h"
 #include "solve/activation_thresholds.h"
 
 namespace pillarfield {
 namespace {
 
+/// Copies a plane, [sensel rows, cols], to memory for all sensels of quads; those that do not exist
+/// get `otherwise`. Nothing if the plane is empty.
 template <class Value>
-void copy(const std::vector<Value>& plane, std::byte* to) {
-  std::ranges::copy(std::as_bytes(std::span(plane)), to);
+void copy(const Skin& skin, const std::vector<Value>& plane, std::byte* to, Value otherwise = 0) {
+  if (plane.empty()) return;
+  const std::size_t cols = padded_cols(skin);
+  if (padded_sensels(skin) == plane.size()) {
+    std::ranges::copy(std::as_bytes(std::span(plane)), to);
+    return;
+  }
+  std::vector<Value> all(padded_sensels(skin), otherwise);
+  for (std::size_t row = 0; row < skin.rows; ++row) {
+    std::copy_n(plane.begin() + static_cast<std::ptrdiff_t>(row * skin.cols), skin.cols,
+                all.begin() + static_cast<std::ptrdiff_t>(row * cols));
+  }
+  std::ranges::copy(std::as_bytes(std::span(all)), to);
 }
 
 /// Copies the activation thresholds as readings of the plan's type.
 void copy_activation_thresholds(const SolverPlan& plan, std::byte* to) {
   const std::vector<float> levels = activation_thresholds(plan);
-  if (plan.sensel_type == SenselType::u8) {
-    return copy(std::vector<std::uint8_t>(levels.begin(), levels.end()), to);
-  }
-  if (plan.sensel_type == SenselType::u16) {
-    return copy(std::vector<std::uint16_t>(levels.begin(), levels.end()), to);
-  }
-  copy(levels, to);
+  const auto never = static_cast<float>(activation_range(plan).never);
+  const auto as = [&]<class Reading>(Reading) {
+    copy(plan.skin, std::vector<Reading>(levels.begin(), levels.end()), to,
+         static_cast<Reading>(never));
+  };
+  if (plan.sensel_type == SenselType::u8) return as(std::uint8_t{});
+  if (plan.sensel_type == SenselType::u16) return as(std::uint16_t{});
+  as(float{});
 }
 
 /// Writes a plane to zeroed memory; a plan that follows the baseline may start without a tare.
 void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
   switch (plane) {
     case CalibrationPlane::tare:
-      return copy(plan.calibration.tare, to);
+      return copy(plan.skin, plan.calibration.tare, to);
     case CalibrationPlane::gain:
-      return copy(plan.calibration.gain, to);
+      return copy(plan.skin, plan.calibration.gain, to);
     case CalibrationPlane::dead_zone:
-      return copy(plan.calibration.dead_zone, to);
+      return copy(plan.skin, plan.calibration.dead_zone, to);
     case CalibrationPlane::noise:
-      return copy(plan.calibration.noise, to);
+      return copy(plan.skin, plan.calibration.noise, to);
     case CalibrationPlane::mask:
-      return copy(plan.calibration.mask, to);
+      return copy(plan.skin, plan.calibration.mask, to, kAbsent);
     case CalibrationPlane::bend_x:
-      return copy(plan.calibration.bend_x, to);
+      return copy(plan.skin, plan.calibration.bend_x, to);
     case CalibrationPlane::bend_y:
-      return copy(plan.calibration.bend_y, to);
+      return copy(plan.skin, plan.calibration.bend_y, to);
     case CalibrationPlane::bend_xy:
-      return copy(plan.calibration.bend_xy, to);
+      return copy(plan.skin, plan.calibration.bend_xy, to);
     case CalibrationPlane::memory:
       return;
     case CalibrationPlane::activation:
@@ -60,8 +75,8 @@ std::size_t bytes_of_states(const SolverPlan& plan) {
   if (!memory) return 0;
   const std::size_t words = 1 + 2 * (memory->plays.size() + memory->creep.size());
   // blocks_of_row() times the lanes, at most.
-  const std::size_t pillars_of_row = std::size_t{plan.skin.pillar_cols()} + 32;
-  return page_aligned(words * plan.skin.pillar_rows() * pillars_of_row * sizeof(cl_uint));
+  const std::size_t pillars_of_row = std::size_t{quad_cols(plan.skin)} + 32;
+  return page_aligned(words * quad_rows(plan.skin) * pillars_of_row * sizeof(cl_uint));
 }
 
 }  // namespace
@@ -97,7 +112,10 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
                                      const SpeedPaths& paths)
     : planes_(calibration_planes(plan, paths)),
-      plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))),
+      rows_(plan.skin.rows),
+      cols_(plan.skin.cols),
+      stride_(padded_cols(plan.skin)),
+      plane_bytes_(page_aligned(padded_sensels(plan.skin) * sizeof(float))),
       state_bytes_(bytes_of_states(plan)),
       has_tare_(std::ranges::count(planes_, CalibrationPlane::tare) > 0) {
   if (planes_.empty()) return;
@@ -128,9 +146,17 @@ void CalibrationMemory::clear_states() const {
   commands.finish();
 }
 
+std::vector<float> CalibrationMemory::tare() const {
+  std::vector<float> tare(rows_ * cols_);
+  const cl::size_type row = cols_ * sizeof(float);
+  queue().enqueueReadBufferRect(buffer_, CL_TRUE, {0, 0, 0}, {0, 0, 0}, {row, rows_, 1},
+                                stride_ * sizeof(float), 0, row, 0, tare.data());
+  return tare;
+}
+
 void CalibrationMemory::set_tare(const SolverPlan& plan) const {
   const cl::CommandQueue commands = queue();
-  std::vector<std::byte> values(plan.skin.sensels() * sizeof(float));
+  std::vector<std::byte> values(padded_sensels(plan.skin) * sizeof(float));
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     if (planes_[i] != CalibrationPlane::tare && planes_[i] != CalibrationPlane::activation) {
       continue;

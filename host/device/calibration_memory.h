@@ -37,11 +37,15 @@ class CalibrationMemory {
   [[nodiscard]] const cl::Buffer& buffer() const { return buffer_; }
   /// Distance between planes.
   [[nodiscard]] std::size_t plane_bytes() const { return plane_bytes_; }
+  /// Sensels of a row of the planes: even without pillars too, where the last may not exist.
+  [[nodiscard]] std::size_t stride() const { return stride_; }
   /// Sets all states of sensels to rest; no kernel may be running.
   void clear_states() const;
   /// Replaces tare and activation thresholds by those of a plan and sets states to rest; no kernel
   /// may be running.
   void set_tare(const SolverPlan& plan) const;
+  /// The tares as they are, [sensel rows, cols]; there must be some.
+  [[nodiscard]] std::vector<float> tare() const;
   /// True if there is a tare; it is the first plane.
   [[nodiscard]] bool has_tare() const { return has_tare_; }
 
@@ -49,6 +53,9 @@ class CalibrationMemory {
   [[nodiscard]] cl::CommandQueue queue() const;
 
   std::vector<CalibrationPlane> planes_;
+  std::size_t rows_;
+  std::size_t cols_;
+  std::size_t stride_;
   std::size_t plane_bytes_;
   std::size_t state_bytes_ = 0;  ///< behind the planes
   bool has_tare_;

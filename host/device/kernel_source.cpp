@@ -11,6 +11,7 @@
 #include "device/calibration_memory.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
+#include "skin/quads.h"
 #include "solve/activation_thresholds.h"
 #include "solve/sensor_corrections.h"
 #include "solve/stages.h"
@@ -60,7 +61,7 @@ bool is_whole(const SolverPlan& plan) {
       threshold <= kLargestWholeThreshold && 2 * threshold == std::floor(2 * threshold);
   const bool saturates_below =
       plan.skin.full_scale_counts && static_cast<float>(*plan.skin.full_scale_counts) <= threshold;
-  return plan.sensel_type == SenselType::u8 && plan.estimator != Estimator::paper && !corrects &&
+  return plan.sensel_type == SenselType::u8 && plan.skin.has_pillars() && plan.estimator != Estimator::paper && !corrects &&
          !plan.angles && !plan.uncertainty && halves && !saturates_below &&
          whole_segment_point(plan);
 }
@@ -168,7 +169,7 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
 }
 
 std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& paths) {
-  const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
+  const int lanes = block_lanes(device_lanes, quad_cols(plan.skin));
   // A single lane has 32 bits anyway.
   const bool whole = lanes > 1 && is_whole(plan);
   Definitions all = definitions(plan, whole);

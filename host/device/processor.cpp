@@ -17,6 +17,7 @@
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
+#include "skin/quads.h"
 #include "solve/curvature_follower.h"
 #include "solve/drift_follower.h"
 #include "solve/stages.h"
@@ -51,10 +52,21 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
+/// Whether stores may bypass the caches: of sensels without pillars, two rows are written at once,
+/// each of which must begin on a cache line.
+bool rows_are_aligned(const Skin& skin) {
+  constexpr std::uint32_t kFloatsOfLine = 16;
+  return skin.has_pillars() || skin.cols % kFloatsOfLine == 0;
+}
+
 /// The speed paths with automatic choices resolved.
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
+  if (paths.stores == Stores::cached || !rows_are_aligned(plan.skin)) {
+    paths.stores = Stores::cached;
+    return paths;
+  }
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
   const std::size_t bytes = ResultLayout(plan, 0).bytes;
@@ -105,7 +117,7 @@ struct Processor::State {
     order.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
     const int lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
-    settings.lanes = block_lanes(lanes, skin.pillar_cols());
+    settings.lanes = block_lanes(lanes, quad_cols(skin));
     settings.paths = paths;
     settings.program =
         device.state().program(kernel_source(wanted, settings.lanes, settings.paths));
@@ -360,12 +372,8 @@ std::vector<float> Processor::tare() const {
   if (!state_) return start_->host.plan().calibration.tare;
   return with_opencl_errors(state_->device.info().name, [&] {
     if (!state_->calibration.has_tare()) return std::vector<float>();
-    std::vector<float> tare(state_->skin.sensels());
-    const cl::CommandQueue queue(state_->device.state().context, state_->device.state().device);
     if (state_->order.left() != nullptr) state_->order.left.wait();
-    queue.enqueueReadBuffer(state_->calibration.buffer(), CL_TRUE, 0, tare.size() * sizeof(float),
-                            tare.data());
-    return tare;
+    return state_->calibration.tare();
   });
 }
 

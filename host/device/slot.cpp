@@ -1,9 +1,11 @@
 #include "device/slot.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "device/kernel_source.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 namespace {
@@ -46,15 +48,15 @@ cl::NDRange tiles_of(const SolverPlan& plan, const WireCrosstalk& wires) {
   const auto tiles = [](std::size_t sensels, std::size_t tile) {
     return (sensels + tile - 1) / tile;
   };
-  return {tiles(2 * std::size_t{plan.skin.pillar_cols()}, wires.tile_cols),
-          tiles(2 * std::size_t{plan.skin.pillar_rows()}, wires.tile_rows)};
+  return {tiles(2 * std::size_t{quad_cols(plan.skin)}, wires.tile_cols),
+          tiles(2 * std::size_t{quad_rows(plan.skin)}, wires.tile_rows)};
 }
 
 /// Floats of the rings of kernels/frame/neighbours.h.
 std::size_t ring_floats(const SolverPlan& plan, const SlotSettings& settings, std::size_t bands) {
   if (!plan.calibration.effects.sensel_leak || settings.lanes == 1) return 0;
   constexpr std::size_t kRows = 3;  // PF_RING_ROWS
-  const std::uint32_t cols = plan.skin.pillar_cols();
+  const std::uint32_t cols = quad_cols(plan.skin);
   const auto lanes = static_cast<std::uint32_t>(settings.lanes);
   const std::size_t flags = kRows * blocks_of_row(cols, lanes);
   return bands *
@@ -64,20 +66,23 @@ std::size_t ring_floats(const SolverPlan& plan, const SlotSettings& settings, st
 /// Floats of the vectors of kernels/frame/wire_vectors.h.
 std::size_t wire_floats(const SolverPlan& plan, const cl::NDRange& tiles) {
   if (!plan.calibration.effects.wires) return 0;
-  const std::size_t rows = 2 * std::size_t{plan.skin.pillar_rows()};
-  const std::size_t cols = 2 * std::size_t{plan.skin.pillar_cols()};
+  const std::size_t rows = 2 * std::size_t{quad_rows(plan.skin)};
+  const std::size_t cols = 2 * std::size_t{quad_cols(plan.skin)};
   return 3 * rows * tiles[0] + cols * tiles[1];
 }
 
 single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& results,
                                    const CalibrationMemory& calibration) {
   return {.row_stride = 0,
-          .rows = plan.skin.pillar_rows(),
-          .cols = plan.skin.pillar_cols(),
-          .plane_stride = plan.skin.cols,
+          .rows = quad_rows(plan.skin),
+          .cols = quad_cols(plan.skin),
+          .sensel_rows = plan.skin.rows,
+          .sensel_cols = plan.skin.cols,
+          .plane_stride = calibration.stride(),
           .plane_bytes = calibration.plane_bytes(),
           .result_bytes = results.plane_bytes,
           .status = results.status,
+          .touched = results.status,
           .idle = results.bytes,
           .ring = results.scratch_begin(),
           .wires = results.scratch_begin(),
@@ -90,11 +95,11 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
 
 Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
            const CalibrationMemory& calibration, FrameOrder& order)
-    : rows_(plan.skin.pillar_rows()),
-      cols_(plan.skin.pillar_cols()),
+    : rows_(plan.skin.element_rows()),
+      cols_(plan.skin.element_cols()),
       queue_(device.context, device.device),
       order_(&order) {
-  const Launch solve(rows_, cols_, settings.lanes,
+  const Launch solve(quad_rows(plan.skin), quad_cols(plan.skin), settings.lanes,
                      device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
@@ -103,19 +108,25 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   const std::size_t ring = ring_floats(plan, settings, global_[1]);
   const std::size_t forces = plan.calibration.effects.pillar_leak ? 3 * results.plane_bytes : 0;
   const std::size_t ratios = plan.calibration.effects.arm_mm ? 4 * results.plane_bytes : 0;
-  results.scratch = forces + ratios + (ring + wire_floats(plan, tiles_)) * sizeof(float);
+  const std::size_t floats = (ring + wire_floats(plan, tiles_)) * sizeof(float);
+  const bool marks_touched = order.follows_baseline && !plan.skin.has_pillars();
+  results.scratch = forces + ratios + floats + (marks_touched ? quads(plan.skin) : 0);
   memory_ = settings.shares_memory ? shared_memory(device.context, results)
                                    : staged_memory(device.context, queue_, plan, results);
   layout_ = layout_of(plan, results, calibration);
   layout_.ratios += forces;
   layout_.ring += forces + ratios;
   layout_.wires += forces + ratios + ring * sizeof(float);
+  if (marks_touched) layout_.touched = results.scratch_begin() + forces + ratios + floats;
   const auto kernel = [&](const char* name) {
     cl::Kernel made(settings.program, name);
     made.setArg(kCalibration, calibration.buffer());
     made.setArg(kResults, memory_->results());
     return made;
   };
+  if (padded_sensels(plan.skin) != plan.skin.sensels()) {
+    padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
+  }
   kernel_ = kernel("solve_frame");
   if (plan.calibration.effects.wires) wires_ = kernel("find_wires");
   const SensorEffects& effects = plan.calibration.effects;
@@ -139,9 +150,22 @@ Slot::~Slot() {
   }
 }
 
+/// The frame with all sensels of its quads, in `padded_` if some do not exist.
+FrameView Slot::padded(const FrameView& frame) {
+  if (!padded_) return frame;
+  const FrameView view = padded_->view();
+  const std::size_t reading = size_of(frame.type);
+  for (std::size_t row = 0; row < frame.rows; ++row) {
+    std::memcpy(padded_->bytes().data() + row * view.row_stride * reading,
+                static_cast<const std::byte*>(frame.data) + row * frame.row_stride * reading,
+                frame.cols * reading);
+  }
+  return view;
+}
+
 void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent,
                   const single_precision::Drift& drift) {
-  const DeviceFrame on_device = memory_->upload(queue_, frame);
+  const DeviceFrame on_device = memory_->upload(queue_, padded(frame));
   frame_ = on_device.readings;
   done_ = {};
   layout_.row_stride = on_device.row_stride;
@@ -202,14 +226,14 @@ bool Slot::is_done() {
 }
 
 ForceFieldView Slot::results() const {
-  const std::size_t pillars = std::size_t{rows_} * cols_;
+  const std::size_t elements = std::size_t{rows_} * cols_;
   ForceFieldView forces;
   forces.rows = rows_;
   forces.cols = cols_;
-  forces.status = {memory_->status(), pillars};
+  forces.status = {memory_->status(), elements};
   for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
     const auto* const values = reinterpret_cast<const float*>(memory_->plane(i));
-    if (values != nullptr) plane_of(forces, i) = {values, pillars};
+    if (values != nullptr) plane_of(forces, i) = {values, elements};
   }
   return forces;
 }

@@ -66,6 +66,7 @@ class Slot {
   [[nodiscard]] std::span<const std::byte> pages() const { return memory_->pages(); }
 
  private:
+  FrameView padded(const FrameView& frame);
   /// Starts a kernel on the frame.
   void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
               const std::vector<cl::Event>* after = nullptr, cl::Event* done = nullptr);
@@ -87,6 +88,7 @@ class Slot {
   cl::Kernel follow_;   ///< null without a baseline rate
   FrameOrder* order_;
   cl::Event done_;    ///< behind the frame, once is_done() was asked for it; else null
+  std::optional<FrameBuffer> padded_;  ///< of a frame that lacks sensels of its last quads
   cl::Buffer frame_;  ///< keeps the frame in flight alive
   single_precision::Layout layout_{};
   std::unique_ptr<SlotMemory> memory_;

@@ -1,21 +1,22 @@
 #include "device/slot_memory.h"
 
 #include "device/kernel_source.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 
 ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
-    : plane_bytes(plane_distance(plan.skin.pillars() * sizeof(float))) {
+    : plane_bytes(plane_distance(plan.skin.elements() * sizeof(float))) {
   for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
-    has[i] = has_planes(plan.angles, plan.uncertainty, kResultPlanes[i].set);
+    has[i] = has_plane(plan.skin.layout, plan.angles, plan.uncertainty, kResultPlanes[i]);
     planes[i] = status;
     if (has[i]) status += plane_bytes;
   }
-  bytes = page_aligned(status + plan.skin.pillars());
+  bytes = page_aligned(status + plan.skin.elements());
   if (block_lanes == 0) return;
   lanes = static_cast<std::uint32_t>(block_lanes);
-  flag_stride = blocks_of_row(plan.skin.pillar_cols(), lanes);
-  idle_flags = plan.skin.pillar_rows() * flag_stride;
+  flag_stride = blocks_of_row(quad_cols(plan.skin), lanes);
+  idle_flags = quad_rows(plan.skin) * flag_stride;
 }
 
 IdleBlocks SlotMemory::idle_blocks() const {

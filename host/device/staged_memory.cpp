@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "device/slot_memory.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 namespace {
@@ -45,7 +46,7 @@ class StagedMemory final : public SlotMemory {
   StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan,
                const ResultLayout& layout)
       : SlotMemory(layout),
-        frame_bytes_(plan.skin.sensels() * size_of(plan.sensel_type)),
+        frame_bytes_(padded_sensels(plan.skin) * size_of(plan.sensel_type)),
         frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
         frame_on_host_(context, queue, frame_bytes_),
         // Drivers may map at any alignment: one page more, to begin on a boundary.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -82,17 +83,17 @@ constexpr std::array<ContactColumn<Ended>, 4> kEnded = {{
      [](Ended& c, double v) { c.last_time_s = v; }},
 }};
 
-constexpr std::array<ContactColumn<Quantities>, 28> kQuantities = {{
+constexpr std::array<ContactColumn<Quantities>, 29> kQuantities = {{
     {"pillars", "", count, [](const Quantities& q) { return static_cast<double>(q.pillars); },
      [](Quantities& q, double v) { q.pillars = as_count(v); }},
     {"ambiguous", "", count, [](const Quantities& q) { return static_cast<double>(q.ambiguous); },
-     [](Quantities& q, double v) { q.ambiguous = as_count(v); }},
+     [](Quantities& q, double v) { q.ambiguous = as_count(v); }, nullptr, false, true},
     {"resolved", "", count, [](const Quantities& q) { return static_cast<double>(q.resolved); },
-     [](Quantities& q, double v) { q.resolved = as_count(v); }},
+     [](Quantities& q, double v) { q.resolved = as_count(v); }, nullptr, false, true},
     {"shear_x_n", "N", number, [](const Quantities& q) { return q.shear_x_n; },
-     [](Quantities& q, double v) { q.shear_x_n = v; }},
+     [](Quantities& q, double v) { q.shear_x_n = v; }, nullptr, false, true},
     {"shear_y_n", "N", number, [](const Quantities& q) { return q.shear_y_n; },
-     [](Quantities& q, double v) { q.shear_y_n = v; }},
+     [](Quantities& q, double v) { q.shear_y_n = v; }, nullptr, false, true},
     {"normal_n", "N", number, [](const Quantities& q) { return q.normal_n; },
      [](Quantities& q, double v) { q.normal_n = v; }},
     {"centre_of_pressure_x_mm", "mm", number,
@@ -106,7 +107,7 @@ constexpr std::array<ContactColumn<Quantities>, 28> kQuantities = {{
     {"centre_y_mm", "mm", number, [](const Quantities& q) { return q.centre.y_mm; },
      [](Quantities& q, double v) { q.centre.y_mm = v; }},
     {"torque_nmm", "N mm", number, [](const Quantities& q) { return q.torque_nmm; },
-     [](Quantities& q, double v) { q.torque_nmm = v; }},
+     [](Quantities& q, double v) { q.torque_nmm = v; }, nullptr, false, true},
     {"area_mm2", "mm^2", number, [](const Quantities& q) { return q.area_mm2; },
      [](Quantities& q, double v) { q.area_mm2 = v; }},
     {"peak_n", "N", number, [](const Quantities& q) { return q.peak_n; },
@@ -117,22 +118,25 @@ constexpr std::array<ContactColumn<Quantities>, 28> kQuantities = {{
      [](Quantities& q, double v) { q.peak.y_mm = v; }},
     {"mean_pressure_kpa", "kPa", number, [](const Quantities& q) { return q.mean_pressure_kpa; },
      [](Quantities& q, double v) { q.mean_pressure_kpa = v; }},
+    {"peak_pressure_kpa", "kPa", number,
+     [](const Quantities& q) { return q.peak_pressure_kpa(); }, [](Quantities&, double) {},
+     nullptr, true},
     {"friction", "", number, [](const Quantities& q) { return q.friction.value_or(kUnset); },
-     [](Quantities& q, double v) { q.friction = as_number(v); }},
+     [](Quantities& q, double v) { q.friction = as_number(v); }, nullptr, false, true},
     {"friction_deviation", "", number,
      [](const Quantities& q) { return q.friction_deviation.value_or(kUnset); },
-     [](Quantities& q, double v) { q.friction_deviation = as_number(v); }, nullptr, true},
+     [](Quantities& q, double v) { q.friction_deviation = as_number(v); }, nullptr, true, true},
     {"friction_source", "", ColumnKind::word,
      [](const Quantities& q) { return static_cast<double>(q.friction_source); },
      [](Quantities& q, double v) { q.friction_source = as_word<FrictionSource>(v); },
-     word_of<FrictionSource>},
+     word_of<FrictionSource>, false, true},
     {"slip", "", ColumnKind::word, [](const Quantities& q) { return static_cast<double>(q.slip); },
-     [](Quantities& q, double v) { q.slip = as_word<SlipState>(v); }, word_of<SlipState>},
+     [](Quantities& q, double v) { q.slip = as_word<SlipState>(v); }, word_of<SlipState>, false, true},
     {"slipping_share", "", number,
      [](const Quantities& q) { return q.slipping_share.value_or(kUnset); },
-     [](Quantities& q, double v) { q.slipping_share = as_number(v); }},
+     [](Quantities& q, double v) { q.slipping_share = as_number(v); }, nullptr, false, true},
     {"slip_margin", "", number, [](const Quantities& q) { return q.slip_margin.value_or(kUnset); },
-     [](Quantities& q, double v) { q.slip_margin = as_number(v); }},
+     [](Quantities& q, double v) { q.slip_margin = as_number(v); }, nullptr, false, true},
     {"force_x_n", "N", number,
      [](const Quantities& q) { return q.wrench ? q.wrench->force_n.x : kUnset; },
      [](Quantities& q, double v) { set_wrench(q, v, &Wrench::force_n, &Vector3::x); }, nullptr,
@@ -162,10 +166,25 @@ constexpr std::array<ContactColumn<Quantities>, 28> kQuantities = {{
 }  // namespace
 
 std::span<const ContactColumn<TrackedContact>> identity_columns() { return kIdentity; }
-std::span<const ContactColumn<ContactQuantities>> quantity_columns(bool with_wrench) {
+
+QuantityColumns quantity_columns(bool with_wrench, SkinLayout layout) {
   constexpr std::size_t kWrench = 6;
-  return std::span(kQuantities).first(kQuantities.size() - (with_wrench ? 0 : kWrench));
+  const auto all = std::span(kQuantities).first(kQuantities.size() - (with_wrench ? 0 : kWrench));
+  if (layout == SkinLayout::pillars) return all;
+  static const auto of_sensels = [] {
+    std::vector<ContactColumn<Quantities>> columns;
+    std::ranges::copy_if(kQuantities, std::back_inserter(columns),
+                         [](const auto& column) { return !column.of_pillars; });
+    columns.front().name = name_of(SkinLayout::sensels);
+    return columns;
+  }();
+  return std::span(of_sensels).first(of_sensels.size() - (with_wrench ? 0 : kWrench));
 }
+
+QuantityColumns quantity_columns(const ContactOptions& options) {
+  return quantity_columns(options.surface.has_value(), options.layout);
+}
+
 std::span<const ContactColumn<EndedContact>> ended_columns() { return kEnded; }
 
 template <class Row>

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "pillarfield/contact_tracker.h"
 
@@ -27,15 +28,20 @@ struct ContactColumn {
   void (*set)(Row&, double) = nullptr;    ///< accepts any number: the file may be damaged
   const char* (*word)(double) = nullptr;  ///< only for ColumnKind::word
   bool optional = false;                  ///< absent from files of earlier versions
+  bool of_pillars = false;                ///< does not exist without them
 };
 
 /// The columns id, parent, number, first_time_s, age_s.
 [[nodiscard]] std::span<const ContactColumn<TrackedContact>> identity_columns();
 
-/// One column for each member of ContactQuantities; those of its wrench come last, and only
-/// `with_wrench`.
-[[nodiscard]] std::span<const ContactColumn<ContactQuantities>> quantity_columns(
-    bool with_wrench = false);
+using QuantityColumns = std::span<const ContactColumn<ContactQuantities>>;
+
+/// One column for each quantity of a contact; those of its wrench come last, and only
+/// `with_wrench`. Without pillars, those that do not exist are left out, and sensels are counted.
+[[nodiscard]] QuantityColumns quantity_columns(bool with_wrench = false,
+                                               SkinLayout layout = SkinLayout::pillars);
+/// Those of contacts found with these options.
+[[nodiscard]] QuantityColumns quantity_columns(const ContactOptions& options);
 
 /// The columns id, merged_into, first_time_s, last_time_s.
 [[nodiscard]] std::span<const ContactColumn<EndedContact>> ended_columns();

@@ -55,6 +55,7 @@ void FileSource::take_constants(const StoredSkin& stored, const ReadOptions& opt
   skin_.full_scale_counts =
       options.full_scale_counts ? options.full_scale_counts : stored.full_scale_counts;
   skin_.power_law = stored.power_law;
+  skin_.layout = options.layout.value_or(stored.layout.value_or(SkinLayout::sensels));
 }
 
 void FileSource::assume_times(const ReadOptions& options, const char* failure) {
@@ -132,8 +133,16 @@ void RisingTimes::add(std::span<const double> times_s) {
   }
 }
 
+std::string FileSource::layout_note() const {
+  return skin_.has_pillars()
+             ? "2 x 2 sensels are a pillar with shear (--layout sensels: each by itself)"
+             : "each sensel by itself, without shear (--layout pillars: 2 x 2 are a pillar)";
+}
+
 void FileSource::warn_of_size() {
-  std::ranges::move(size_warnings(skin_.rows, skin_.cols), std::back_inserter(warnings_));
+  if (skin_.has_pillars()) {
+    std::ranges::move(size_warnings(skin_.rows, skin_.cols), std::back_inserter(warnings_));
+  }
   if (frames_ == 0) warnings_.emplace_back("The file holds no frames.");
 }
 

@@ -27,6 +27,7 @@ struct OpenForces {
   void open_planes(bool may_lack_chunks);
   void read_size(const std::vector<hsize_t>& shape);
   void read_info();
+  [[nodiscard]] SkinLayout read_layout() const;
   void read_surface_of_skin();
   void count_frames();
   void require_frame(std::uint64_t index) const;
@@ -46,6 +47,10 @@ bool is_read(const ResultPlane& plane) {
   return plane.set == PlaneSet::forces || plane.set == PlaneSet::uncertainty;
 }
 
+std::vector<float>* force_plane(ForceField& forces, std::size_t index) {
+  return std::array{&forces.shear_x, &forces.shear_y, &forces.normal}.at(index);
+}
+
 void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const char* kind_name,
                    const std::filesystem::path& path) {
   if (frames.value_class() == kind) return;
@@ -58,13 +63,14 @@ void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const cha
 OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
   const int version = hdf5::require_format(file, force_format::kName, force_format::kVersion);
+  info.layout = read_layout();
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
   open_planes(version >= force_format::kSparseSince);
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
   if (hdf5::exists(file, force_format::kContacts)) {
-    contacts.emplace(file);
+    contacts.emplace(file, info.layout);
     info.contacts = contacts->options();
   }
   read_size(status.shape());
@@ -72,6 +78,14 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   read_surface_of_skin();
   info.part = read_part(file);
   count_frames();
+}
+
+SkinLayout OpenForces::read_layout() const {
+  const auto name = hdf5::read_text(file, file.id.get(), force_format::kLayout);
+  if (!name) return SkinLayout::pillars;
+  if (const auto layout = layout_named(*name)) return *layout;
+  throw Error(file.path.string(), fmt::format("its layout is '{:.40}'", *name),
+              "it must be pillars or sensels");
 }
 
 void OpenForces::open_planes(bool may_lack_chunks) {
@@ -86,9 +100,9 @@ void OpenForces::open_planes(bool may_lack_chunks) {
 
 void OpenForces::read_size(const std::vector<hsize_t>& shape) {
   for (const hsize_t size : shape) {
-    if (size >= 1 && size <= kMaxSensels / 2) continue;
+    if (size >= 1 && size <= most_elements(info.layout)) continue;
     throw Error(file.path.string(), fmt::format("its fields are {} x {}", shape[0], shape[1]),
-                fmt::format("rows and columns must lie in [1, {}]", kMaxSensels / 2));
+                fmt::format("rows and columns must lie in [1, {}]", most_elements(info.layout)));
   }
   for (const auto& plane : planes) {
     if (plane.shape() == shape) continue;
@@ -110,22 +124,25 @@ void OpenForces::read_info() {
   check(info.effects, file.path.string());
   info.device = hdf5::read_text(file, root, force_format::kDevice).value_or("");
   info.source = hdf5::read_text(file, root, force_format::kSource).value_or("");
-  const auto pitch_mm = hdf5::read_number(file, root, force_format::kPillarPitch);
+  const char* const pitch = force_format::pitch_of(info.layout);
+  const auto pitch_mm = hdf5::read_number(file, root, pitch);
   if (!pitch_mm) {
-    info.pillar_pitch_mm = Skin().pillar_pitch_mm();
+    Skin usual;
+    usual.layout = info.layout;
+    info.element_pitch_mm = usual.element_pitch_mm();
     warnings.push_back(
-        fmt::format("The file has no pillar pitch; {:.6g} mm is assumed.", info.pillar_pitch_mm));
+        fmt::format("The file has no {}; {:.6g} mm is assumed.", pitch, info.element_pitch_mm));
     return;
   }
   if (!std::isfinite(*pitch_mm) || *pitch_mm <= 0) {
-    throw Error(file.path.string(), fmt::format("{} is {}", force_format::kPillarPitch, *pitch_mm),
+    throw Error(file.path.string(), fmt::format("{} is {}", pitch, *pitch_mm),
                 "it must be above zero");
   }
-  info.pillar_pitch_mm = *pitch_mm;
+  info.element_pitch_mm = *pitch_mm;
 }
 
 void OpenForces::read_surface_of_skin() {
-  info.surface = read_surface(file, {info.rows, info.cols, info.pillar_pitch_mm});
+  info.surface = read_surface(file, {info.rows, info.cols, info.element_pitch_mm});
   if (info.contacts) info.contacts->surface = info.surface;
 }
 
@@ -176,16 +193,18 @@ double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   if (forces.rows != state_->info.rows || forces.cols != state_->info.cols) {
     forces = ForceField(state_->info.rows, state_->info.cols);
   }
-  std::vector<std::vector<float>*> targets = {&forces.shear_x, &forces.shear_y, &forces.normal};
-  for (auto& plane : forces.uncertainty) {
-    plane.clear();
-    if (state_->info.uncertainty) targets.push_back(&plane);
+  for (auto* plane : {&forces.shear_x, &forces.shear_y, &forces.normal}) plane->clear();
+  for (auto& plane : forces.uncertainty) plane.clear();
+  auto stored = state_->planes.begin();
+  for (const ResultPlane& plane : planes_of(state_->info)) {
+    if (!is_read(plane)) continue;
+    auto& values = plane.set == PlaneSet::uncertainty
+                       ? forces.uncertainty[static_cast<Uncertainty>(plane.index - kNamedPlanes)]
+                       : *force_plane(forces, plane.index);
+    values.resize(forces.elements());
+    stored++->get(index, H5T_NATIVE_FLOAT, values.data());
   }
-  for (std::size_t plane = 0; plane < targets.size(); ++plane) {
-    targets[plane]->resize(forces.pillars());
-    state_->planes[plane].get(index, H5T_NATIVE_FLOAT, targets[plane]->data());
-  }
-  forces.status.resize(forces.pillars());
+  forces.status.resize(forces.elements());
   state_->status.get(index, H5T_NATIVE_UINT8, forces.status.data());
   return time_s;
 }

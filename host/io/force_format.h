@@ -1,11 +1,14 @@
 #pragma once
 
+#include "pillarfield/skin.h"
+
 // Names in an HDF5 file of force fields (docs/formats.md).
 namespace pillarfield::force_format {
 
 inline constexpr const char* kName = "pillarfield-forces";
-inline constexpr int kVersion = 2;
+inline constexpr int kVersion = 3;
 inline constexpr int kSparseSince = 2;  ///< planes may lack chunks
+inline constexpr int kLayoutSince = 3;  ///< the skin may lack pillars
 
 inline constexpr const char* kUnit = "unit";
 inline constexpr const char* kSignConvention = "sign_convention";
@@ -14,7 +17,14 @@ inline constexpr const char* kSegmentPoint = "segment_point";
 inline constexpr const char* kDevice = "device";
 inline constexpr const char* kSource = "source";
 inline constexpr const char* kProgramVersion = "program_version";
+inline constexpr const char* kLayout = "layout";  ///< "sensels", or absent
 inline constexpr const char* kPillarPitch = "pillar_pitch_mm";
+inline constexpr const char* kSenselPitch = "sensel_pitch_mm";  ///< without pillars
+
+/// Name of the pitch of elements, in all formats.
+[[nodiscard]] constexpr const char* pitch_of(SkinLayout layout) {
+  return layout == SkinLayout::pillars ? kPillarPitch : kSenselPitch;
+}
 
 inline constexpr const char* kEffects = "/effects";
 inline constexpr const char* kForce = "/force";

@@ -10,21 +10,21 @@ namespace pillarfield {
 std::vector<ResultPlane> planes_of(const ForceFileInfo& info) {
   std::vector<ResultPlane> planes;
   std::ranges::copy_if(kResultPlanes, std::back_inserter(planes), [&](const ResultPlane& plane) {
-    return has_planes(info.angles, info.uncertainty, plane.set);
+    return has_plane(info.layout, info.angles, info.uncertainty, plane);
   });
   return planes;
 }
 
 FramePlanes::FramePlanes(const ForceFileInfo& info)
     : planes_(planes_of(info)),
-      uncertainty_(info.uncertainty),
+      has_ends_(info.uncertainty && info.layout == SkinLayout::pillars),
       coefficient_(info.effects.shear_coefficient.value_or(ShearCoefficient{})) {
   if (info.estimator == name_of(Estimator::direct)) direct_point_ = info.segment_point;
 }
 
 void FramePlanes::set_frame(const ForceFieldView& forces) {
   forces_ = forces;
-  if (!uncertainty_) return;
+  if (!has_ends_) return;
   for (auto& plane : ends_) plane.resize(forces.normal.size());
   for (std::size_t pillar = 0; pillar < forces.normal.size(); ++pillar) {
     const auto ends = component_ends(forces, pillar, direct_point_, coefficient_);

@@ -30,7 +30,7 @@ class FramePlanes {
 
  private:
   std::vector<ResultPlane> planes_;
-  bool uncertainty_;
+  bool has_ends_;
   std::optional<double> direct_point_;
   ShearCoefficient coefficient_;
   ForceFieldView forces_;

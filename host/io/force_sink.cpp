@@ -45,13 +45,15 @@ void check_time(const SolvedFrame& frame, const std::string& where) {
 }
 
 void check(const ForceFileInfo& info, const std::string& where) {
-  const auto in_range = [](std::uint32_t size) { return size >= 1 && size <= kMaxSensels / 2; };
+  const std::uint32_t most = most_elements(info.layout);
+  const auto in_range = [&](std::uint32_t size) { return size >= 1 && size <= most; };
   if (!in_range(info.rows) || !in_range(info.cols)) {
-    throw Error(where, fmt::format("a field of {} x {} pillars", info.rows, info.cols),
-                fmt::format("rows and columns must lie in [1, {}]", kMaxSensels / 2));
+    throw Error(where,
+                fmt::format("a field of {} x {} {}", info.rows, info.cols, name_of(info.layout)),
+                fmt::format("rows and columns must lie in [1, {}]", most));
   }
-  if (!std::isfinite(info.pillar_pitch_mm) || info.pillar_pitch_mm <= 0) {
-    throw Error(where, fmt::format("pillar_pitch_mm is {}", info.pillar_pitch_mm),
+  if (!std::isfinite(info.element_pitch_mm) || info.element_pitch_mm <= 0) {
+    throw Error(where, fmt::format("element_pitch_mm is {}", info.element_pitch_mm),
                 "it must be above zero");
   }
 }
@@ -60,15 +62,17 @@ void check(const ForceFileInfo& info, const std::string& where) {
 
 void check(const SolvedFrame& frame, const ForceFileInfo& info, const std::string& where) {
   const ForceFieldView& forces = frame.forces;
-  const std::size_t pillars = std::size_t{info.rows} * info.cols;
-  const auto complete = [&](std::span<const float> plane) { return plane.size() == pillars; };
-  if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.shear_x) ||
-      !complete(forces.shear_y) || !complete(forces.normal) || forces.status.size() != pillars) {
-    throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
+  const std::size_t elements = std::size_t{info.rows} * info.cols;
+  const auto complete = [&](std::span<const float> plane) { return plane.size() == elements; };
+  if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.normal) ||
+      forces.status.size() != elements) {
+    throw Error(where,
+                fmt::format("a frame of {} x {} {}", forces.rows, forces.cols,
+                            name_of(info.layout)),
                 fmt::format("the file needs frames of {} x {}", info.rows, info.cols));
   }
   for (const ResultPlane& plane : std::span(kResultPlanes).first(kSolvedPlanes)) {
-    if (!has_planes(info.angles, info.uncertainty, plane.set)) continue;
+    if (!has_plane(info.layout, info.angles, info.uncertainty, plane)) continue;
     if (complete(plane_of(forces, plane.index))) continue;
     throw Error(where, fmt::format("a frame without {}", plane.field()),
                 "solve with all outputs that the file needs");
@@ -125,17 +129,18 @@ PlannedOutput planned_contact_file(const std::filesystem::path& path) {
 ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
                         const std::string& source) {
   ForceFileInfo info;
-  info.rows = plan.skin.pillar_rows();
-  info.cols = plan.skin.pillar_cols();
-  info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
+  info.rows = plan.skin.element_rows();
+  info.cols = plan.skin.element_cols();
+  info.element_pitch_mm = plan.skin.element_pitch_mm();
   info.estimator = name_of(plan.estimator);
-  if (plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
+  if (plan.skin.has_pillars() && plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
   info.device = device;
   info.source = source;
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
   info.effects = plan.calibration.effects;
   info.surface = plan.skin.surface;
+  info.layout = plan.skin.layout;
   return info;
 }
 
@@ -153,9 +158,10 @@ std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
 std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path,
                                                const ContactFileInfo& info, Replace replace) {
   ForceFileInfo forces;
-  forces.pillar_pitch_mm = info.pillar_pitch_mm;
+  forces.element_pitch_mm = info.element_pitch_mm;
   forces.source = info.source;
   forces.contacts = info.options;
+  forces.layout = info.layout;
   return format_of(path, OutputKind::contacts).create(path, forces, replace);
 }
 

@@ -9,8 +9,9 @@
 namespace pillarfield::recording_format {
 
 inline constexpr const char* kName = "pillarfield-recording";
-inline constexpr int kNewestVersion = 2;
+inline constexpr int kNewestVersion = 3;
 inline constexpr int kSparseTruthSince = 2;  ///< the truth may lack chunks
+inline constexpr int kLayoutSince = 3;       ///< the skin may lack pillars
 
 inline constexpr const char* kFrames = "/frames";
 inline constexpr const char* kRaw = "/frames/raw";
@@ -24,6 +25,7 @@ inline constexpr const char* kThreshold = "threshold_counts";
 inline constexpr const char* kFullScale = "full_scale_counts";
 inline constexpr const char* kExponent = "power_law_exponent";
 inline constexpr const char* kReference = "power_law_reference_counts";
+inline constexpr const char* kLayout = "layout";  ///< "pillars" or "sensels"
 
 inline constexpr const char* kCalibration = "/calibration";
 inline constexpr const char* kTare = "/calibration/tare";
@@ -38,6 +40,12 @@ inline constexpr const char* kEffects = "/calibration/effects";
 
 inline constexpr const char* kTruth = "/truth";
 inline constexpr const char* kTruthPlanes[] = {"/truth/shear_x", "/truth/shear_y", "/truth/normal"};
+
+/// Whether a skin's truth has the plane of this index; without pillars, normal force alone.
+[[nodiscard]] inline bool has_truth_plane(const Skin& skin, std::size_t plane) {
+  constexpr std::size_t kNormal = 2;
+  return skin.has_pillars() || plane == kNormal;
+}
 
 /// HDF5 type of a reading in the file, and in memory.
 [[nodiscard]] hid_t stored_type_of(SenselType type);

@@ -44,7 +44,8 @@ class Recording final : public FileSource {
   NumberType number_;                       // of the readings
   std::vector<std::byte> numbers_;          // of a frame, unless they are readings
   std::optional<hdf5::StoredFrames> time_;  // unset: see assumed_time()
-  std::vector<hdf5::StoredFrames> truth_;   // empty, or shear_x, shear_y, normal
+  std::vector<hdf5::StoredFrames> truth_;   // empty, or shear_x, shear_y, normal; normal alone
+  bool is_other_layout_ = false;            // than the truth has
 };
 
 void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
@@ -133,20 +134,26 @@ void Recording::read_size() {
 }
 
 void Recording::take_skin(const ReadOptions& options) {
-  take_constants(read_skin(file_), options);
-  skin_.surface = read_surface(file_, skin_.pillar_layout());
+  StoredSkin stored = read_skin(file_);
+  stored.layout = stored.layout.value_or(SkinLayout::pillars);
+  take_constants(stored, options);
+  is_other_layout_ = skin_.layout != stored.layout;
+  skin_.surface = read_surface(file_, skin_.element_grid());
   check(skin_, place(recording_format::kSkin).c_str());
 }
 
 void Recording::open_truth() {
-  if (!hdf5::exists(file_, recording_format::kTruth)) return;
-  for (const char* name : recording_format::kTruthPlanes) {
+  if (!hdf5::exists(file_, recording_format::kTruth) || is_other_layout_) return;
+  for (std::size_t plane = 0; plane < std::size(recording_format::kTruthPlanes); ++plane) {
+    const char* const name = recording_format::kTruthPlanes[plane];
+    if (!recording_format::has_truth_plane(skin_, plane)) continue;
     truth_.emplace_back(file_, name, 2, version_ >= recording_format::kSparseTruthSince);
     require_floats(truth_.back(), path_);
     const auto shape = truth_.back().shape();
-    if (shape[0] == skin_.pillar_rows() && shape[1] == skin_.pillar_cols()) continue;
+    if (shape[0] == skin_.element_rows() && shape[1] == skin_.element_cols()) continue;
     throw Error(place(name), fmt::format("its frames are {} x {}", shape[0], shape[1]),
-                fmt::format("they need {} x {} pillars", skin_.pillar_rows(), skin_.pillar_cols()));
+                fmt::format("they need {} x {} {}", skin_.element_rows(), skin_.element_cols(),
+                            name_of(skin_.layout)));
   }
 }
 
@@ -197,12 +204,14 @@ void Recording::read_truth(std::uint64_t index, ForceField& truth) {
   const hdf5::QuietErrors quiet;
   if (!has_truth()) FileSource::read_truth(index, truth);
   require_frame(index);
-  truth.rows = skin_.pillar_rows();
-  truth.cols = skin_.pillar_cols();
+  truth.rows = skin_.element_rows();
+  truth.cols = skin_.element_cols();
   const std::array planes = {&truth.shear_x, &truth.shear_y, &truth.normal};
+  auto stored = truth_.begin();
   for (std::size_t plane = 0; plane < planes.size(); ++plane) {
-    planes[plane]->resize(skin_.pillars());
-    truth_[plane].get(index, H5T_NATIVE_FLOAT, planes[plane]->data());
+    planes[plane]->resize(recording_format::has_truth_plane(skin_, plane) ? skin_.elements() : 0);
+    if (planes[plane]->empty()) continue;
+    stored++->get(index, H5T_NATIVE_FLOAT, planes[plane]->data());
   }
 }
 

@@ -41,6 +41,9 @@ struct RecordingWriter::State {
   void append(const FrameView& frame, double time_s, const ForceField* field,
               std::uint32_t missing_sensels);
   void require_open() const;
+  [[nodiscard]] bool has_truth_plane(std::size_t plane) const {
+    return recording_format::has_truth_plane(skin, plane);
+  }
   void flush();
   void close();
 
@@ -73,11 +76,13 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
       has_tare(!calibration.tare.empty()) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(recording_format::kName));
   hdf5::write_attribute(file, file.id.get(), "version",
-                        options.truth ? recording_format::kSparseTruthSince : 1);
+                        !skin.has_pillars() ? recording_format::kLayoutSince
+                        : options.truth     ? recording_format::kSparseTruthSince
+                                            : 1);
   write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
-                    skin.full_scale_counts, skin.power_law});
+                    skin.full_scale_counts, skin.power_law, skin.layout});
   write_planes(file, skin, calibration);
-  if (skin.surface) write_surface(file, *skin.surface, skin.pillar_layout());
+  if (skin.surface) write_surface(file, *skin.surface, skin.element_grid());
   create_datasets();
   hdf5::start_appending(file);
 }
@@ -103,12 +108,13 @@ void RecordingWriter::State::create_datasets() {
   if (!options.truth) return;
   const hdf5::Handle truth_group = hdf5::create_group(file, recording_format::kTruth);
   for (std::size_t plane = 0; plane < truth.size(); ++plane) {
+    if (!has_truth_plane(plane)) continue;
     constexpr float kUntouched = 0;
     truth[plane] = {file,
                     recording_format::kTruthPlanes[plane],
                     H5T_IEEE_F32LE,
-                    skin.pillar_rows(),
-                    skin.pillar_cols(),
+                    skin.element_rows(),
+                    skin.element_cols(),
                     &kUntouched};
   }
 }
@@ -130,10 +136,14 @@ void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
                 "set Options::truth if frames have one");
   }
   if (field == nullptr) return;
-  for (const auto* plane : {&field->shear_x, &field->shear_y, &field->normal}) {
-    if (plane->size() != skin.pillars() || field->cols != skin.pillar_cols()) {
+  const std::array planes = {&field->shear_x, &field->shear_y, &field->normal};
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const std::size_t values = has_truth_plane(i) ? skin.elements() : 0;
+    if (planes[i]->size() != values || field->rows != skin.element_rows() || 
+        field->cols != skin.element_cols()) {
       throw Error(where, fmt::format("its truth is {} x {}", field->rows, field->cols),
-                  fmt::format("it needs {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()));
+                  fmt::format("it needs {} x {} {}", skin.element_rows(), skin.element_cols(),
+                              name_of(skin.layout)));
     }
   }
 }
@@ -141,6 +151,7 @@ void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
 void RecordingWriter::State::put_truth(const ForceField& field) {
   const std::array planes = {&field.shear_x, &field.shear_y, &field.normal};
   for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    if (!has_truth_plane(plane)) continue;
     truth[plane].append(planes[plane]->data());
   }
 }

@@ -42,6 +42,14 @@ std::optional<PowerLaw> read_power_law(const hdf5::File& file, hid_t skin) {
   return PowerLaw{*exponent, *reference_counts};
 }
 
+std::optional<SkinLayout> read_layout(const hdf5::File& file, hid_t object) {
+  const auto name = hdf5::read_text(file, object, recording_format::kLayout);
+  if (!name) return std::nullopt;
+  if (const auto layout = layout_named(*name)) return layout;
+  throw Error(file.path.string(), fmt::format("its layout is '{:.40}'", *name),
+              "it must be pillars or sensels");
+}
+
 /// Converts a mask, which a file may store in any number type.
 std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& skin,
                                   const std::string& place) {
@@ -92,6 +100,10 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
     write(recording_format::kExponent, skin.power_law->exponent);
     write(recording_format::kReference, skin.power_law->reference_counts);
   }
+  if (skin.layout) {
+    hdf5::write_attribute(file, group.get(), recording_format::kLayout,
+                          std::string(name_of(*skin.layout)));
+  }
   return group;
 }
 
@@ -106,7 +118,7 @@ StoredSkin read_skin(const hdf5::File& file) {
   const auto read = [&](const char* name) { return hdf5::read_number(file, object.get(), name); };
   return {read(recording_format::kPitch), read(recording_format::kCountsPerNewton),
           read(recording_format::kThreshold), read(recording_format::kFullScale),
-          read_power_law(file, object.get())};
+          read_power_law(file, object.get()), read_layout(file, object.get())};
 }
 
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration) {
@@ -158,7 +170,7 @@ SurfaceShape shape_named(const std::string& name, const std::string& place) {
 
 }  // namespace
 
-void write_surface(const hdf5::File& file, const Surface& surface, const PillarLayout& pillars) {
+void write_surface(const hdf5::File& file, const Surface& surface, const ElementGrid& pillars) {
   const hdf5::Handle group = hdf5::create_group(file, kSurface);
   hdf5::write_attribute(file, group.get(), kShape, std::string(name_of(surface.shape)));
   if (surface.shape == SurfaceShape::height_map) {
@@ -170,7 +182,7 @@ void write_surface(const hdf5::File& file, const Surface& surface, const PillarL
   }
 }
 
-std::optional<Surface> read_surface(const hdf5::File& file, const PillarLayout& pillars) {
+std::optional<Surface> read_surface(const hdf5::File& file, const ElementGrid& pillars) {
   if (!hdf5::exists(file, kSurface)) return std::nullopt;
   const std::string place = fmt::format("{}: {}", file.path.string(), kSurface);
   const hdf5::Handle group = hdf5::open_object(file, kSurface);

@@ -16,6 +16,7 @@ struct StoredSkin {
   std::optional<double> threshold_counts;
   std::optional<double> full_scale_counts;
   std::optional<PowerLaw> power_law;
+  std::optional<SkinLayout> layout;
 };
 
 /// Creates the group /skin with the constants that are set, and returns it.
@@ -44,10 +45,10 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
                                       std::optional<SenselType> type = {});
 
 /// Creates the group /surface of recordings and force files: shape, radius, axis, heights.
-void write_surface(const hdf5::File& file, const Surface& surface, const PillarLayout& pillars);
+void write_surface(const hdf5::File& file, const Surface& surface, const ElementGrid& pillars);
 
 /// Reads the group /surface; unset if it is absent. Throws Error if it does not fit the pillars.
 [[nodiscard]] std::optional<Surface> read_surface(const hdf5::File& file,
-                                                  const PillarLayout& pillars);
+                                                  const ElementGrid& pillars);
 
 }  // namespace pillarfield

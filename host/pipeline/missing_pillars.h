@@ -11,11 +11,11 @@
 
 namespace pillarfield {
 
-/// A copy of solved frames in which pillars without all of their readings have no force and the
+/// A copy of solved frames in which elements without all of their readings have no force and the
 /// status of missing sensels.
 class MissingPillars {
  public:
-  /// Returns `forces` without the pillars that touch the blocks of sensels; the view is valid until
+  /// Returns `forces` without the elements that touch the blocks of sensels; the view is valid until
   /// the next call.
   [[nodiscard]] ForceFieldView without(const ForceFieldView& forces,
                                        std::span<const SenselBlock> missing);
@@ -25,6 +25,7 @@ class MissingPillars {
 
   std::array<std::vector<float>, kSolvedPlanes> planes_;
   std::vector<std::uint8_t> status_;
+  std::uint32_t side_ = 2;  // sensels of an element, in each direction
 };
 
 }  // namespace pillarfield

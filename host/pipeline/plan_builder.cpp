@@ -64,10 +64,11 @@ void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
   plan.uncertainty = std::ranges::find(outputs, "uncertainty") != outputs.end();
 }
 
-/// Enables all outputs and the parity test; an earlier tolerance stays.
+/// Enables all outputs, and of pillars the parity test; an earlier tolerance stays.
 void enable_everything(SolverPlan& plan) {
-  plan.angles = true;
   plan.uncertainty = true;
+  if (!plan.skin.has_pillars()) return;
+  plan.angles = true;
   if (plan.parity_tolerance_counts) return;
   // The residual is one of four readings, the margin five deviations of three.
   plan.parity_tolerance_counts = region_margin(plan) * std::sqrt(4.0 / 3);
@@ -103,6 +104,7 @@ SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::strin
   if (from.calibration != nullptr) {
     apply_calibration(*from.calibration, from.keeps_tare, where, plan);
   }
+  if (settings.layout) plan.skin.layout = *settings.layout;
   apply_numbers(settings, plan);
   if (settings.baseline_time_s) baseline_time_s = settings.baseline_time_s;
   if (settings.estimator) plan.estimator = *settings.estimator;

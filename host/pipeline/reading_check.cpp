@@ -18,7 +18,7 @@ constexpr double kHardlyAny = 0.01;
 
 ReadingCheck::ReadingCheck(const SolverPlan& plan)
     : plan_(plan),
-      present_(plan.skin.pillars() - count_pillars_without_sensels(plan.calibration, plan.skin)) {}
+      present_(plan.skin.elements() - count_absent_elements(plan.calibration, plan.skin)) {}
 
 void ReadingCheck::append(const SolvedFrame& frame) {
   std::uint64_t touched = 0;

@@ -117,7 +117,7 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
     Processor processor(device, plan, options.processor);
     if (survey && warm > 0) processor.set_tare(survey->tare_at(warm, options.stop));
     std::optional<ContactTracker> tracker;
-    if (options.contacts) tracker.emplace(plan.skin.pillar_pitch_mm(), *options.contacts);
+    if (options.contacts) tracker.emplace(plan.skin.element_pitch_mm(), *options.contacts);
     SegmentSink segment(first, done.contacts, sinks);
     Pipeline pipeline(*stream, processor, {&segment},
                       {.frames_in_flight = options.processor.frames_in_flight,

@@ -40,17 +40,13 @@ std::size_t count_absent(const Calibration& calibration) {
   return static_cast<std::size_t>(std::ranges::count(calibration.mask, kAbsent));
 }
 
-bool lacks_sensels(const Calibration& calibration, const Skin& skin, std::uint32_t pillar_row,
-                   std::uint32_t pillar_col) {
-  return !calibration.mask.empty() &&
-         std::ranges::all_of(pillar_sensels(skin, pillar_row, pillar_col),
-                             [&](std::size_t i) { return calibration.mask[i] == kAbsent; });
-}
-
-std::size_t count_pillars_without_sensels(const Calibration& calibration, const Skin& skin) {
+std::size_t count_absent_elements(const Calibration& calibration, const Skin& skin) {
+  if (!skin.has_pillars() || calibration.mask.empty()) return count_absent(calibration);
   std::size_t count = 0;
-  for_each_pillar(skin, [&](auto row, auto col, const auto&) {
-    if (lacks_sensels(calibration, skin, row, col)) ++count;
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    const bool absent = std::ranges::all_of(
+        sensels, [&](std::size_t i) { return calibration.mask[i] == kAbsent; });
+    if (absent) ++count;
   });
   return count;
 }

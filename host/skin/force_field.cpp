@@ -6,10 +6,17 @@ namespace pillarfield {
 ForceField::ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols)
     : rows(pillar_rows),
       cols(pillar_cols),
-      shear_x(pillars()),
-      shear_y(pillars()),
-      normal(pillars()),
-      status(pillars()) {}
+      shear_x(elements()),
+      shear_y(elements()),
+      normal(elements()),
+      status(elements()) {}
+
+ForceField::ForceField(const Skin& skin)
+    : ForceField(skin.element_rows(), skin.element_cols()) {
+  if (skin.has_pillars()) return;
+  shear_x.clear();
+  shear_y.clear();
+}
 
 ForceFieldView ForceField::view() const {
   ForceFieldView view = {rows, cols, shear_x, shear_y, normal, status, {}, {}, {}, {}};

@@ -41,6 +41,17 @@ const char* name_of(SenselType type) {
   return "float32";
 }
 
+const char* name_of(SkinLayout layout) {
+  return layout == SkinLayout::pillars ? "pillars" : "sensels";
+}
+
+std::optional<SkinLayout> layout_named(std::string_view name) {
+  for (const SkinLayout layout : {SkinLayout::pillars, SkinLayout::sensels}) {
+    if (name == name_of(layout)) return layout;
+  }
+  return std::nullopt;
+}
+
 double straightened(const PowerLaw& law, double reading) {
   return law.reference_counts * std::pow(reading / law.reference_counts, law.exponent);
 }
@@ -57,7 +68,7 @@ void check(const Skin& skin, std::string_view where) {
     check_range(where, "power_law_reference_counts", skin.power_law->reference_counts,
                 kMinReferenceCounts, kMaxReferenceCounts);
   }
-  if (skin.surface) check(*skin.surface, skin.pillar_layout(), where);
+  if (skin.surface) check(*skin.surface, skin.element_grid(), where);
   if (!skin.full_scale_counts) return;
   check_range(where, "full_scale_counts", *skin.full_scale_counts, 0, kMaxCounts);
   if (*skin.full_scale_counts <= skin.threshold_counts) {

@@ -54,11 +54,11 @@ Pose on_sphere(const Surface& surface, double x_mm, double y_mm) {
   return bent({x_mm / arc_mm, y_mm / arc_mm, arc_mm, 0}, surface.radius_mm);
 }
 
-double x_of(const PillarLayout& pillars, std::uint32_t col) {
+double x_of(const ElementGrid& pillars, std::uint32_t col) {
   return (col - 0.5 * (pillars.cols - 1)) * pillars.pitch_mm;
 }
 
-double y_of(const PillarLayout& pillars, std::uint32_t row) {
+double y_of(const ElementGrid& pillars, std::uint32_t row) {
   return (0.5 * (pillars.rows - 1) - row) * pillars.pitch_mm;
 }
 
@@ -72,7 +72,7 @@ double slope(const float* heights, std::size_t stride, std::uint32_t count, std:
   return rise / ((after - before) * pitch_mm);
 }
 
-Pose on_heights(const Surface& surface, const PillarLayout& pillars, std::uint32_t row,
+Pose on_heights(const Surface& surface, const ElementGrid& pillars, std::uint32_t row,
                 std::uint32_t col) {
   const float* const heights = surface.heights_mm.data();
   const double slope_x =
@@ -94,7 +94,7 @@ void require_range(std::string_view where, const char* name, double value, doubl
               fmt::format("it must lie in [{}, {}]", low, high));
 }
 
-void check_heights(const Surface& surface, const PillarLayout& pillars, std::string_view where) {
+void check_heights(const Surface& surface, const ElementGrid& pillars, std::string_view where) {
   if (surface.heights_mm.empty()) throw Error(where, "the surface has no heights", "give some");
   if (surface.heights_mm.size() != std::size_t{pillars.rows} * pillars.cols) {
     throw Error(where, fmt::format("the surface has {} heights", surface.heights_mm.size()),
@@ -106,7 +106,7 @@ void check_heights(const Surface& surface, const PillarLayout& pillars, std::str
 }
 
 /// Half of the longest arc that the skin covers.
-double half_arc_mm(const Surface& surface, const PillarLayout& pillars) {
+double half_arc_mm(const Surface& surface, const ElementGrid& pillars) {
   const double half_width = 0.5 * pillars.cols * pillars.pitch_mm;
   const double half_height = 0.5 * pillars.rows * pillars.pitch_mm;
   if (surface.shape == SurfaceShape::sphere) return std::hypot(half_width, half_height);
@@ -130,7 +130,7 @@ const char* name_of(SurfaceShape shape) {
   return "height_map";
 }
 
-void check(const Surface& surface, const PillarLayout& pillars, std::string_view where) {
+void check(const Surface& surface, const ElementGrid& pillars, std::string_view where) {
   if (surface.shape == SurfaceShape::height_map) return check_heights(surface, pillars, where);
   if (surface.shape == SurfaceShape::plane) return;
   require_range(where, "axis_deg", surface.axis_deg, -360, 360);
@@ -156,7 +156,7 @@ Pose pose_at(const Surface& surface, double x_mm, double y_mm) {
   return {{x_mm, y_mm, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 }
 
-std::vector<Pose> poses_of(const Surface& surface, const PillarLayout& pillars) {
+std::vector<Pose> poses_of(const Surface& surface, const ElementGrid& pillars) {
   std::vector<Pose> poses;
   poses.reserve(std::size_t{pillars.rows} * pillars.cols);
   for (std::uint32_t row = 0; row < pillars.rows; ++row) {

@@ -5,6 +5,7 @@
 
 #include "pillarfield/tuning.h"
 #include "skin/raw_reading.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 namespace {
@@ -24,29 +25,30 @@ double value_at(const PatternTriple& factors, const PatternTriple& pattern) {
 
 DriftFollower::DriftFollower(const SolverPlan& plan)
     : cols_(plan.skin.cols),
-      middle_{1, 0.5 * plan.skin.pillar_cols(), 0.5 * plan.skin.pillar_rows()},
+      middle_{1, 0.5 * quad_cols(plan.skin), 0.5 * quad_rows(plan.skin)},
       rate_(plan.baseline_rate.value_or(0)),
       noise_(reading_noise_n(plan) * plan.skin.counts_per_newton),
       limit_(plan.skin.threshold_counts),
       settling_(kSettlingTimes / rate_),
       turns_(static_cast<std::size_t>(plan.baseline_interval)) {
   if (plan.calibration.effects.wires) return;
-  const std::size_t pillars = plan.skin.pillars();
-  const std::size_t step = pillars / kMostTiles | 1U;  // odd: reaches all columns
-  for (std::size_t i = step / 2; i < pillars; i += step) add_tile(plan, i);
+  const std::size_t all = quads(plan.skin);
+  const std::size_t step = all / kMostTiles | 1U;  // odd: reaches all columns
+  for (std::size_t i = step / 2; i < all; i += step) add_tile(plan, i);
 }
 
-void DriftFollower::add_tile(const SolverPlan& plan, std::size_t pillar) {
+void DriftFollower::add_tile(const SolverPlan& plan, std::size_t quad) {
   const Calibration& planes = plan.calibration;
-  const std::uint32_t rows = plan.skin.pillar_rows();
-  const std::uint32_t cols = plan.skin.pillar_cols();
-  const auto row = static_cast<std::uint32_t>(pillar / cols);
-  const auto col = static_cast<std::uint32_t>(pillar % cols);
+  const std::uint32_t rows = quad_rows(plan.skin);
+  const std::uint32_t cols = quad_cols(plan.skin);
+  const auto row = static_cast<std::uint32_t>(quad / cols);
+  const auto col = static_cast<std::uint32_t>(quad % cols);
   Tile tile{};
   tile.first = sensels_.size();
   tile.place = {1, (col + 0.5) / middle_[1] - 1, (row + 0.5) / middle_[2] - 1};
   for (std::uint32_t r = 2 * std::max(row, 1U) - 2; r < 2 * std::min(row + 2, rows); ++r) {
     for (std::uint32_t c = 2 * std::max(col, 1U) - 2; c < 2 * std::min(col + 2, cols); ++c) {
+      if (r >= plan.skin.rows || c >= plan.skin.cols) continue;
       if (planes.mask.empty() || planes.mask[r * cols_ + c] == 1) sensels_.push_back({r, c});
     }
   }

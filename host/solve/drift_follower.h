@@ -48,7 +48,7 @@ class DriftFollower {
     double trusted_from;  ///< the frame from which it tells the drift
   };
 
-  void add_tile(const SolverPlan& plan, std::size_t pillar);
+  void add_tile(const SolverPlan& plan, std::size_t quad);
   template <class Value>
   [[nodiscard]] double mean(const Tile& tile, Value value) const;
   [[nodiscard]] bool is_near(const Tile& tile) const;

@@ -9,9 +9,11 @@
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/tuning.h"
+#include "skin/quads.h"
 #include "solve/drift_follower.h"
 #include "solve/pillar_lean.h"
 #include "solve/pillar_maths.h"
+#include "solve/result_planes.h"
 #include "solve/sensel_reader.h"
 
 namespace pillarfield {
@@ -30,13 +32,17 @@ void store_solution(const maths::Solution& solution, std::size_t index, bool unc
 #undef PF_STORE
 }
 
-class PillarSolver {
+/// Solves the 2 x 2 sensels of a pillar, or, without pillars, each for itself.
+class QuadSolver {
  public:
-  PillarSolver(const SolverPlan& plan, const FrameView& frame, SensorState& state,
-               ForceField& field)
+  QuadSolver(const SolverPlan& plan, const FrameView& frame, SensorState& state,
+             ForceField& field)
       : sensels_(plan, frame, &state), field_(field) {
     if (!plan.uncertainty) return;
-    for (auto& plane : field.uncertainty) plane.resize(field.pillars());
+    for (std::size_t i = kNamedPlanes; i < kSolvedPlanes; ++i) {
+      if (!has_plane(plan.skin.layout, false, true, kResultPlanes[i])) continue;
+      field.uncertainty[static_cast<Uncertainty>(i - kNamedPlanes)].resize(field.elements());
+    }
   }
 
   [[nodiscard]] const maths::Stages& stages() const { return sensels_.stages(); }
@@ -44,14 +50,36 @@ class PillarSolver {
   void solve(std::size_t row, std::size_t col) {
     const bool uncertainty = sensels_.stages().uncertainty;
     const maths::Noise noise = uncertainty ? sensels_.noise(row, col) : maths::Noise{};
-    const maths::Solution solution =
-        maths::solve_pillar(sensels_.pillar(row, col), noise, sensels_.stages());
+    const maths::Pillar sensels = sensels_.pillar(row, col);
+    if (sensels_.stages().sensel_force) return solve_sensels(sensels, noise, 2 * row, 2 * col);
+    const maths::Solution solution = maths::solve_pillar(sensels, noise, sensels_.stages());
     const std::size_t index = row * field_.cols + col;
     field_.status[index] = static_cast<std::uint8_t>(solution.status);
     store_solution(solution, index, uncertainty, field_);
   }
 
  private:
+  /// Solves those of the four that exist; the upper left one is at (row, col).
+  void solve_sensels(const maths::Pillar& sensels, const maths::Noise& noise, std::size_t row,
+                     std::size_t col) {
+    const auto solve_one = [&](const maths::Sensel& sensel, float deviation, std::size_t r,
+                               std::size_t c) {
+      if (r >= field_.rows || c >= field_.cols) return;
+      const maths::SenselSolution solution =
+          maths::solve_sensel(sensel, deviation, sensels_.stages());
+      const std::size_t index = r * field_.cols + c;
+      field_.normal[index] = solution.normal;
+      field_.status[index] = static_cast<std::uint8_t>(solution.status);
+      if (sensels_.stages().uncertainty) {
+        field_.uncertainty[Uncertainty::normal][index] = solution.deviation;
+      }
+    };
+    solve_one(sensels.s1, noise.n1, row, col + 1);
+    solve_one(sensels.s2, noise.n2, row, col);
+    solve_one(sensels.s3, noise.n3, row + 1, col);
+    solve_one(sensels.s4, noise.n4, row + 1, col + 1);
+  }
+
   SenselReader sensels_;
   ForceField& field_;
 };
@@ -163,13 +191,13 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
   }
 }
 
-/// True if a pillar of the 3 x 3 neighbourhood is loaded.
-bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
-  const std::size_t last_row = std::min<std::size_t>(row + 1, forces.rows - 1);
-  const std::size_t last_col = std::min<std::size_t>(col + 1, forces.cols - 1);
+/// True if an element of the 3 x 3 quads around one is loaded; a quad has `side` x `side` elements.
+bool is_touched(const ForceField& forces, std::size_t row, std::size_t col, std::size_t side) {
+  const std::size_t last_row = std::min<std::size_t>(side * (row + 2), forces.rows);
+  const std::size_t last_col = std::min<std::size_t>(side * (col + 2), forces.cols);
   int bits = 0;
-  for (std::size_t r = row == 0 ? 0 : row - 1; r <= last_row; ++r) {
-    for (std::size_t c = col == 0 ? 0 : col - 1; c <= last_col; ++c) {
+  for (std::size_t r = row == 0 ? 0 : side * (row - 1); r < last_row; ++r) {
+    for (std::size_t c = col == 0 ? 0 : side * (col - 1); c < last_col; ++c) {
       bits |= forces.status[r * forces.cols + c];
     }
   }
@@ -181,7 +209,7 @@ bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
 void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces,
                              SensorState& state) {
   check(frame, plan.skin, plan.sensel_type, "follow_baseline_on_host");
-  if (forces.rows != plan.skin.pillar_rows() || forces.cols != plan.skin.pillar_cols()) {
+  if (forces.rows != plan.skin.element_rows() || forces.cols != plan.skin.element_cols()) {
     throw Error("follow_baseline_on_host",
                 fmt::format("the forces are {} x {}", forces.rows, forces.cols),
                 "give the forces of this frame");
@@ -193,25 +221,26 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
   SenselReader sensel(plan, frame);
   const auto rate = static_cast<float>(baseline_turn_rate(plan));
   const auto interval = static_cast<std::uint64_t>(plan.baseline_interval);
-  for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
+  const std::size_t side = plan.skin.has_pillars() ? 1 : 2;
+  const std::size_t rows = std::min<std::size_t>(frame.rows, 2 * quad_rows(plan.skin));
+  const std::size_t cols = std::min<std::size_t>(frame.cols, 2 * quad_cols(plan.skin));
+  for (std::size_t row = 0; row < rows; ++row) {
     if (row / 2 % interval != index % interval) continue;
-    for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
-      const std::size_t pillar_row = row / 2;
-      const std::size_t pillar_col = col / 2;
-      const bool untouched = !is_touched(forces, pillar_row, pillar_col);
+    for (std::size_t col = 0; col < cols; ++col) {
+      const bool untouched = !is_touched(forces, row / 2, col / 2, side);
       float& tare = plan.calibration.tare[row * frame.cols + col];
       const float shift =
-          maths::drift_at(drift, static_cast<float>(pillar_col), static_cast<float>(pillar_row));
+          maths::drift_at(drift, static_cast<float>(col / 2), static_cast<float>(row / 2));
       tare = maths::follow_tare(tare, sensel.untared(row, col), untouched, rate, shift);
     }
   }
 }
 
 ForceField solve_pillars(const SolverPlan& plan, const FrameView& frame, SensorState& state) {
-  ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  PillarSolver solver(plan, frame, state, field);
-  for (std::size_t row = 0; row < field.rows; ++row) {
-    for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
+  ForceField field(plan.skin);
+  QuadSolver solver(plan, frame, state, field);
+  for (std::size_t row = 0; row < quad_rows(plan.skin); ++row) {
+    for (std::size_t col = 0; col < quad_cols(plan.skin); ++col) solver.solve(row, col);
   }
   const SensorEffects& effects = plan.calibration.effects;
   if (effects.pillar_leak || effects.arm_mm) correct_forces(solver.stages(), field);

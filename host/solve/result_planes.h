@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "kernels/frame/result_planes.h"
 #include "pillarfield/component_ends.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/skin.h"
 
 namespace pillarfield {
 
@@ -53,9 +55,12 @@ inline constexpr std::size_t kSolvedPlanes = kResultPlanes.size() - kComponentEn
 inline constexpr std::size_t kNamedPlanes = kSolvedPlanes - kUncertaintyPlanes;
 inline constexpr std::size_t kForcePlanes = 3;
 
-/// True if a plan or file with these options has a set of planes.
-constexpr bool has_planes(bool angles, bool uncertainty, PlaneSet set) {
-  return set == PlaneSet::forces || (set == PlaneSet::angles ? angles : uncertainty);
+/// True if a plan or file with these options has a plane. Without pillars only normal force and its
+/// deviation exist.
+constexpr bool has_plane(SkinLayout layout, bool angles, bool uncertainty,
+                         const ResultPlane& plane) {
+  if (layout == SkinLayout::sensels && std::string_view(plane.name) != "normal") return false;
+  return plane.set == PlaneSet::forces || (plane.set == PlaneSet::angles ? angles : uncertainty);
 }
 
 /// One of the first kSolvedPlanes of a FieldView or FieldPlanes.

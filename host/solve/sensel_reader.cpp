@@ -4,6 +4,7 @@
 #include "skin/raw_reading.h"
 #include "solve/curvature_follower.h"
 #include "solve/stages.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 
@@ -12,6 +13,8 @@ namespace maths = single_precision;
 SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, SensorState* state)
     : calibration_(plan.calibration),
       frame_(frame),
+      quad_rows_(quad_rows(plan.skin)),
+      quad_cols_(quad_cols(plan.skin)),
       stages_(plan_constants<maths::Stages>(plan)),
       state_(state),
       noise_(static_cast<float>(reading_noise(plan))) {
@@ -23,7 +26,7 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
   stages_.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
   if (state_ == nullptr) return;
   const std::size_t states = effects.memory->plays.size() + effects.memory->creep.size();
-  state_->states.resize((1 + 2 * states) * plan.skin.pillars());
+  state_->states.resize((1 + 2 * states) * quads(plan.skin));
   ++state_->frame;
 }
 
@@ -49,7 +52,7 @@ maths::Pillar SenselReader::pillar(std::size_t row, std::size_t col) {
   const std::size_t left = 2 * col;
   maths::Pillar pillar = {freed(top, left + 1), freed(top, left), freed(top + 1, left),
                           freed(top + 1, left + 1)};
-  if (stages_.memory) pillar = recalled(pillar, row * (frame_.cols / 2) + col);
+  if (stages_.memory) pillar = recalled(pillar, row * quad_cols_ + col);
   return {active(pillar.s1, top, left + 1), active(pillar.s2, top, left),
           active(pillar.s3, top + 1, left), active(pillar.s4, top + 1, left + 1)};
 }
@@ -62,11 +65,11 @@ maths::Noise SenselReader::noise(std::size_t row, std::size_t col) const {
 }
 
 maths::Sensel SenselReader::untared(std::size_t row, std::size_t col) const {
-  return maths::untared_sensel(raw_reading(frame_, row, col), correction(row, col), stages_);
+  return maths::untared_sensel(reading(row, col), correction(row, col), stages_);
 }
 
 maths::Sensel SenselReader::linear(std::size_t row, std::size_t col) const {
-  return maths::linear_sensel(raw_reading(frame_, row, col), correction(row, col), stages_);
+  return maths::linear_sensel(reading(row, col), correction(row, col), stages_);
 }
 
 maths::Sensel SenselReader::freed(std::size_t row, std::size_t col) const {
@@ -80,7 +83,7 @@ maths::Sensel SenselReader::active(maths::Sensel sensel, std::size_t row, std::s
 
 /// Zero outside the pillars; rows and columns before the first are huge numbers.
 float SenselReader::leak_source(std::size_t row, std::size_t col) const {
-  if (row / 2 >= frame_.rows / 2 || col / 2 >= frame_.cols / 2) return 0;
+  if (row / 2 >= quad_rows_ || col / 2 >= quad_cols_) return 0;
   const std::size_t beside = col + static_cast<std::size_t>(maths::inward(static_cast<int>(col)));
   const maths::Sensel sensel = linear(row, col);
   return maths::source_or(sensel, maths::leak_source(sensel, stages_.threshold),
@@ -124,8 +127,8 @@ maths::Pillar SenselReader::recalled(const maths::Pillar& pillar, std::size_t in
 
 float SenselReader::sensel_noise(std::size_t row, std::size_t col) const {
   const float noise =
-      calibration_.noise.empty() ? noise_ : calibration_.noise[row * frame_.cols + col];
-  return maths::corrected_noise(noise, raw_reading(frame_, row, col), correction(row, col),
+      calibration_.noise.empty() ? noise_ : value_of(calibration_.noise, row, col, 0.0F);
+  return maths::corrected_noise(noise, reading(row, col), correction(row, col),
                                 stages_);
 }
 
@@ -134,12 +137,24 @@ const std::vector<float>& SenselReader::tares() const {
 }
 
 maths::Correction SenselReader::correction(std::size_t row, std::size_t col) const {
-  const std::size_t index = row * frame_.cols + col;
-  const auto value = [index](const auto& plane) {
-    return plane.empty() ? 0.0F : static_cast<float>(plane[index]);
-  };
-  return {value(tares()), value(calibration_.gain), value(calibration_.dead_zone),
-          value(calibration_.mask), wires_.at(row, col)};
+  return {value_of(tares(), row, col, 0.0F), value_of(calibration_.gain, row, col, 0.0F),
+          value_of(calibration_.dead_zone, row, col, 0.0F),
+          value_of(calibration_.mask, row, col, kAbsent), wires_.at(row, col)};
+}
+
+float SenselReader::reading(std::size_t row, std::size_t col) const {
+  return exists(row, col) ? raw_reading(frame_, row, col) : 0;
+}
+
+bool SenselReader::exists(std::size_t row, std::size_t col) const {
+  return row < frame_.rows && col < frame_.cols;
+}
+
+template <class Value>
+float SenselReader::value_of(const std::vector<Value>& plane, std::size_t row, std::size_t col,
+                             Value otherwise) const {
+  if (plane.empty()) return 0;
+  return static_cast<float>(exists(row, col) ? plane[row * frame_.cols + col] : otherwise);
 }
 
 }  // namespace pillarfield

@@ -38,6 +38,12 @@ class SenselReader {
   /// Updates the tare of a bent skin.
   void bend(const SolverPlan& plan);
   [[nodiscard]] const std::vector<float>& tares() const;
+  /// The reading of a sensel; zero of one that does not exist in the last row or column of quads.
+  [[nodiscard]] float reading(std::size_t row, std::size_t col) const;
+  [[nodiscard]] bool exists(std::size_t row, std::size_t col) const;
+  template <class Value>
+  [[nodiscard]] float value_of(const std::vector<Value>& plane, std::size_t row, std::size_t col,
+                               Value otherwise) const;
   [[nodiscard]] single_precision::Correction correction(std::size_t row, std::size_t col) const;
   [[nodiscard]] single_precision::Sensel linear(std::size_t row, std::size_t col) const;
   /// A sensel without the leak of its neighbours.
@@ -53,6 +59,8 @@ class SenselReader {
 
   const Calibration& calibration_;
   const FrameView& frame_;
+  std::size_t quad_rows_;
+  std::size_t quad_cols_;
   single_precision::Stages stages_;
   WireFactors wires_;
   SensorState* state_;

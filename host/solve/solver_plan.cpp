@@ -64,6 +64,24 @@ double with_offset(const SolverPlan& plan, double noise) {
   return residual.offset_counts == 0 ? noise : std::hypot(noise, residual.offset_counts);
 }
 
+/// Throws Error if a plan of sensels without pillars asks for what only pillars have.
+void check_layout(const SolverPlan& plan, std::string_view where) {
+  if (plan.skin.has_pillars()) return;
+  const SensorEffects& effects = plan.calibration.effects;
+  const auto refuse = [&](bool asked, const char* what) {
+    if (!asked) return;
+    throw Error(where, fmt::format("the skin has no pillars, but the plan has {}", what),
+                "leave it out, or give the skin the layout pillars");
+  };
+  refuse(plan.estimator != Estimator::direct,
+         plan.estimator == Estimator::paper ? "the paper's estimator" : "the estimator contact");
+  refuse(plan.parity_tolerance_counts.has_value(), "a parity test");
+  refuse(plan.angles, "magnitude and angles of shear force");
+  refuse(effects.shear_coefficient.has_value(), "a shear coefficient");
+  refuse(effects.pillar_leak.has_value(), "a leak between pillars");
+  refuse(effects.arm_mm.has_value(), "an arm of pillars");
+}
+
 constexpr int kMaxBaselineInterval = 1024;
 constexpr double kMaxFrameIntervalS = 1e6;
 
@@ -103,6 +121,7 @@ const char* name_of(Estimator estimator) {
 
 void check(const SolverPlan& plan, std::string_view where) {
   check(plan.skin, where);
+  check_layout(plan, where);
   check(plan.calibration, plan.skin, where, plan.sensel_type);
   check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
   check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
@@ -160,7 +179,7 @@ double reading_noise_n(const SolverPlan& plan) {
 }
 
 double hidden_normal_n(const Skin& skin) {
-  return force_scale(skin.counts_per_newton).normal * skin.threshold_counts;
+  return force_scale(skin).normal * skin.threshold_counts;
 }
 
 double region_margin(const SolverPlan& plan) {

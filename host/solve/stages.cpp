@@ -47,7 +47,7 @@ std::vector<StageConstant> stage_constants(const SolverPlan& plan) {
   const auto is = named_stages<double_precision::Stages>(plan);
   const SensorEffects& effects = plan.calibration.effects;
   const PowerLaw power_law = plan.skin.power_law.value_or(PowerLaw{});
-  const ForceScale scale = force_scale(plan.skin.counts_per_newton);
+  const ForceScale scale = force_scale(plan.skin);
   const ShearCoefficient coefficient = effects.shear_coefficient.value_or(ShearCoefficient{});
   const ResidualError residual = effects.residual.value_or(ResidualError{});
   const double residual_variance = residual.offset_counts * residual.offset_counts;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "skin/raw_reading.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 namespace {
@@ -15,6 +16,7 @@ std::size_t tiles_along(std::size_t sensels, std::size_t tile) {
 /// A reading less its offset, if there are some, for the sums; a missing sensel counts as zero.
 float summed_reading(const SolverPlan& plan, const FrameView& frame, std::span<const float> offsets,
                      std::size_t row, std::size_t col) {
+  if (row >= frame.rows || col >= frame.cols) return 0;
   const auto& mask = plan.calibration.mask;
   const std::size_t i = row * frame.cols + col;
   if (!mask.empty() && mask[i] != 1) return 0;
@@ -31,8 +33,8 @@ WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame,
   const auto offsets =
       has_offset_tares(plan.calibration.effects) ? tares : std::span<const float>();
   wires_ = *plan.calibration.effects.wires;
-  rows_ = 2 * std::size_t{plan.skin.pillar_rows()};
-  cols_ = 2 * std::size_t{plan.skin.pillar_cols()};
+  rows_ = 2 * std::size_t{quad_rows(plan.skin)};
+  cols_ = 2 * std::size_t{quad_cols(plan.skin)};
   row_factors_.assign(rows_ * tiles_along(cols_, wires_.tile_cols), {1, 0});
   column_gains_.resize(cols_ * tiles_along(rows_, wires_.tile_rows));
   for (std::size_t row = 0; row < rows_; row += wires_.tile_rows) {

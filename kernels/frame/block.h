@@ -38,6 +38,11 @@ typedef struct {
   size_t plane_bytes;
   global uchar* status;
   global uchar* idle; /* flag of each block: its stored results are those of an idle block */
+#ifdef PF_SENSELS
+  global uchar* touched; /* status bits of the sensels of each 2 x 2, with PF_BASELINE */
+  uint rows;             /* sensels */
+  uint cols;
+#endif
 } Output;
 
 /* A block of PF_LANES pillars: `raw` points to its upper left sensel, whose place is `top`;

@@ -50,7 +50,7 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration, global uchar* restrict results,
                             Layout layout, float rate, Drift drift, uint first_row, uint interval) {
   const Calibration planes = calibration_of(calibration, results, layout);
-  global const uchar* const status = results + layout.status;
+  global const uchar* const status = results + layout.touched;
   const uint rows = (uint)layout.rows;
   const uint cols = (uint)layout.cols;
   const Band band = band_of_rows((rows + interval - 1 - first_row) / interval);

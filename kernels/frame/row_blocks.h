@@ -82,7 +82,11 @@ PF_INLINE Row row_of(Input input, global uchar* idle, uint at_row) {
 #ifdef PF_RING
   row.idle_now = idle_in_ring(input.ring, at_row);
 #endif
+#ifdef PF_SENSELS
+  row.skew = 0;
+#else
   row.skew = (uint)((size_t)at_row * cols % PF_LANES);
+#endif
   row.last_col = cols - PF_LANES;
   row.blocks = (row.skew + cols + PF_LANES - 1) / PF_LANES;
 #ifdef PF_WIRES

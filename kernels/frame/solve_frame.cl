@@ -42,11 +42,13 @@ PF_INLINE Sensel valid_sensel(Sensel sensel) {
   return sensel;
 }
 
+#ifndef PF_SENSELS
 PF_INLINE Mask is_invalid(Sensel sensel) { return sensel.missing || sensel.saturated; }
 
-/* Solves a block. Most blocks have no missing and no saturated sensel; constant false masks let the
- * compiler drop half of the code for them. */
-PF_INLINE Solution solve_block(Block block, Input input) {
+#endif
+
+/* The corrected sensels of a block. */
+PF_INLINE Pillar corrected_block(Block block, Input input) {
   const Calibration calibration = input.calibration;
   SenselPair top = read_linear(block.raw, calibration, block.top);
   SenselPair bottom = read_linear(block.raw + input.row_stride, calibration, block.bottom);
@@ -70,6 +72,55 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
   const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
+  return pillar;
+}
+
+#ifdef PF_SENSELS
+
+#define PF_STORE_ROW(store, value, plane) \
+  store(left.value, right.value, (plane) + index, sensels)
+
+/* Writes the results of one row of sensels, the first of them at `index`. */
+PF_INLINE void store_sensels(SenselSolution left, SenselSolution right, Output output, size_t index,
+                             Lanes sensels) {
+  PF_STORE_ROW(store_sensel_plane, normal, (global float*)output.planes);
+#ifdef PF_UNCERTAINTY
+  PF_STORE_ROW(store_sensel_plane, deviation,
+               (global float*)(output.planes + output.plane_bytes));
+#endif
+  PF_STORE_ROW(store_sensel_status, status, output.status);
+}
+#undef PF_STORE_ROW
+
+/* Solves a block of sensels without pillars, and writes those that exist. */
+PF_INLINE void write_block(Block block, Input input, Output output) {
+  const Stages stages = input.calibration.stages;
+  const Pillar sensels = corrected_block(block, input);
+  const Noise noise = noise_of(block, input);
+  const SenselSolution s1 = solve_sensel(sensels.s1, noise.n1, stages);
+  const SenselSolution s2 = solve_sensel(sensels.s2, noise.n2, stages);
+  const SenselSolution s3 = solve_sensel(sensels.s3, noise.n3, stages);
+  const SenselSolution s4 = solve_sensel(sensels.s4, noise.n4, stages);
+  const Lanes existing = {2 * block.lanes.first,
+                          min(2 * block.lanes.end, output.cols - block.top.col)};
+  const size_t index = (size_t)block.top.row * output.cols + block.top.col;
+  store_sensels(s2, s1, output, index, existing);
+  if (block.bottom.row < output.rows) {
+    store_sensels(s3, s4, output, index + output.cols, existing);
+  }
+#ifdef PF_BASELINE
+  const Bits touched = s1.status | s2.status | s3.status | s4.status;
+  store_status(touched, output.touched + block.index, block.lanes);
+#endif
+}
+
+#else
+
+/* Solves a block. Most blocks have no missing and no saturated sensel; constant false masks let the
+ * compiler drop half of the code for them. */
+PF_INLINE Solution solve_block(Block block, Input input) {
+  const Calibration calibration = input.calibration;
+  const Pillar pillar = corrected_block(block, input);
 #if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE))
   const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
                        is_invalid(pillar.s4);
@@ -117,6 +168,12 @@ PF_INLINE void store_solution(Solution solution, Output output, size_t index, La
     store_lanes(solution, output, index, lanes);
   }
 }
+
+PF_INLINE void write_block(Block block, Input input, Output output) {
+  store_solution(solve_block(block, input), output, block.index, block.lanes);
+}
+
+#endif
 
 /* True if a block is idle and its stored results are already those of an idle block; updates its
  * flag. */
@@ -182,7 +239,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
     block.blocks = blocks_of_row(pillar_cols);
     prefetch_states(input.calibration, block);
 #endif
-    store_solution(solve_block(block, input), output, block.index, block.lanes);
+    write_block(block, input, output);
   }
 }
 
@@ -209,7 +266,12 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
   global uchar* const forces = results;
 #endif
   const Output output = {forces, results, layout.result_bytes, results + layout.status,
-                         results + layout.idle};
+                         results + layout.idle,
+#ifdef PF_SENSELS
+                         results + layout.touched, (uint)layout.sensel_rows,
+                         (uint)layout.sensel_cols
+#endif
+  };
 #ifdef PF_RING
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);
 #endif

@@ -23,7 +23,9 @@
   X(memory, PF_MEMORY, pillar, true, effects.memory.has_value())                                   \
   X(classify, none, pillar, false, true)                                                           \
   X(dead_zone, PF_DEAD_ZONE, pillar, false, !plan.calibration.dead_zone.empty())                   \
-  X(direct_solve, none, pillar, false, plan.estimator != Estimator::paper)                         \
+  X(sensel_force, PF_SENSELS, pillar, false, !plan.skin.has_pillars())                             \
+  X(direct_solve, none, pillar, false,                                                             \
+    plan.skin.has_pillars() && plan.estimator != Estimator::paper)                                 \
   X(paper_solve, PF_PAPER, pillar, false, plan.estimator == Estimator::paper)                      \
   X(shear_coefficient, PF_SHEAR_COEFFICIENT, pillar, false, effects.shear_coefficient.has_value()) \
   X(residual, PF_RESIDUAL, pillar, false, effects.residual.has_value())                            \

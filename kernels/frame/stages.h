@@ -26,6 +26,7 @@
 #define PF_WIRES_ACT(after_tare) (stages.wires && stages.wires_after_tare == (after_tare))
 #define PF_TARE
 #define PF_GAIN
+#define PF_SENSELS
 #define PF_POWER_LAW
 #define PF_CURVE
 #define PF_LEAK
@@ -203,6 +204,37 @@ PF_INLINE Force with_common_residual(Force deviations, Force force, Stages stage
 PF_INLINE Real with_residual(Real noise, Sensel sensel, Stages stages) {
   const Real relative = PF_VALUE(Real, residual_relative) * sensel.reading;
   return sqrt(noise * noise + relative * relative);
+}
+#endif
+
+#ifdef PF_SENSELS
+/* Results of a sensel that is an element of its own. */
+typedef struct {
+  Real normal;
+  Bits status;
+#ifdef PF_UNCERTAINTY
+  Real deviation;
+#endif
+} SenselSolution;
+
+/* Solves a corrected sensel without a pillar; `noise` is its noise after correction, counts. */
+PF_INLINE SenselSolution solve_sensel(Sensel sensel, Real noise, Stages stages) {
+  const Real newtons_per_count = PF_VALUE(Real, normal_scale);
+  SenselSolution solution;
+  solution.normal = sensel_force(sensel, newtons_per_count);
+  solution.status = sensel_status(sensel);
+#ifdef PF_UNCERTAINTY
+  if (PF_NAMED(uncertainty)) {
+#ifdef PF_RESIDUAL
+    if (PF_NAMED(residual)) {
+      noise = with_residual(noise, sensel, stages);
+      noise = sqrt(noise * noise + PF_VALUE(Real, residual_variance));
+    }
+#endif
+    solution.deviation = sensel_deviation(sensel, noise, newtons_per_count);
+  }
+#endif
+  return solution;
 }
 #endif
 

@@ -242,7 +242,7 @@ Json cost_json(const std::filesystem::path& scene) {
   FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   simulator.render(simulator.scene().frames / 2, frame, truth);
-  const auto pillars = static_cast<double>(truth.pillars());
+  const auto pillars = static_cast<double>(truth.elements());
   const auto loaded =
       static_cast<double>(std::ranges::count_if(truth.status, [](auto bits) { return bits != 0; }));
   const auto ambiguous = static_cast<double>(std::ranges::count_if(

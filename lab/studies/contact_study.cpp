@@ -52,7 +52,7 @@ FrameBuffer read_frame(const Scene& scene, const Sensor& sensor, const ForceFiel
 
 std::vector<std::size_t> ambiguous_pillars(const ForceField& direct, const ForceField& truth) {
   std::vector<std::size_t> ambiguous;
-  for (std::size_t i = 0; i < direct.pillars(); ++i) {
+  for (std::size_t i = 0; i < direct.elements(); ++i) {
     if (region_of(direct.status[i]) == Region::three && truth.normal[i] > 0) ambiguous.push_back(i);
   }
   return ambiguous;
@@ -147,7 +147,7 @@ Recording read_forces(Scene scene, std::vector<ForceField> truth) {
 double largest_reading(std::span<const ForceField> truth) {
   double largest = 0;
   for (const ForceField& field : truth) {
-    for (std::size_t i = 0; i < field.pillars(); ++i) {
+    for (std::size_t i = 0; i < field.elements(); ++i) {
       const auto v = ideal_readings(force_of(field, i), 1);
       largest = std::max({largest, v.v1, v.v2, v.v3, v.v4});
     }

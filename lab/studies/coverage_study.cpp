@@ -97,7 +97,7 @@ Luck luck_of(std::uint8_t solved, std::uint8_t without_noise) {
 
 /// `solved` without a claim for pillars of other luck: Coverage passes over what is inconsistent.
 ForceField only(Luck luck, ForceField solved, const ForceField& truth, const SolverPlan& plan) {
-  for (std::size_t i = 0; i < solved.pillars(); ++i) {
+  for (std::size_t i = 0; i < solved.elements(); ++i) {
     const auto usable = static_cast<std::uint8_t>(solved.status[i] & status::kUsable);
     if (luck_of(usable, bits_without_noise(truth, i, plan)) == luck) continue;
     solved.status[i] |= status::kInconsistent;

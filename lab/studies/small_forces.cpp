@@ -36,8 +36,8 @@ Scene study_scene() {
 ForceField forces_over_hemisphere(double magnitude_n) {
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
   ForceField truth(kSide, kSide);
-  for (std::size_t i = 0; i < truth.pillars(); ++i) {
-    const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(truth.pillars());
+  for (std::size_t i = 0; i < truth.elements(); ++i) {
+    const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(truth.elements());
     const bound::Force force = bound::force_from(magnitude_n, std::acos(1 - fraction),
                                                  golden_angle * static_cast<double>(i));
     truth.shear_x[i] = static_cast<float>(force.shear_x);
@@ -90,14 +90,14 @@ double held_fraction(const ForceField& solved, const ForceField& truth) {
     const RegionCoverage part = coverage.region(static_cast<Region>(region));
     held += part.ends * static_cast<double>(part.pillars);
   }
-  return held / static_cast<double>(truth.pillars());
+  return held / static_cast<double>(truth.elements());
 }
 
 /// RMS of |solved − true| / |true| over pillars in regions 1 and 2; NaN without any.
 double determined_error(const ForceField& solved, const ForceField& truth) {
   double squares = 0;
   double count = 0;
-  for (std::size_t i = 0; i < truth.pillars(); ++i) {
+  for (std::size_t i = 0; i < truth.elements(); ++i) {
     const Region region = region_of(solved.status[i]);
     if (region != Region::one && region != Region::two) continue;
     const double error =
@@ -112,7 +112,7 @@ double determined_error(const ForceField& solved, const ForceField& truth) {
 
 SmallForceErrors errors_of(const ForceField& solved, const ForceField& truth) {
   SmallForceErrors errors{};
-  for (std::size_t i = 0; i < truth.pillars(); ++i) {
+  for (std::size_t i = 0; i < truth.elements(); ++i) {
     const Region region = region_of(solved.status[i]);
     const bool detected = region != Region::none;
     const bool wrong = detected && region != region_of(truth.status[i]);
@@ -122,7 +122,7 @@ SmallForceErrors errors_of(const ForceField& solved, const ForceField& truth) {
     errors.unflagged += wrong && !flagged ? 1 : 0;
   }
   for (double* count : {&errors.undetected, &errors.wrong_region, &errors.unflagged}) {
-    *count /= static_cast<double>(truth.pillars());
+    *count /= static_cast<double>(truth.elements());
   }
   Comparison comparison;
   comparison.add(solved.view(), truth.view());

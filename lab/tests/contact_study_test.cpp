@@ -90,7 +90,7 @@ TEST(FieldStudy, NearestIsNearest) {
 std::vector<ForceField> stated(const Recording& recording, const Evaluation& evaluation,
                                double shift_n) {
   ForceField field = recording.truth[0];
-  for (auto& plane : field.uncertainty) plane.assign(field.pillars(), 1e-3F);
+  for (auto& plane : field.uncertainty) plane.assign(field.elements(), 1e-3F);
   auto& ends = field.uncertainty;
   for (const std::size_t i : evaluation.ambiguous(0)) {
     const double shear = std::hypot(field.shear_x[i], field.shear_y[i]);

@@ -173,7 +173,7 @@ UnderADrift under_a_drift(const Drift& per_s, int interval = 1) {
   for (int frame = 0; frame < 1'100; ++frame) {
     const double t = 0.01 * frame;
     const ForceField solved = follower.step({per_s.level * t, per_s.per_col * t});
-    for (std::size_t i = 0; frame > 900 && i < solved.pillars(); ++i) {
+    for (std::size_t i = 0; frame > 900 && i < solved.elements(); ++i) {
       const double truth = follower.truth().normal[i];
       result.false_pillars += truth == 0 && (solved.status[i] & status::kUsable) != 0 ? 1 : 0;
       if (truth < 0.1) continue;

@@ -135,7 +135,7 @@ TEST(LoadCalibration, WhatSeveralLoadsLeaveIsStated) {
     apply(result.calibration, plan.skin, plan.calibration);
     const ForceField solved = solve_on_host(plan, mean.view());
     const std::vector<float>& deviation = solved.uncertainty[Uncertainty::normal];
-    for (std::size_t i = 0; i < solved.pillars(); ++i) {
+    for (std::size_t i = 0; i < solved.elements(); ++i) {
       held += std::abs(solved.normal[i] - force_n) < 1.96 * deviation[i] ? 1 : 0;
     }
   }

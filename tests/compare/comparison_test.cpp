@@ -56,7 +56,7 @@ Frames random_frames(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   std::normal_distribution<double> normal;
-  for (std::size_t i = 0; i < frames.truth.pillars(); ++i) {
+  for (std::size_t i = 0; i < frames.truth.elements(); ++i) {
     const double magnitude = unit(random) < 0.2 ? 0 : 0.1 + unit(random);
     const double theta = std::acos(unit(random));
     const double phi = 2 * std::numbers::pi * unit(random);
@@ -131,7 +131,7 @@ TEST(Comparison, AgreesWithANaiveComputation) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Frames frames = random_frames(seed);
     comparison.add(frames.solved.view(), frames.truth.view());
-    for (std::size_t i = 0; i < frames.truth.pillars(); ++i) {
+    for (std::size_t i = 0; i < frames.truth.elements(); ++i) {
       const int count =
           naive_region(double{frames.truth.shear_x[i]}, double{frames.truth.shear_y[i]},
                        double{frames.truth.normal[i]})

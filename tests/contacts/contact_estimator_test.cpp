@@ -123,7 +123,7 @@ class OneFrame : public testing::Test {
 
 TEST_F(OneFrame, ChangesNothingButAmbiguousPillars) {
   int changed = 0;
-  for (std::size_t i = 0; i < direct_.pillars(); ++i) {
+  for (std::size_t i = 0; i < direct_.elements(); ++i) {
     if (is_ambiguous_pair(direct_.status[i])) {
       changed += contact_.normal[i] != direct_.normal[i];
       continue;
@@ -138,7 +138,7 @@ TEST_F(OneFrame, ChangesNothingButAmbiguousPillars) {
 
 /// The force stays on the segment: the readings of the usable sensels are explained.
 TEST_F(OneFrame, ExplainsTheReadings) {
-  for (std::size_t i = 0; i < direct_.pillars(); ++i) {
+  for (std::size_t i = 0; i < direct_.elements(); ++i) {
     if (!is_ambiguous_pair(direct_.status[i])) continue;
     const bool vertical = (direct_.status[i] & 15) == 3 || (direct_.status[i] & 15) == 12;
     const auto& fixed = vertical ? &ForceField::shear_x : &ForceField::shear_y;
@@ -191,7 +191,7 @@ TEST_F(OneFrame, ScalesWithTheForces) {
   SolverPlan plan = plan_of(scene_, Estimator::contact);
   plan.skin.counts_per_newton /= kScale;
   ContactEstimator(plan).resolve(scaled);
-  for (std::size_t i = 0; i < scaled.pillars(); ++i) {
+  for (std::size_t i = 0; i < scaled.elements(); ++i) {
     EXPECT_NEAR(scaled.normal[i], kScale * contact_.normal[i], 1e-3 * kScale * contact_.normal[i]);
   }
 }
@@ -206,9 +206,9 @@ TEST_F(OneFrame, StaysFiniteOnAnyPlanes) {
   ContactEstimator estimator(plan_of(scene_, Estimator::contact));
   for (const float value : strange) {
     ForceField broken = direct_;
-    for (std::size_t i = 0; i < broken.pillars(); i += 3) {
+    for (std::size_t i = 0; i < broken.elements(); i += 3) {
       broken.normal[i] = value;
-      broken.shear_x[(i + 1) % broken.pillars()] = value;
+      broken.shear_x[(i + 1) % broken.elements()] = value;
       broken.status[i] = static_cast<std::uint8_t>(i);
     }
     estimator.resolve(broken);

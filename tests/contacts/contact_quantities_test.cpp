@@ -249,7 +249,7 @@ TEST(Friction, WithoutMemoryIsNotCarriedOver) {
 /// The contact moves by 15 pillars (19 mm).
 ForceField moved(const ForceField& field) {
   ForceField wide(field.rows, field.cols + 30);
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     load(wide, static_cast<std::uint32_t>(i / field.cols),
          static_cast<std::uint32_t>(15 + i % field.cols), field.shear_x[i], field.shear_y[i],
          field.normal[i], field.status[i]);
@@ -287,7 +287,7 @@ TEST(Friction, OfAFaceThatMayStickIsNotReported) {
 /// A sticking stamp, whose edge bears little and slips at larger ratios.
 TEST(Friction, OfAStampWhoseEdgeAloneSlipsIsNotReported) {
   ForceField field = mostly_sliding(12, 12, 0.5);
-  for (std::uint32_t i = 0; i < field.pillars(); ++i) {
+  for (std::uint32_t i = 0; i < field.elements(); ++i) {
     if (!(field.normal[i] > 0)) continue;
     field.shear_x[i] = field.normal[i] * (i % 19 == 0 ? 0.8F : 0.5F);
     field.shear_y[i] = 0;

@@ -30,10 +30,10 @@ SolverPlan leaning_plan() {
 /// Squares of four by four pillars, one idle pillar apart, of which most are ambiguous.
 ForceField squares(unsigned seed) {
   ForceField field(kRows, kCols);
-  for (auto& plane : field.uncertainty) plane.resize(field.pillars());
+  for (auto& plane : field.uncertainty) plane.resize(field.elements());
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> part(0, 1);
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     if (i / kCols % kPeriod == 0 || i % kCols % kPeriod == 0) continue;
     const bool is_pair = random() % 4 != 0;
     field.normal[i] = 0.2F + part(random);

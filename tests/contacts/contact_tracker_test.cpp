@@ -406,7 +406,7 @@ TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
 TEST(ContactTracker, SumsALargeContactAlikeWithAnyNumberOfThreads) {
   ForceField field(150, 150);
   std::fill(field.status.begin(), field.status.end(), status::kUsable);
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     const int bits = static_cast<int>(i * 7919 % 6007);
     field.normal[i] = std::ldexp(1 + static_cast<float>(bits) / 6007, -(bits % 61));
     field.shear_x[i] = -0.3F * field.normal[i];

@@ -47,7 +47,7 @@ void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
 TEST(ContactWrench, OnAPlaneIsTheContactsForceAndMoment) {
   ForceField field = strip(10, 14, 0.1F, -0.2F, 0.5F);
   const ForceField other = strip(40, 47, -0.3F, 0.1F, 0.9F);
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     if (other.status[i] == 0) continue;
     field.shear_x[i] = other.shear_x[i] * static_cast<float>(i % 7);
     field.shear_y[i] = other.shear_y[i];

@@ -116,7 +116,7 @@ inline Errors errors_of(const Simulator& simulator, const Solve& solve,
   for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
     simulator.render(frame, raw, truth);
     const ForceField solved = solve(raw.view());
-    for (std::size_t i = 0; i < solved.pillars(); ++i) {
+    for (std::size_t i = 0; i < solved.elements(); ++i) {
       if (!is_ambiguous_pair(solved.status[i])) continue;
       const double x = solved.shear_x[i] - truth.shear_x[i];
       const double y = solved.shear_y[i] - truth.shear_y[i];

@@ -139,7 +139,7 @@ TEST(RealSensor, EstimatesExplainTheReadings) {
     simulator.render(frame, raw, truth);
     const ForceField direct = solve_on_host(plan_of(scene, Estimator::direct), raw.view());
     const ForceField contact = solve_on_host(plan_of(scene, Estimator::contact), raw.view());
-    for (std::size_t i = 0; i < direct.pillars(); ++i) {
+    for (std::size_t i = 0; i < direct.elements(); ++i) {
       if (!is_ambiguous_pair(direct.status[i])) continue;
       ++ambiguous;
       const int usable = direct.status[i] & status::kUsable;

@@ -76,7 +76,7 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
       EXPECT_EQ(reader.info().rows, rows);
       EXPECT_EQ(reader.info().cols, cols);
       EXPECT_EQ(reader.info().angles, angles);
-      EXPECT_EQ(reader.info().pillar_pitch_mm, 1.265);
+      EXPECT_EQ(reader.info().element_pitch_mm, 1.265);
       EXPECT_EQ(reader.info().estimator, "direct");
       EXPECT_EQ(reader.info().segment_point, angles ? std::optional(0.75) : std::nullopt);
       const auto coefficient = reader.info().effects.shear_coefficient;
@@ -116,7 +116,7 @@ ForceField sparse_forces(std::uint64_t index, std::uint32_t rows, std::uint32_t 
   if (index % 5 == 0) return forces;
   for (std::uint64_t touched = 0; touched < 3; ++touched) {
     const std::uint64_t number = number_at(index / 9, touched);
-    const std::size_t pillar = number % forces.pillars();
+    const std::size_t pillar = number % forces.elements();
     forces.normal[pillar] = static_cast<float>(index) + 0.5F;
     forces.shear_x[pillar] = touched == 0 ? -0.0F : std::numeric_limits<float>::quiet_NaN();
     forces.status[pillar] = touched == 1 ? 0 : 15;  // A value counts, whatever the status.
@@ -250,7 +250,7 @@ TEST(ForceSink, RefusesWhatItCannotWrite) {
     return error_of([&] { (void)create_force_sink(path, info); });
   };
   ForceFileInfo no_pitch = info_of(2, 3);
-  no_pitch.pillar_pitch_mm = std::numeric_limits<double>::quiet_NaN();
+  no_pitch.element_pitch_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has_all(refused(directory / "f.txt", info_of(2, 3)), {"f.txt", ".h5", ".csv"}));
   EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"extension"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(0, 3)), {"0 x 3"}));

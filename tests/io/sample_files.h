@@ -81,7 +81,7 @@ inline ForceField sample_forces(std::uint64_t index, std::uint32_t rows, std::ui
   const auto value = [&](std::uint64_t place) {
     return static_cast<float>(static_cast<double>(number_at(index, place)) * 1e-20 - 0.1);
   };
-  for (std::size_t pillar = 0; pillar < forces.pillars(); ++pillar) {
+  for (std::size_t pillar = 0; pillar < forces.elements(); ++pillar) {
     forces.shear_x[pillar] = value(4 * pillar);
     forces.shear_y[pillar] = value(4 * pillar + 1);
     forces.normal[pillar] = value(4 * pillar + 2);

@@ -345,7 +345,7 @@ TEST_F(Tekscan, ForcesOfAnInsoleArePressureTimesArea) {
   EXPECT_EQ(quiet, count_pillars_without_sensels(plan.calibration, plan.skin));
   EXPECT_GT(quiet, 50U);
   EXPECT_EQ(quiet + static_cast<std::size_t>(std::ranges::count(field.status, status::kUsable)),
-            field.pillars());
+            field.elements());
 }
 
 struct Mistake {

@@ -366,12 +366,12 @@ TEST(Pipeline, WritesTheBytesOfExplicitCalls) {
     ForceFileInfo info;
     info.rows = kSkin.rows / 2;
     info.cols = kSkin.cols / 2;
-    info.pillar_pitch_mm = kSkin.pillar_pitch_mm();
+    info.element_pitch_mm = kSkin.pillar_pitch_mm();
     info.angles = true;
     ForceFileInfo with_contacts = info;
     with_contacts.contacts = options;
     const auto sinks_named = [&](const std::string& name) {
-      const ContactFileInfo contacts = {info.pillar_pitch_mm, "r.h5", options};
+      const ContactFileInfo contacts = {info.element_pitch_mm, "r.h5", options};
       std::vector<std::unique_ptr<ForceSink>> sinks;
       sinks.push_back(create_force_sink(directory / (name + "_forces.csv"), info));
       sinks.push_back(create_force_sink(directory / (name + ".npy"), info));
@@ -385,7 +385,7 @@ TEST(Pipeline, WritesTheBytesOfExplicitCalls) {
     std::vector<ForceSink*> all(sinks.size());
     std::ranges::transform(sinks, all.begin(), [](const auto& sink) { return sink.get(); });
     Processor processor(test_device(), plan);
-    ContactTracker tracker(info.pillar_pitch_mm, options);
+    ContactTracker tracker(info.element_pitch_mm, options);
     const auto stream = file_stream(*source);
     const PipelineStatistics done = Pipeline(*stream, processor, all, {.contacts = &tracker}).run();
     for (const auto& sink : sinks) sink->finish();
@@ -393,7 +393,7 @@ TEST(Pipeline, WritesTheBytesOfExplicitCalls) {
 
     const auto by_hand = sinks_named("hand");
     Processor other(test_device(), plan);
-    ContactTracker follower(info.pillar_pitch_mm, options);
+    ContactTracker follower(info.element_pitch_mm, options);
     std::uint64_t most = 0;
     std::uint64_t last_id = 0;
     for (std::uint64_t index = 0; index < source->frames(); ++index) {

@@ -194,7 +194,7 @@ TEST(Contact, ShearStaysWithinFriction) {
   for (const ClosedFormContact& contact : all_kinds()) {
     SCOPED_TRACE(kind_of(contact));
     const ForceField field = field_of(contact, 24);
-    for (std::size_t i = 0; i < field.pillars(); ++i) {
+    for (std::size_t i = 0; i < field.elements(); ++i) {
       const double shear = std::hypot(double{field.shear_x[i]}, double{field.shear_y[i]});
       EXPECT_LE(shear, contact.friction * double{field.normal[i]} + 1e-7) << i;
       EXPECT_GE(field.normal[i], 0) << i;
@@ -208,7 +208,7 @@ TEST(Contact, SlidingAndPartialSlipActAlongTheirDirection) {
     contact.direction_deg = 90;
     SCOPED_TRACE(kind_of(contact));
     const ForceField field = field_of(contact, 24);
-    for (std::size_t i = 0; i < field.pillars(); ++i) {
+    for (std::size_t i = 0; i < field.elements(); ++i) {
       EXPECT_NEAR(field.shear_x[i], 0, 1e-7F);
       EXPECT_GE(field.shear_y[i], -1e-7F);
     }
@@ -296,7 +296,7 @@ TEST(Contact, EightTimesTheLoadIsTheSameFieldOnAGridTwiceAsCoarse) {
     SCOPED_TRACE(kind_of(contact));
     const ForceField light = field_of(contact, 20);
     const ForceField field = field_of(heavy, 20, 2 * kPitch);
-    for (std::size_t i = 0; i < light.pillars(); ++i) {
+    for (std::size_t i = 0; i < light.elements(); ++i) {
       EXPECT_NEAR(double{field.normal[i]}, growth * double{light.normal[i]}, 1e-6);
       EXPECT_NEAR(double{field.shear_x[i]}, growth * double{light.shear_x[i]}, 1e-6);
       EXPECT_NEAR(double{field.shear_y[i]}, growth * double{light.shear_y[i]}, 1e-6);

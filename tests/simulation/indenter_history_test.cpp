@@ -82,7 +82,7 @@ TEST(IndenterHistory, TurnsCounterClockwise) {
     double product = 0;
     double squares = 0;
     double torque = 0;
-    for (std::size_t i = 0; i < pressed.pillars(); ++i) {
+    for (std::size_t i = 0; i < pressed.elements(); ++i) {
       const std::size_t row = i / pressed.cols;
       const double x = static_cast<double>(i % pressed.cols) - 12.5;
       const double y = 12.5 - static_cast<double>(row);

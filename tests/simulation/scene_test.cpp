@@ -367,7 +367,7 @@ TEST(ShippedScenes, TheSquareMetreIsTouchedOnFiveToTenPercent) {
   for (const std::uint64_t index : {0U, 50U, 99U}) {
     simulator.render(index, raw, truth);
     const auto touched = std::ranges::count_if(truth.normal, [](float n) { return n > 0; });
-    const double share = static_cast<double>(touched) / static_cast<double>(truth.pillars());
+    const double share = static_cast<double>(touched) / static_cast<double>(truth.elements());
     EXPECT_GT(share, 0.05);
     EXPECT_LT(share, 0.10);
   }

@@ -11,7 +11,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr PillarLayout kPillars = {17, 30, 1.25};
+constexpr ElementGrid kPillars = {17, 30, 1.25};
 
 Surface shaped(SurfaceShape shape, double radius_mm, double axis_deg = 90) {
   Surface surface;

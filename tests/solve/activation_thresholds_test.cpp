@@ -62,7 +62,7 @@ void expect_lower_readings_do_not_matter(const SolverPlan& plan, int largest) {
       readings[i] = std::max(0.0F, std::min(static_cast<float>(reading), levels[i] - 1));
     }
     const ForceField field = solve_on_host(plan, frame_of<Reading>(plan, readings).view());
-    for (std::size_t i = 0; i < field.pillars(); ++i) {
+    for (std::size_t i = 0; i < field.elements(); ++i) {
       if (can[i] == 0) continue;
       ASSERT_EQ(field.status[i], idle.status[i]) << "pillar " << i << ", reading " << reading;
       ASSERT_EQ(field.normal[i], idle.normal[i]);
@@ -101,7 +101,7 @@ TEST(ActivationThresholds, OfWholeReadingsAreTheHighest) {
   const std::vector<float> levels = activation_thresholds(plan);
   const ForceField field = solve_on_host(plan, frame_of<std::uint8_t>(plan, levels).view());
   const std::vector<std::uint8_t> can = can_be_idle(plan, levels);
-  for (std::size_t i = 0; i < field.pillars(); ++i) {
+  for (std::size_t i = 0; i < field.elements(); ++i) {
     if (can[i] == 0) continue;
     EXPECT_EQ(field.status[i] & 15, 15) << "pillar " << i;
   }

@@ -232,7 +232,7 @@ class LegendList {
 void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Layout& layout,
                        double y) {
   const RenderSettings& settings = canvas.settings;
-  const double pitch = source.skin.pillar_pitch_mm();
+  const double pitch = source.skin.element_pitch_mm();
   const std::uint32_t block = arrow_block_of(settings, layout.plot, pitch);
   const double cell_pixels = block * pitch * pixels_per_mm(settings.view, layout.plot);
   const double length = 1.5 * cell_pixels;
@@ -332,11 +332,11 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
 std::vector<Vec2> outline_of(const PillarRect& rect, const SourceInfo& source,
                              const RenderSettings& settings, const Viewport& plot) {
   const Skin& skin = source.skin;
-  const double pitch = skin.pillar_pitch_mm();
-  const double left = (rect.col_begin - 0.5 * skin.pillar_cols()) * pitch;
-  const double right = (rect.col_end - 0.5 * skin.pillar_cols()) * pitch;
-  const double top = (0.5 * skin.pillar_rows() - rect.row_begin) * pitch;
-  const double bottom = (0.5 * skin.pillar_rows() - rect.row_end) * pitch;
+  const double pitch = skin.element_pitch_mm();
+  const double left = (rect.col_begin - 0.5 * skin.element_cols()) * pitch;
+  const double right = (rect.col_end - 0.5 * skin.element_cols()) * pitch;
+  const double top = (0.5 * skin.element_rows() - rect.row_begin) * pitch;
+  const double bottom = (0.5 * skin.element_rows() - rect.row_end) * pitch;
   const std::array<Vec2, 5> corners{
       {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}};
   const bool from_above = std::holds_alternative<TopView>(settings.view);

@@ -46,14 +46,14 @@ uint plane_of(const ShownField& field, std::span<const Value> plane) {
 
 shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& settings,
                              const Viewport& plot, uint block) {
-  const uint rows = source.skin.pillar_rows();
-  const uint cols = source.skin.pillar_cols();
+  const uint rows = source.skin.element_rows();
+  const uint cols = source.skin.element_cols();
   uint row_begin = 0;
   uint row_end = rows;
   uint col_begin = 0;
   uint col_end = cols;
   if (const auto* top = std::get_if<TopView>(&settings.view)) {
-    const double pitch = source.skin.pillar_pitch_mm();
+    const double pitch = source.skin.element_pitch_mm();
     // One more cell at each side, since arrows may be longer than a cell.
     const auto clamped = [&](double value, uint most) {
       return static_cast<uint>(std::clamp(value, 0.0, static_cast<double>(most)));
@@ -78,8 +78,8 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
 }  // namespace
 
 SkinSize skin_size(const SourceInfo& source) {
-  const double pitch = source.skin.pillar_pitch_mm();
-  return {source.skin.pillar_cols() * pitch, source.skin.pillar_rows() * pitch};
+  const double pitch = source.skin.element_pitch_mm();
+  return {source.skin.element_cols() * pitch, source.skin.element_rows() * pitch};
 }
 
 std::uint32_t arrow_block_of(const RenderSettings& settings, const Viewport& plot,
@@ -101,7 +101,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
                        const RenderSettings& settings, const Viewport& plot) {
   const bool from_above = std::holds_alternative<TopView>(settings.view);
   const SkinSize size = skin_size(source);
-  const double pitch = source.skin.pillar_pitch_mm();
+  const double pitch = source.skin.element_pitch_mm();
   const Surface surface = from_above ? Surface{} : settings.surface;
   const std::uint32_t block = arrow_block_of(settings, plot, pitch);
   const bool relief = shows_relief(settings);
@@ -154,7 +154,7 @@ HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
                       const RenderSettings& settings, const Viewport& plot) {
   const Scale scale = info_of(settings.quantity).scale;
   // Directions and classes have no mean; in a top view all pixels cover equally many pillars.
-  const double pixels = source.skin.pillar_pitch_mm() * pixels_per_mm(settings.view, plot);
+  const double pixels = source.skin.element_pitch_mm() * pixels_per_mm(settings.view, plot);
   const bool near = std::holds_alternative<TopView>(settings.view) && pixels > kSinglePillarPixels;
   const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
   return {static_cast<uint>(settings.quantity), static_cast<uint>(scale),

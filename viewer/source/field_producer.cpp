@@ -198,7 +198,7 @@ std::optional<CurvePoint> FieldProducer::stored_total(std::uint64_t /*index*/) {
 }
 
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
-  if (!found_contacts_) found_contacts_.emplace(info().skin.pillar_pitch_mm(), info().contacts);
+  if (!found_contacts_) found_contacts_.emplace(info().skin.element_pitch_mm(), info().contacts);
   return found_contacts_->contacts_of(field);
 }
 

@@ -31,7 +31,7 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   info.kind = "force field";
   info.skin.rows = 2 * file.rows;
   info.skin.cols = 2 * file.cols;
-  info.skin.sensel_pitch_mm = file.pillar_pitch_mm / 2;
+  info.skin.sensel_pitch_mm = file.element_pitch_mm / 2;
   info.skin.surface = file.surface;
   info.contacts.surface = file.surface;
   info.contacts.effects = file.effects;
@@ -59,7 +59,7 @@ ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
       reader_(std::in_place, path, kProbed),
       info_(info_of(path, *reader_)),
       blocks_(kMostShown, [this] {
-        return std::make_unique<PlaneBlock>(info_.skin.pillar_rows(), info_.skin.pillar_cols(),
+        return std::make_unique<PlaneBlock>(info_.skin.element_rows(), info_.skin.element_cols(),
                                             info_.has_uncertainty);
       }) {
   info_.rate_hz = frame_rate(info_.frames,
@@ -107,7 +107,7 @@ std::optional<CurvePoint> ForceFileProducer::stored_total(std::uint64_t index) {
 void ForceFileProducer::open(const std::filesystem::path& path) {
   ForceFileReader reader(path, kProbed);
   const ForceFileInfo& found = reader.info();
-  if (found.rows != info_.skin.pillar_rows() || found.cols != info_.skin.pillar_cols() ||
+  if (found.rows != info_.skin.element_rows() || found.cols != info_.skin.element_cols() ||
       found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {
     throw Error(path.string(), "it was replaced by another force file", "open it again");
   }

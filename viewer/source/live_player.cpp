@@ -128,7 +128,7 @@ LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& n
       info(live_info(name, plan, processor)),
       curves(std::move(measured)),
       session(*stream, plan, processor, recording_info(info, plan)),
-      tracker(plan.skin.pillar_pitch_mm(), info.contacts),
+      tracker(plan.skin.element_pitch_mm(), info.contacts),
       fields(FieldProducer::kMostShown, [this] { return std::make_unique<LiveField>(plan); }),
       thread([this] { run(); }) {}
 
@@ -156,7 +156,7 @@ void LivePlayer::State::run() {
 /// Runs until the player ends, or contacts are switched.
 void LivePlayer::State::run_pipeline() {
   tracks = wants_contacts;
-  if (tracks) tracker = ContactTracker(plan.skin.pillar_pitch_mm(), info.contacts);
+  if (tracks) tracker = ContactTracker(plan.skin.element_pitch_mm(), info.contacts);
   const PipelineStatistics done =
       session.run({.contacts = tracks ? &tracker : nullptr, .sink = this, .stop = [this] {
                      return stopping || tracks != wants_contacts;
@@ -374,7 +374,7 @@ OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) 
                        .frames_in_flight = LivePlayer::kFramesInFlight,
                        .on_compiling = options.producer.on_compiling});
   OpenedSensor opened;
-  opened.curves = std::make_shared<Curves>(plan.skin.pillar_pitch_mm(), kMostLivePoints);
+  opened.curves = std::make_shared<Curves>(plan.skin.element_pitch_mm(), kMostLivePoints);
   opened.player = std::make_unique<LivePlayer>(std::move(stream), source, plan,
                                                std::move(processor), opened.curves);
   return opened;

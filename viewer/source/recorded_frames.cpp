@@ -127,7 +127,7 @@ class Rendering {
 
   void render_frames() {
     const Skin& skin = simulator_.scene().skin;
-    ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+    ForceField truth(skin.element_rows(), skin.element_cols());
     for (std::size_t index = next_++; index < frames_.size() && !stop_; index = next_++) {
       const auto readings =
           std::make_shared<FrameBuffer>(simulator_.sensel_type(), skin.rows, skin.cols);

@@ -93,7 +93,7 @@ SourceInfo truth_info(SourceInfo info) {
 
 /// Every loaded pillar is determined.
 void set_status(ForceField& truth) {
-  for (std::size_t i = 0; i < truth.pillars(); ++i) {
+  for (std::size_t i = 0; i < truth.elements(); ++i) {
     const bool loaded = truth.normal[i] != 0 || truth.shear_x[i] != 0 || truth.shear_y[i] != 0;
     truth.status[i] = loaded ? status::kUsable : 0;
   }
@@ -104,9 +104,9 @@ void set_status(ForceField& truth) {
 TruthProducer::TruthProducer(const SourceInfo& solved, Reader read)
     : info_(truth_info(solved)),
       read_(std::move(read)),
-      truth_(info_.skin.pillar_rows(), info_.skin.pillar_cols()),
+      truth_(info_.skin.element_rows(), info_.skin.element_cols()),
       blocks_(kMostShown, [this] {
-        return std::make_unique<PlaneBlock>(info_.skin.pillar_rows(), info_.skin.pillar_cols(),
+        return std::make_unique<PlaneBlock>(info_.skin.element_rows(), info_.skin.element_cols(),
                                             false);
       }) {}
 

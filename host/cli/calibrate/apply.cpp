@@ -18,7 +18,7 @@ namespace {
 /// Copies all frames and their truth.
 void copy_frames(FrameSource& source, const ApplyCommand& command, RecordingWriter& writer) {
   FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
-  ForceField truth(source.skin().pillar_rows(), source.skin().pillar_cols());
+  ForceField truth(source.skin().element_rows(), source.skin().element_cols());
   Progress progress("Copying", source.frames(), command.quiet);
   for (std::uint64_t index = 0; index < source.frames(); ++index) {
     stop_if_interrupted(index, command.output);

@@ -45,6 +45,7 @@ StepFrames frames_of(const std::string& file, const StepCommand& command) {
   return {.file = file,
           .skin = source->skin(),
           .sensel_type = source->sensel_type(),
+          .layout = command.read.layout,
           .mask = source->calibration().mask,
           .frames = source->frames(),
           .for_each = for_each};

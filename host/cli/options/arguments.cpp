@@ -71,7 +71,8 @@ void add_parts(CLI::App* command, PartOptions& options) {
 void add_solve(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<SolveOptions>(
       parent, work, solve, "solve",
-      "Turn frames into fields of three-axis force, in newtons per pillar.",
+      "Turn frames into fields of force: three axes for each pillar, or, without pillars, the "
+      "normal force on each sensel, in newtons.",
       "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
       "  pillarfield solve demo.h5 -o forces.h5\n"
       "  pillarfield solve demo.h5 -o forces.npy --outputs angles,uncertainty --noise 0.5\n"
@@ -82,15 +83,19 @@ void add_solve(CLI::App& parent, Work& work) {
       "Recording (HDF5), Tekscan ASCII export, or plain data: .npy, .npz, CSV, HDF5 dataset");
   add_tare_frames(command, options->plan.read);
   add_plain_data(command, options->plan.read, true);
-  add_output(command, *options,
-             "Force fields; the ending sets the format: " + endings_of(OutputKind::forces));
+  Group(command, "Output")
+      .text("-o,--output", options->output, "FILE",
+            "Force fields; the ending sets the format: " + endings_of(OutputKind::forces) +
+                " [none, with --contacts]");
+  add_overwrite(command, options->replace);
   add_sensor(command, options->plan);
   add_solver(command, options->plan);
   Group contacts(command, "Contacts");
   CLI::Option* const file =
       contacts.text("--contacts", options->contacts_file, "FILE",
-                    "Track contacts and write them: " + endings_of(OutputKind::contacts) +
-                        "; the .h5 of --output holds them too");
+                    "Track contacts and write force, centre of pressure, area and pressure of each "
+                    "and of the patch: " +
+                        endings_of(OutputKind::contacts) + "; the .h5 of --output holds them too");
   ContactOptions& found = options->contacts;
   contacts
       .whole("--minimum-pillars", found.minimum_pillars, "N",

@@ -116,6 +116,7 @@ ReadOptions frame_options(const PlanOptions& options) {
 SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::string& source,
                    const std::function<double()>& frame_interval_s) {
   PlanSources from = {.keeps_tare = options.read.tare_frames > 0, .settings = options.settings};
+  from.settings.layout = options.read.layout;
   std::optional<Scene> scene;
   const std::string& file = options.scene.empty() && is_scene(source) ? source : options.scene;
   if (!file.empty()) from.scene = &scene.emplace(load_scene_with_warnings(file));

@@ -50,7 +50,7 @@ class ReplayedScene final : public FrameStream {
         interval_s_(1 / simulator.scene().rate_hz),
         laps_(frames_of(simulator), repeat) {
     const std::uint64_t frames = frames_of(simulator);
-    ForceField truth(skin_.pillar_rows(), skin_.pillar_cols());
+    ForceField truth(skin_.element_rows(), skin_.element_cols());
     Progress progress("Simulating", frames, quiet);
     for (std::uint64_t index = 0; index < frames && !is_interrupted(); ++index) {
       frames_.emplace_back(sensel_type_, skin_.rows, skin_.cols);

@@ -70,7 +70,7 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
     : options_(options),
       skin_(plan.skin),
       device_(info.forces.device),
-      tracker_(plan.skin.pillar_pitch_mm(), *info.forces.contacts),
+      tracker_(plan.skin.element_pitch_mm(), *info.forces.contacts),
       live_(source, plan, processor, info),
       control_(options.control) {
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
@@ -292,7 +292,7 @@ void StreamSession::print_summary_json() const {
   nlohmann::ordered_json json = health_json(last_health_);
   json["source"] = options_.source;
   json["device"] = device_;
-  json["pillars"] = skin_.pillars();
+  json["pillars"] = skin_.elements();
   if (options_.rate_hz) json["missed"] = missed_;
   json["latency_ms"] = {{"median", latency(0.5)},
                         {"p99", latency(0.99)},
@@ -310,7 +310,7 @@ void StreamSession::print_summary() const {
     return ms ? fmt::format("{:.3f} ms", *ms) : "never";
   };
   fmt::print("Solved {} of {} x {} pillars from {} in {:.1f} s on {}\n",
-             counted(last_health_.solved, "frame"), skin_.pillar_rows(), skin_.pillar_cols(),
+             counted(last_health_.solved, "frame"), skin_.element_rows(), skin_.element_cols(),
              printable(options_.source), seconds_of(Clock::now() - start_), device_);
   if (last_health_.solved > 0) {
     fmt::print("  latency    median {}, 99 % {}, 99.9 % {}, worst {:.3f} ms\n", latency(0.5),

@@ -54,13 +54,8 @@ struct Calibration {
   return calibration.mask.empty() || calibration.mask[sensel] == kGood;
 }
 
-/// Whether none of the four sensels under a pillar exists.
-[[nodiscard]] bool lacks_sensels(const Calibration& calibration, const Skin& skin,
-                                 std::uint32_t pillar_row, std::uint32_t pillar_col);
-
-/// The number of pillars none of whose four sensels exists.
-[[nodiscard]] std::size_t count_pillars_without_sensels(const Calibration& calibration,
-                                                        const Skin& skin);
+/// The number of elements none of whose sensels exists.
+[[nodiscard]] std::size_t count_absent_elements(const Calibration& calibration, const Skin& skin);
 
 /// The number of sensels that the sensor does not have.
 [[nodiscard]] std::size_t count_absent(const Calibration& calibration);

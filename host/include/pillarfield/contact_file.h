@@ -12,9 +12,10 @@ namespace pillarfield {
 
 /// Attributes of a table of contacts.
 struct ContactFileInfo {
-  double pillar_pitch_mm = 0;
+  double element_pitch_mm = 0;
   std::string source;  ///< name of the file of frames
   ContactOptions options;
+  SkinLayout layout = SkinLayout::pillars;
 };
 
 /// Creates a sink of contacts alone in the format of the extension of `path` (docs/formats.md;

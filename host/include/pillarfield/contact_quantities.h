@@ -32,7 +32,8 @@ struct Wrench {
 };
 
 /// Force, torque, place, friction and slip of a contact (docs/contacts_found.md). Forces are sums
-/// over its pillars, with the signs of ForceFieldView.
+/// over its pillars, with the signs of ForceFieldView. Without pillars its elements are sensels:
+/// then shear, torque, friction and slip do not exist, and stay zero and unset.
 ///
 /// Sums are in double precision, in an order that the contact alone determines, so they do not
 /// depend on the number of threads. NaN and infinity count as zero.
@@ -55,6 +56,10 @@ struct ContactQuantities {
   double peak_n = 0;             ///< the largest normal force of a pillar
   PatchPlace peak;               ///< its position; the first, row by row, if several are equal
   double mean_pressure_kpa = 0;  ///< normal_n over area_mm2
+  /// The normal force of the most loaded element over its area; zero without elements.
+  [[nodiscard]] double peak_pressure_kpa() const {
+    return area_mm2 > 0 ? 1000 * peak_n * static_cast<double>(pillars) / area_mm2 : 0;
+  }
   /// Sum over the pillars on their poses; set with ContactOptions::surface.
   std::optional<Wrench> wrench;
 

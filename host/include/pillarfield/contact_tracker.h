@@ -54,6 +54,7 @@ struct ContactOptions {
   SensorEffects effects = {};  ///< of the skin; the shear coefficient and the arm matter
   /// Surface of the skin, for ContactQuantities::wrench; it must fit the pillars. Unset: no wrench.
   std::optional<Surface> surface = {};
+  SkinLayout layout = SkinLayout::pillars;  ///< without pillars nothing is known of friction
   double reach_mm = 10;  ///< how far a contact may move between frames, 0 to 1000
   /// Threads that measure a frame's contacts, 0 to 1024; 0: one per hardware thread. The result
   /// does not depend on it. They start at the first frame of more than 4000 loaded pillars and
@@ -69,7 +70,7 @@ void check(const ContactOptions& options, const std::string& where);
 
 /// Finds the contacts of each frame, measures them, and tracks them from frame to frame.
 ///
-///     ContactTracker tracker(plan.skin.pillar_pitch_mm());
+///     ContactTracker tracker(plan.skin.element_pitch_mm());
 ///     const FrameContacts& contacts = tracker.update(processor.receive(), time_s);
 ///
 /// Matching, in order: (1) the pair of contacts that shares most pillars, each contact once; ties
@@ -84,7 +85,7 @@ void check(const ContactOptions& options, const std::string& where);
 class ContactTracker {
  public:
   /// Throws Error if the options are out of range.
-  explicit ContactTracker(double pillar_pitch_mm, const ContactOptions& options = {});
+  explicit ContactTracker(double element_pitch_mm, const ContactOptions& options = {});
   ~ContactTracker();
   ContactTracker(ContactTracker&&) noexcept;
   ContactTracker& operator=(ContactTracker&&) noexcept;

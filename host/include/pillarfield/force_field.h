@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "pillarfield/skin.h"
+
 namespace pillarfield {
 
 /// Planes that state the uncertainty of a force (docs/derivations/uncertainty.md). The first three
@@ -46,15 +48,15 @@ class UncertaintyPlanes {
   std::array<Plane, kUncertaintyPlanes> planes_;
 };
 
-/// A view of a field of three-axis force: planes [rows, cols], one value per pillar, row by row
-/// from the top left.
+/// A view of a field of three-axis force: planes [rows, cols], one value per element (pillar, or
+/// sensel of a skin without pillars), row by row from the top left.
 ///
 /// shear_x (+ right) and shear_y (+ up) are the tangential force on the skin; normal is positive
 /// under pressure. The status byte is described in status.h. Planes that the plan does not enable
-/// are empty.
+/// are empty; without pillars also shear_x and shear_y, and of the uncertainty all but that of normal.
 struct ForceFieldView {
-  std::uint32_t rows = 0;          ///< pillar rows
-  std::uint32_t cols = 0;          ///< pillar columns
+  std::uint32_t rows = 0;          ///< of elements
+  std::uint32_t cols = 0;
   std::span<const float> shear_x;  ///< N
   std::span<const float> shear_y;  ///< N
   std::span<const float> normal;   ///< N
@@ -79,8 +81,10 @@ struct ForceField {
   ForceField() = default;
   /// All forces and status bytes zero, no uncertainty.
   ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols);
+  /// The same for the elements of a skin; without pillars there is no shear.
+  explicit ForceField(const Skin& skin);
 
-  [[nodiscard]] std::size_t pillars() const { return std::size_t{rows} * cols; }
+  [[nodiscard]] std::size_t elements() const { return std::size_t{rows} * cols; }
   [[nodiscard]] ForceFieldView view() const;
 };
 

@@ -20,9 +20,9 @@ namespace pillarfield {
 
 /// Attributes of a file of force fields.
 struct ForceFileInfo {
-  std::uint32_t rows = 0;  ///< pillar rows
-  std::uint32_t cols = 0;  ///< pillar columns
-  double pillar_pitch_mm = 0;
+  std::uint32_t rows = 0;  ///< of elements: pillars, or sensels without pillars
+  std::uint32_t cols = 0;
+  double element_pitch_mm = 0;
   std::string estimator;     ///< "direct", "paper" or "contact"
   std::string device;        ///< device that solved it
   std::string source;        ///< name of the file of frames
@@ -35,6 +35,7 @@ struct ForceFileInfo {
   SensorEffects effects = {};           ///< of the skin's calibration; HDF5 only
   std::optional<Surface> surface = {};  ///< of the skin; HDF5 only
   std::optional<ForcePart> part = {};   ///< it holds one part of the frames; HDF5 only
+  SkinLayout layout = SkinLayout::pillars;  ///< without pillars: normal force alone
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };
 

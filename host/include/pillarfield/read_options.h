@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pillarfield/array_axes.h"
+#include "pillarfield/skin.h"
 
 namespace pillarfield {
 
@@ -44,6 +45,9 @@ struct ReadOptions {
   std::optional<double> counts_per_newton = {};
   std::optional<double> threshold_counts = {};
   std::optional<double> full_scale_counts = {};
+  /// What stands on the sensels, in place of what the file says; plain data and Tekscan exports,
+  /// which say nothing, have SkinLayout::sensels.
+  std::optional<SkinLayout> layout = {};
 
   /// Number of first frames, of the unloaded skin, from which take_tare() measures tare, noise and
   /// threshold in place of those in the file; at least kLeastTareFrames. 0: none.

@@ -36,8 +36,8 @@ class FrameSource {
   /// s.
   virtual double read(std::uint64_t index, FrameBuffer& frame) = 0;
 
-  /// Reads the true forces of a frame, [pillar rows, cols], N; leaves `truth.status` as it is. Only
-  /// if has_truth().
+  /// Reads the true forces of a frame, one of each element, N; leaves `truth.status` as it is.
+  /// Only if has_truth().
   virtual void read_truth(std::uint64_t index, ForceField& truth) = 0;
 
   /// Of plain data, which states neither axes nor type, what it was read as: "280 frames of 63 x

@@ -29,28 +29,52 @@ struct PowerLaw {
 /// The V of a corrected reading, >= 0 counts.
 [[nodiscard]] double straightened(const PowerLaw& law, double reading);
 
+/// What stands on the sensels, and therefore what an element of the force field is.
+enum class SkinLayout : std::uint8_t {
+  pillars,  ///< a pillar on each 2 x 2 sensels: three components of force
+  sensels,  ///< nothing: each sensel is an element, which feels normal force alone
+};
+
+/// "pillars" or "sensels", as in files and options.
+[[nodiscard]] const char* name_of(SkinLayout layout);
+
+/// The layout of this name; empty for another word.
+[[nodiscard]] std::optional<SkinLayout> layout_named(std::string_view name);
+
 /// A patch of skin: its size, and the constants that all its sensels share.
 ///
 /// Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at
-/// (r, c) stands on the sensels (2r..2r+1, 2c..2c+1); a last odd row or column has no pillar.
+/// (r, c) stands on the sensels (2r..2r+1, 2c..2c+1); a last odd row or column has no pillar. The
+/// elements of the force field are the pillars, or, without pillars, the sensels.
 struct Skin {
   std::uint32_t rows = 0;                ///< sensel rows, 2..65534
   std::uint32_t cols = 0;                ///< sensel columns, 2..65534
   double sensel_pitch_mm = 0.632455532;  ///< 250 sensels per cm²: 10/sqrt(250) mm
   double counts_per_newton =
-      320;  ///< k of equation (2): counts a sensel reads per newton on its pillar
+      320;  ///< k of equation (2): counts a sensel reads per newton on its pillar, or on itself
   double threshold_counts = 0;              ///< a sensel is usable if its reading is above
   std::optional<double> full_scale_counts;  ///< a reading is saturated from here on
   std::optional<PowerLaw> power_law;        ///< unset: readings are proportional to force
   std::optional<Surface> surface;           ///< unset: unknown; forces stay in the skin's own axes
+  SkinLayout layout = SkinLayout::pillars;
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
   [[nodiscard]] std::size_t sensels() const { return std::size_t{rows} * cols; }
   [[nodiscard]] std::size_t pillars() const { return std::size_t{pillar_rows()} * pillar_cols(); }
   [[nodiscard]] double pillar_pitch_mm() const { return 2 * sensel_pitch_mm; }
-  [[nodiscard]] PillarLayout pillar_layout() const {
-    return {pillar_rows(), pillar_cols(), pillar_pitch_mm()};
+
+  [[nodiscard]] bool has_pillars() const { return layout == SkinLayout::pillars; }
+  [[nodiscard]] std::uint32_t element_rows() const { return has_pillars() ? pillar_rows() : rows; }
+  [[nodiscard]] std::uint32_t element_cols() const { return has_pillars() ? pillar_cols() : cols; }
+  [[nodiscard]] std::size_t elements() const {
+    return std::size_t{element_rows()} * element_cols();
+  }
+  [[nodiscard]] double element_pitch_mm() const {
+    return has_pillars() ? pillar_pitch_mm() : sensel_pitch_mm;
+  }
+  [[nodiscard]] ElementGrid element_grid() const {
+    return {element_rows(), element_cols(), element_pitch_mm()};
   }
 };
 
@@ -59,6 +83,11 @@ inline constexpr std::uint32_t kMaxSensels = 65534;  ///< rows or columns of a s
 inline constexpr double kMaxCounts = 1e33;           ///< readings, threshold, full scale
 inline constexpr double kMinCountsPerNewton = 1e-2;
 inline constexpr double kMaxCountsPerNewton = 1e6;
+
+/// Rows or columns of a field of forces.
+[[nodiscard]] constexpr std::uint32_t most_elements(SkinLayout layout) {
+  return layout == SkinLayout::pillars ? kMaxSensels / 2 : kMaxSensels;
+}
 
 /// Limits of PowerLaw.
 inline constexpr double kMinExponent = 0.2;

@@ -34,6 +34,7 @@ struct SkinCalibration {
   std::optional<double> threshold_factor;
   std::optional<double> counts_per_newton;
   std::optional<PowerLaw> power_law;     ///< set only with counts_per_newton
+  std::optional<SkinLayout> layout;      ///< unset in files of earlier versions
   std::vector<CalibrationStep> history;  ///< oldest first
 };
 

@@ -67,12 +67,16 @@ typedef struct PillarfieldPacket {
  */
 #define PILLARFIELD_RING_MAGIC 0x31475250u /* "PRG1" */
 
-enum PillarfieldRingKind { PILLARFIELD_RING_FRAMES = 1, PILLARFIELD_RING_RESULTS = 2 };
+enum PillarfieldRingKind {
+  PILLARFIELD_RING_FRAMES = 1,
+  PILLARFIELD_RING_RESULTS = 2,  /* of pillars */
+  PILLARFIELD_RING_PRESSURES = 3 /* results of sensels without pillars */
+};
 
 typedef struct PillarfieldRing {
   uint32_t magic; /* PILLARFIELD_RING_MAGIC */
   uint32_t kind;  /* PillarfieldRingKind */
-  uint32_t rows;  /* of sensels; in a ring of results of pillars */
+  uint32_t rows;  /* of sensels; in RING_RESULTS of pillars */
   uint32_t cols;
   uint32_t type;       /* PillarfieldReadingType; in a ring of results 0 */
   uint32_t slots;      /* at least 2 */
@@ -97,7 +101,7 @@ typedef struct PillarfieldFrameSlot {
  * centre of the patch. NaN: unknown. */
 typedef struct PillarfieldContact {
   uint64_t track_id; /* 1, 2, ...; never reused */
-  uint64_t pillars;  /* in contact */
+  uint64_t pillars;  /* in contact, or sensels */
   double shear_x_n;
   double shear_y_n;
   double normal_n;
@@ -111,7 +115,8 @@ typedef struct PillarfieldContact {
 } PillarfieldContact;
 
 /* A slot of results: this, then planes [rows, cols] one after the other, row by row from the top
- * left: shear_x, shear_y and normal as float in N, and the status bytes (pillarfield/status.h). */
+ * left: shear_x, shear_y and normal as float in N, and the status bytes (pillarfield/status.h);
+ * without pillars there is no shear: normal and status. */
 typedef struct PillarfieldResultSlot {
   uint64_t lock;
   uint64_t sequence;        /* of the frame */

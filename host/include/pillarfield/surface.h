@@ -42,7 +42,7 @@ struct Surface {
 };
 
 /// The pillars of a skin.
-struct PillarLayout {
+struct ElementGrid {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   double pitch_mm = 0;
@@ -50,10 +50,10 @@ struct PillarLayout {
 
 /// Throws Error, naming `where`, if a member is out of range, heights are not one a pillar, or the
 /// pillars cover more than a whole turn of the cylinder or half of the sphere.
-void check(const Surface& surface, const PillarLayout& pillars, std::string_view where);
+void check(const Surface& surface, const ElementGrid& pillars, std::string_view where);
 
 /// Poses of all pillars, row by row. The surface must fit the pillars.
-[[nodiscard]] std::vector<Pose> poses_of(const Surface& surface, const PillarLayout& pillars);
+[[nodiscard]] std::vector<Pose> poses_of(const Surface& surface, const ElementGrid& pillars);
 
 /// Pose of a point of the skin, mm from its middle; not for a height map.
 [[nodiscard]] Pose pose_at(const Surface& surface, double x_mm, double y_mm);

@@ -47,8 +47,11 @@ void ContactTablesReader::Table::open(const hdf5::File& file, const std::string&
   rows = columns.size() == 1 ? frames : std::min(rows, frames);
 }
 
-ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.path) {
+ContactTablesReader::ContactTablesReader(const hdf5::File& file, SkinLayout layout)
+    : path_(file.path) {
+  options_.layout = layout;
   read_options(file);
+  columns_ = quantity_columns(true, options_.layout);
   open_tables(file);
   if (file.unclosed) drop_frames_without_rows();
 }
@@ -56,10 +59,10 @@ ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.pa
 void ContactTablesReader::open_tables(const hdf5::File& file) {
   for (const auto& column : identity_columns())
     contacts_.open(file, force_format::kContacts, column.name);
-  for (const auto& column : quantity_columns(true))
+  for (const auto& column : columns_)
     contacts_.open(file, force_format::kContacts, column.name, column.optional);
   for (const char* name : force_format::kPatchRows) patch_.open(file, force_format::kPatch, name);
-  for (const auto& column : quantity_columns(true))
+  for (const auto& column : columns_)
     patch_.open(file, force_format::kPatch, column.name, column.optional);
   for (const auto& column : ended_columns()) ended_.open(file, force_format::kEnded, column.name);
   frames_ = patch_.rows;
@@ -133,11 +136,11 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   };
   const std::optional<hdf5::StoredFrames>* const contact_columns = contacts_.columns.data();
   read_columns(identity_columns(), contact_columns, first_contact, frame.contacts, itself);
-  read_columns(quantity_columns(true), contact_columns + identity_columns().size(), first_contact,
+  read_columns(columns_, contact_columns + identity_columns().size(), first_contact,
                frame.contacts, quantities);
   read_columns(ended_columns(), ended_.columns.data(), first_ended, frame.ended, itself);
   std::vector<ContactQuantities> patch(1);
-  read_columns(quantity_columns(true), patch_.columns.data() + std::size(force_format::kPatchRows),
+  read_columns(columns_, patch_.columns.data() + std::size(force_format::kPatchRows),
                index, patch, itself);
   frame.total = patch[0];
   return frame;

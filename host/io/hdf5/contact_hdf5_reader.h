@@ -13,7 +13,7 @@ namespace pillarfield {
 class ContactTablesReader {
  public:
   /// Throws Error if a table lacks a column or options are out of range.
-  explicit ContactTablesReader(const hdf5::File& file);
+  ContactTablesReader(const hdf5::File& file, SkinLayout layout);
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] const ContactOptions& options() const { return options_; }
@@ -41,6 +41,7 @@ class ContactTablesReader {
 
   std::filesystem::path path_;
   ContactOptions options_;
+  QuantityColumns columns_;
   Table contacts_;
   Table patch_;  ///< the columns of kPatchRows first
   Table ended_;

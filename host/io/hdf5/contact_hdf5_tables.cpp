@@ -97,7 +97,7 @@ void Hdf5Table::close() {
 }
 
 ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& options) {
-  columns_ = quantity_columns(options.surface.has_value());
+  columns_ = quantity_columns(options);
   contacts_ = {file, force_format::kContacts};
   const hdf5::Handle group =
       hdf5::own(H5Gopen2(file.id.get(), force_format::kContacts, H5P_DEFAULT), file.path,

@@ -70,7 +70,7 @@ class ContactTables {
   void close();
 
  private:
-  std::span<const ContactColumn<ContactQuantities>> columns_;
+  QuantityColumns columns_;
   Hdf5Table contacts_;
   Hdf5Table patch_;
   Hdf5Table ended_;

@@ -18,6 +18,8 @@ constexpr const char* kConvention =
     "shear_x (+ right, growing column) and shear_y (+ up, falling row) act on the skin; normal is "
     "positive when pressed; (theta, phi) is the direction from which the force comes, rad";
 
+constexpr const char* kConventionOfSensels = "normal is positive when pressed";
+
 /// A whole number that an attribute may hold.
 std::uint64_t read_count(const hdf5::File& file, hid_t group, const char* name) {
   constexpr double kMost = 0x1p46;  // A product with a number of parts fits in 64 bits.
@@ -46,9 +48,15 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
                 const std::filesystem::path& path) {
   const hid_t root = file.id.get();
   hdf5::write_attribute(file, root, "format", std::string(force_format::kName));
-  hdf5::write_attribute(file, root, "version", force_format::kVersion);
+  const bool has_pillars = info.layout == SkinLayout::pillars;
+  hdf5::write_attribute(file, root, "version",
+                        has_pillars ? force_format::kSparseSince : force_format::kLayoutSince);
+  if (!has_pillars) {
+    hdf5::write_attribute(file, root, force_format::kLayout, std::string(name_of(info.layout)));
+  }
   hdf5::write_attribute(file, root, force_format::kUnit, std::string("N"));
-  hdf5::write_attribute(file, root, force_format::kSignConvention, std::string(kConvention));
+  hdf5::write_attribute(file, root, force_format::kSignConvention,
+                        std::string(has_pillars ? kConvention : kConventionOfSensels));
   hdf5::write_attribute(file, root, force_format::kEstimator, info.estimator);
   if (info.segment_point) {
     hdf5::write_attribute(file, root, force_format::kSegmentPoint, *info.segment_point);
@@ -56,11 +64,11 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
   hdf5::write_attribute(file, root, force_format::kDevice, info.device);
   hdf5::write_attribute(file, root, force_format::kSource, info.source);
   hdf5::write_attribute(file, root, force_format::kProgramVersion, std::string(kVersion));
-  hdf5::write_attribute(file, root, force_format::kPillarPitch, info.pillar_pitch_mm);
+  hdf5::write_attribute(file, root, force_format::pitch_of(info.layout), info.element_pitch_mm);
   write_effects(file, force_format::kEffects, info.effects);
   if (info.part) write_part(file, *info.part);
   if (!info.surface) return;
-  const PillarLayout pillars = {info.rows, info.cols, info.pillar_pitch_mm};
+  const ElementGrid pillars = {info.rows, info.cols, info.element_pitch_mm};
   check(*info.surface, pillars, path.c_str());
   write_surface(file, *info.surface, pillars);
 }

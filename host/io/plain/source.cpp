@@ -141,8 +141,8 @@ double ArraySource::read(std::uint64_t index, FrameBuffer& frame) {
 }
 
 std::string ArraySource::read_as() const {
-  return fmt::format("{} frame{} of {} x {}, {}", frames_, frames_ == 1 ? "" : "s", skin_.rows,
-                     skin_.cols, name_of(array_->type()));
+  return fmt::format("{} frame{} of {} x {}, {}; {}", frames_, frames_ == 1 ? "" : "s", skin_.rows,
+                     skin_.cols, name_of(array_->type()), layout_note());
 }
 
 }  // namespace

@@ -46,14 +46,14 @@ Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
   frames_ = data.numbers.size();
   skin_.rows = *data.header.rows;
   skin_.cols = *data.header.cols;
+  skin_.layout = options.layout.value_or(SkinLayout::sensels);
   take_spacing(data.header, options);
   if (data.header.is_calibrated()) {
     take_newtons(data.header);
   } else {
     take_counts(data.header, options);
   }
-  warnings_.emplace_back(
-      "Shear is that of pillars on the sensor; without pillars it has no meaning.");
+  warnings_.push_back("The export states no pillars: " + layout_note() + ".");
   take_times(data, options);
   take_mask(data);
   warn_of_header(data.header);
@@ -106,9 +106,9 @@ void Tekscan::take_counts(const TekscanHeader& header, const ReadOptions& option
       skin_.counts_per_newton));
 }
 
-/// Readings are newtons on a sensel, of which four add up to the normal force on their pillar.
+/// Readings are newtons on a sensel, of which four add up to the normal force on a pillar.
 void Tekscan::take_newtons(const TekscanHeader& header) {
-  skin_.counts_per_newton = 0.25;
+  skin_.counts_per_newton = skin_.has_pillars() ? 0.25 : 1;
   warnings_.push_back(
       header.mpa_per_unit
           ? fmt::format("Readings are pressures; times {:.6g} mm² they are newtons on a sensel.",
@@ -138,7 +138,7 @@ void Tekscan::take_mask(TekscanExport& data) {
   }
   warnings_.push_back(
       fmt::format("{} of {} cells have no sensel.", absent, calibration_.mask.size()));
-  if (type_ == SenselType::f32) spread_outline();
+  if (type_ == SenselType::f32 && skin_.has_pillars()) spread_outline();
 }
 
 /// Spreads the force on the present sensels of each pillar on the sensor's outline over all four:

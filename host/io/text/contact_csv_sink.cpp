@@ -25,7 +25,7 @@ class ContactCsvSink final : public ForceSink {
 
   std::filesystem::path path_;
   TextPart file_;
-  std::span<const ContactColumn<ContactQuantities>> columns_;
+  QuantityColumns columns_;
   std::string frame_cells_;  // "frame,time,", shared by all lines of a frame
   std::uint64_t frames_ = 0;
 };
@@ -34,7 +34,7 @@ ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, const ForceFil
                                Replace replace)
     : path_(path),
       file_(path, OutputKind::contacts, replace),
-      columns_(quantity_columns(info.contacts && info.contacts->surface)) {
+      columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))) {
   file_.write(kContactCsvHead);
   for (const auto& column : columns_) file_.write(fmt::format(",{}", column.name));
   file_.write("\n");

@@ -5,6 +5,7 @@
 
 #include "base/utf8.h"
 #include "io/contact_columns.h"
+#include "io/force_format.h"
 #include "io/force_sink.h"
 #include "io/output/text_part.h"
 
@@ -58,21 +59,22 @@ class JsonSink final : public ForceSink {
  private:
   std::filesystem::path path_;
   TextPart file_;
-  std::span<const ContactColumn<ContactQuantities>> columns_;
+  QuantityColumns columns_;
   std::uint64_t frames_ = 0;
 };
 
 JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
     : path_(path),
       file_(path, OutputKind::contacts, replace),
-      columns_(quantity_columns(info.contacts && info.contacts->surface)) {
+      columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))) {
   const ContactOptions& options = info.contacts.value();
   const auto& friction = options.friction.given;
   file_.write(fmt::format(
       "{},\"version\":1,\"source\":{},"
-      "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+      "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
       "\"reach_mm\":{},\"frames\":[",
-      kContactJsonHead, json_string(info.source), info.pillar_pitch_mm, options.minimum_pillars,
+      kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
+      info.element_pitch_mm, options.minimum_pillars,
       friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
 }
 

@@ -9,8 +9,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::string_view kForceCsvHead =
-    "frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status";
+constexpr std::string_view kForceCsvHead = "frame,time_s,row,col,";
 
 /// Writes one line per pillar with nonzero status, numbers in the fewest digits that read back as
 /// the same value.

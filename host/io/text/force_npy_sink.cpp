@@ -18,8 +18,8 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 // A multiple of 64 that holds all planes and any number of frames.
 constexpr std::size_t kHeaderBytes = 1024;
 
-constexpr std::string_view kNpyFields =
-    "('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1')";
+/// In the header of every file.
+constexpr std::string_view kNpyFields = "('normal', '<f4'), ('status', '|u1')";
 
 /// Header of NumPy's format 1.0: magic, length of the rest, and a Python dictionary padded with
 /// blanks to a fixed size.

@@ -26,7 +26,7 @@ std::optional<Surface> surface_of(const Scene& scene) {
   const auto relief = relief_of(map);
   Surface surface;
   surface.shape = SurfaceShape::height_map;
-  for (const Pose& pillar : poses_of({}, scene.skin.pillar_layout())) {
+  for (const Pose& pillar : poses_of({}, scene.skin.element_grid())) {
     const double depth_mm = relief->height_mm(pillar.position_mm.x, pillar.position_mm.y);
     if (!std::isfinite(depth_mm)) {
       throw Error(map.path.string(), "does not cover the skin", "give a larger height_map_size_mm");

@@ -24,7 +24,7 @@ std::size_t nearest_pillar(double offset_mm, double pitch_mm, std::uint32_t pill
 
 SkinGeometry::SkinGeometry(const LiveSinkInfo& info)
     : surface_(info.forces.surface.value_or(Surface{})),
-      layout_{info.forces.rows, info.forces.cols, info.forces.pillar_pitch_mm},
+      layout_{info.forces.rows, info.forces.cols, info.forces.element_pitch_mm},
       poses_(poses_of(surface_, layout_)) {}
 
 Pose SkinGeometry::pose_of(const PatchPlace& place) const {

@@ -84,7 +84,7 @@ class SkinGeometry {
 
  private:
   Surface surface_;
-  PillarLayout layout_;
+  ElementGrid layout_;
   std::vector<Pose> poses_;
 };
 

@@ -26,7 +26,7 @@ std::uint32_t slots_of(const RingLayout& layout) {
 }
 
 RingLayout layout_of_results(const Skin& skin) {
-  return {PILLARFIELD_RING_RESULTS, skin.pillar_rows(), skin.pillar_cols(), 0};
+  return {PILLARFIELD_RING_RESULTS, skin.element_rows(), skin.element_cols(), 0};
 }
 
 PillarfieldContact contact_of(std::uint64_t track_id, const ContactQuantities& contact) {

@@ -68,7 +68,7 @@ class UdpConsumer final : public SinkConsumer {
  public:
   UdpConsumer(const std::string& target, const LiveSinkInfo& info)
       : socket_(address_of(std::string_view(target).substr(kUdpPrefix.size()), target, 1), target) {
-    if (!info.forces.contacts) tracker_.emplace(info.forces.pillar_pitch_mm);
+    if (!info.forces.contacts) tracker_.emplace(info.forces.element_pitch_mm);
   }
 
   [[nodiscard]] FrameParts wants(const SolvedFrame& frame) override {

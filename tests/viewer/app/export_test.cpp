@@ -163,7 +163,7 @@ std::string librarys_table(const fs::path& path, const MadeField& made, const Sh
   ForceFileInfo info;
   info.rows = made.forces.rows;
   info.cols = made.forces.cols;
-  info.pillar_pitch_mm = made.skin.pillar_pitch_mm();
+  info.element_pitch_mm = made.skin.pillar_pitch_mm();
   info.angles = !field.forces.theta.empty();
   info.uncertainty = !field.forces.uncertainty[Uncertainty::shear_x].empty();
   const auto sink = create_force_sink(path, info);

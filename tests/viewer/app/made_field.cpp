@@ -88,8 +88,8 @@ MadeField::MadeField() : forces(32, 40) {
   skin.cols = 80;
   skin.threshold_counts = 6;
   skin.full_scale_counts = 255;
-  for (auto* plane : {&magnitude, &theta, &phi}) plane->resize(forces.pillars());
-  for (auto& plane : forces.uncertainty) plane.resize(forces.pillars());
+  for (auto* plane : {&magnitude, &theta, &phi}) plane->resize(forces.elements());
+  for (auto& plane : forces.uncertainty) plane.resize(forces.elements());
   readings.resize(skin.sensels());
   for (std::uint32_t row = 0; row < forces.rows; ++row) {
     for (std::uint32_t col = 0; col < forces.cols; ++col) set_pillar({row, col});

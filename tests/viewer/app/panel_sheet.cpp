@@ -30,7 +30,7 @@ class OneField final : public FieldProducer {
 PillarIndex a_pillar(const MadeField& made, Region region, float left_of = 40) {
   PillarIndex found;
   float most = -1;
-  for (std::size_t at = 0; at < made.forces.pillars(); ++at) {
+  for (std::size_t at = 0; at < made.forces.elements(); ++at) {
     const auto col = static_cast<std::uint32_t>(at % made.forces.cols);
     if (region_of(made.forces.status[at]) != region || static_cast<float>(col) >= left_of) continue;
     if (made.magnitude[at] <= most) continue;
@@ -51,7 +51,7 @@ void fill(Curves& curves, const AppState& state) {
   last.normal = 1;
   last.shear_x = 0.6f;
   for (const CurvePoint& point : made_curve(last, 400)) {
-    for (std::size_t at = 0; at < forces.pillars(); ++at) {
+    for (std::size_t at = 0; at < forces.elements(); ++at) {
       forces.normal[at] = point.normal * state.field->forces.normal[at];
       forces.shear_x[at] = point.shear_x * state.field->forces.normal[at];
       forces.shear_y[at] = point.shear_y * state.field->forces.normal[at];

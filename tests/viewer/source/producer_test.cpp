@@ -224,7 +224,7 @@ void write_forces(const std::filesystem::path& path, bool uncertainty) {
       for (auto& plane : forces.uncertainty) {
         plane = sample_forces(index + 100, info.rows, info.cols).normal;
       }
-      forces.uncertainty[Uncertainty::magnitude_high].assign(forces.pillars(), 0.25F);
+      forces.uncertainty[Uncertainty::magnitude_high].assign(forces.elements(), 0.25F);
     }
     sink->append({.forces = forces.view(), .time_s = 0.005 * static_cast<double>(index)});
   }
@@ -358,7 +358,7 @@ void write_passing(const std::filesystem::path& path, bool with_contacts) {
   const ContactOptions options{.minimum_pillars = 2};
   if (with_contacts) info.contacts = options;
   const auto sink = create_force_sink(path, info);
-  ContactTracker tracker(info.pillar_pitch_mm, options);
+  ContactTracker tracker(info.element_pitch_mm, options);
   for (std::uint64_t index = 0; index < kFrames; ++index) {
     const ShownField field = passing(index);
     const FrameContacts& found = tracker.update(field.forces, field.time_s);

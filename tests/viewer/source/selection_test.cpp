@@ -21,7 +21,7 @@ class Sample {
       : forces_(rows, cols), raw_(SenselType::u16, 2 * rows + 1, 2 * cols + 1) {
     std::mt19937 random(rows * 100 + cols);
     std::uniform_real_distribution<float> force(-1, 1);
-    for (std::size_t i = 0; i < forces_.pillars(); ++i) {
+    for (std::size_t i = 0; i < forces_.elements(); ++i) {
       forces_.shear_x[i] = force(random);
       forces_.shear_y[i] = force(random);
       forces_.normal[i] = 1 + force(random);

@@ -90,7 +90,7 @@ class Marker {
  private:
   [[nodiscard]] std::optional<Vec2> middle_of(const PillarIndex& pillar) const {
     const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
-    const double half = 0.5 * place_.source->skin.pillar_pitch_mm();
+    const double half = 0.5 * place_.source->skin.element_pitch_mm();
     return pixel_of(place_, settings_, {corner.x + half, corner.y - half});
   }
 

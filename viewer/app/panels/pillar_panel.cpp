@@ -140,7 +140,7 @@ void pillar_panel(AppState& state) {
   if (!is_in(state.field->forces, pin.pillar)) return;
   const PillarValues values = values_at(*state.field, pin.pillar);
   const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
-  const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+  const double pitch_mm = state.player->info().skin.element_pitch_mm();
   heading(style, format_pillar(pin.pillar),
           format_place(state.field->forces, pin.pillar, pitch_mm));
   status_line(style, state, pin.pillar, values.status);

@@ -126,7 +126,7 @@ void selection_panel(AppState& state) {
     return;
   }
   const PillarRect& rect = state.selection->rect;
-  const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+  const double pitch_mm = state.player->info().skin.element_pitch_mm();
   const SelectionSums& sums = selection_sums(state);
   heading(style, rect_words(rect), size_words(rect, pitch_mm));
   leave_gap(style, 2);
@@ -154,7 +154,7 @@ const SelectionSums& selection_sums(AppState& state) {
   const std::uint64_t frame = state.field->index;
   if (!selection.cached || selection.cached->frame != frame ||
       !is_same(selection.cached->rect, selection.rect)) {
-    const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+    const double pitch_mm = state.player->info().skin.element_pitch_mm();
     selection.cached = {frame, selection.rect, sums_over(*state.field, selection.rect, pitch_mm)};
   }
   return selection.cached->sums;

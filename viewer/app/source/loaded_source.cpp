@@ -60,7 +60,7 @@ LoadedSource load_file(const Options& options, const std::filesystem::path& path
   tell("looking at the forces");
   loaded.settings = default_settings(options, *producer, scale);
   loaded.open_truth = producer->open_truth;
-  loaded.curves = std::make_shared<Curves>(producer->info().skin.pillar_pitch_mm());
+  loaded.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
   loaded.survey = std::make_unique<Survey>(producer->open_again, loaded.curves);
   loaded.player = std::make_unique<FilePlayer>(std::move(producer));
   return loaded;
