@@ -9,13 +9,10 @@ import threading
 import time
 import unittest
 
-from cdr_reader import stamp_ns
+from cdr_reader import header_of, stamp_ns
 from expected_messages import Frames, check_message
 from sink_process import SinkTest
 from websocket_client import BINARY, Closed, FoxgloveClient, WebSocket
-
-FAST = ["/skin/time", *(f"/skin/contacts/{slot + 1}" for slot in range(16))]
-SLOW = ["/skin/normal", "/skin/raw", "/skin/forces", "/skin/arrows"]
 
 
 class FoxgloveTest(SinkTest):
@@ -78,13 +75,14 @@ class FoxgloveTest(SinkTest):
             decoded = client.decoders[message.topic].decode(message.bytes)
             if message.topic == "/skin/health":
                 continue
-            if "header" in decoded:
-                self.assertEqual(stamp_ns(decoded["header"]), message.time_ns)
+            if message.topic != "/skin/arrows":
+                self.assertEqual(stamp_ns(header_of(decoded)), message.time_ns)
             check_message(self, frames, message.topic, stamps.index(message.time_ns), decoded)
         # 50 a second are below the limit, but a driver that was late hurries.
         self.assertGreater(counts["/skin/normal"], 0)
         self.assertEqual(counts["/skin/raw"], counts["/skin/normal"])
         self.assertEqual(counts["/skin/forces"], counts["/skin/normal"])
+        self.assertEqual(counts["/skin/field"], counts["/skin/normal"])
         self.assertEqual(counts["/skin/contacts/1"],
                          sum(slots[0] is not None for slots in frames.slots))
         # A late sink reports only the newest health.
