@@ -8,7 +8,7 @@ import unittest
 from cdr_reader import Decoder, header_of, stamp_ns
 from expected_messages import Frames, check_message
 from mcap_reader import read_index, read_stream
-from sink_process import SCENE, SinkTest
+from sink_process import ALL_PLANES, SCENE, SinkTest
 
 EVERY_FRAME = ("/skin/normal", "/skin/raw", "/skin/forces", "/skin/field", "/skin/time")
 
@@ -66,8 +66,7 @@ class McapTest(SinkTest):
         self.assertTrue(1 <= counts["/skin/arrows"] < len(frames.time), counts)
 
     def test_planes_of_the_field(self):
-        uncertain = SCENE.format(bits=8) + "[solver]\nuncertainty = true\n"
-        data, frames = self.record("--frames", 20, scene=self.write_scene("all.toml", uncertain))
+        data, frames = self.record("--frames", 20, scene=self.write_scene("all.toml", ALL_PLANES))
         self.assertEqual(len(frames.field), 13)
         self.assertEqual(self.check(data, frames)["/skin/field"], 20)
 
