@@ -20,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 os.environ["STREAMS_SINK_DRIVER"] = sys.argv[1]
 sys.path.insert(0, str(HERE.parents[1] / "tests/streams"))
 from expected_messages import Frames, check_message  # noqa: E402
-from sink_process import SCENE  # noqa: E402
+from sink_process import ALL_PLANES  # noqa: E402
 
 
 def bytes_of(value):
@@ -55,7 +55,7 @@ def check(name, messages, frames):
 def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        (folder / "scene.toml").write_text(SCENE.format(bits=8))
+        (folder / "scene.toml").write_text(ALL_PLANES)
         files = [folder / name for name in ("a.mcap", "forces.h5", "raw.h5")]
         with subprocess.Popen(
                 [sys.argv[1], folder / "scene.toml", "--rate", "50", "--to", files[0], "--to",

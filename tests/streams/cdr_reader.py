@@ -94,5 +94,22 @@ def points_of(message):
     return points
 
 
+def field_of(message):
+    """A Grid as an array of rows that run up, with a field for each plane."""
+    kinds = {1: "u1", 7: "<f4", 8: "<f8"}
+    fields = message["fields"]
+    layout = np.dtype({"names": [field["name"] for field in fields],
+                       "formats": [kinds[field["type"]] for field in fields],
+                       "offsets": [field["offset"] for field in fields],
+                       "itemsize": message["cell_stride"]})
+    rows = np.frombuffer(message["data"], np.uint8).reshape(-1, message["row_stride"])
+    return rows[:, :message["column_count"] * layout.itemsize].copy().view(layout)
+
+
+def header_of(message):
+    """The header of a message; a Grid has its members instead."""
+    return message.get("header") or {"stamp": message["timestamp"], "frame_id": message["frame_id"]}
+
+
 def stamp_ns(header):
     return header["stamp"]["sec"] * 10**9 + header["stamp"]["nanosec"]

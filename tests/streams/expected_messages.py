@@ -4,9 +4,10 @@ same frames."""
 import h5py
 import numpy as np
 
-from cdr_reader import image_of, points_of, stamp_ns
+from cdr_reader import field_of, image_of, points_of, stamp_ns
 
 SLOTS = 16
+FILES_ONLY = [f"{plane}_{end}" for plane in ("shear_x", "shear_y", "normal") for end in ("low", "high")]
 
 
 class Frames:
@@ -19,6 +20,10 @@ class Frames:
             self.pitch = float(file.attrs["pillar_pitch_mm"])
             self.planes = {name: file["force"][name][()]
                            for name in ("shear_x", "shear_y", "normal", "status")}
+            self.field = dict(self.planes)  # what /skin/field must hold
+            for name, plane in file.get("uncertainty", {}).items():
+                if name not in FILES_ONLY:
+                    self.field[f"uncertainty_{name}"] = plane[()]
             self.time = file["force/time"][()]
             columns = {name: data[()] for name, data in file["contacts"].items()
                        if isinstance(data, h5py.Dataset)}
@@ -74,6 +79,8 @@ def check_message(test, frames, topic, index, message):
         np.testing.assert_array_equal(image_of(message), frames.raw[index])
     elif topic == "/skin/forces":
         check_points(frames, index, points_of(message))
+    elif topic == "/skin/field":
+        check_field(test, frames, index, message)
     elif topic == "/skin/time":
         test.assertAlmostEqual(stamp_ns({"stamp": message["time_ref"]}) * 1e-9, frames.time[index],
                                delta=2e-9)
@@ -97,6 +104,22 @@ def check_points(frames, index, points):
     row, col = np.nonzero(touched)
     place = frames.place((col - (cols - 1) / 2) * frames.pitch, ((rows - 1) / 2 - row) * frames.pitch)
     np.testing.assert_allclose([points[axis] for axis in "xyz"], place, atol=1e-8)
+
+
+def check_field(test, frames, index, message):
+    """A Grid begins at the corner of the lowest and leftmost cell, in the plane of the flat skin."""
+    field = field_of(message)[::-1]
+    test.assertEqual(set(field.dtype.names), set(frames.field))
+    for name, plane in frames.field.items():
+        test.assertEqual(field[name].dtype, plane.dtype)
+        np.testing.assert_array_equal(field[name], plane[index])
+    rows, cols = field.shape
+    pitch_m = 1e-3 * frames.pitch
+    test.assertEqual([*message["cell_size"].values()], [pitch_m, pitch_m])
+    np.testing.assert_allclose([*message["pose"]["position"].values()],
+                               [-cols / 2 * pitch_m, -rows / 2 * pitch_m, 0], rtol=1e-14)
+    test.assertEqual([*message["pose"]["orientation"].values()], [0, 0, 0, 1])
+    test.assertEqual(message["frame_id"], "skin" if frames.radius_mm is None else "skin_flat")
 
 
 def check_arrows(test, frames, index, markers):

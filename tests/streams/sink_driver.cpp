@@ -28,7 +28,7 @@ constexpr const char* kUsage =
     "sink_driver SCENE [--frames N] [--rate HZ] [--reference FORCES.h5] [--to TARGET]...\n"
     "            [--record FILE.h5] [--wait-for-clients N] [--settle SECONDS] [--linger SECONDS] "
     "[--no-contacts]\n"
-    "            [--abandon]\n";
+    "            [--normal-only] [--abandon]\n";
 
 struct DriverOptions {
   std::string scene;
@@ -41,7 +41,8 @@ struct DriverOptions {
   double settle_s = 0;  // before the first frame
   double linger_s = 0;  // before the sinks finish
   bool contacts = true;
-  bool abandon = false;  // ends without finish()
+  bool normal_only = false;  // sinks get no shear
+  bool abandon = false;      // ends without finish()
 };
 
 DriverOptions options_of(const std::vector<std::string>& words) {
@@ -67,6 +68,8 @@ DriverOptions options_of(const std::vector<std::string>& words) {
       options.linger_s = std::stod(value());
     else if (word == "--no-contacts")
       options.contacts = false;
+    else if (word == "--normal-only")
+      options.normal_only = true;
     else if (word == "--abandon")
       options.abandon = true;
     else
@@ -106,6 +109,7 @@ Recording record(const DriverOptions& options) {
           .estimator = name_of(plan.estimator),
           .device = "host",
           .source = "a scene",
+          .uncertainty = plan.uncertainty,
           .surface = plan.skin.surface};
   if (options.contacts) info.contacts = contact_options;
 
@@ -119,7 +123,8 @@ Recording record(const DriverOptions& options) {
     frame.forces = forces.view();
     if (options.contacts) frame.contacts = &tracker.update(frame.forces, simulator.time_of(index));
     frame.readings = raw.view();
-    recording.frames[index].assign(frame, {.forces = true, .contacts = true, .readings = true});
+    recording.frames[index].assign(
+        frame, {.forces = true, .all_planes = true, .contacts = true, .readings = true});
   }
   return recording;
 }
@@ -172,8 +177,9 @@ void run(const DriverOptions& options) {
     frame.time_s = time_s;
     frame.sequence = index;
     frame.arrived = std::chrono::steady_clock::now().time_since_epoch();
-    for (const auto& sink : sinks) sink->append(frame);
     if (reference) reference->append(frame);
+    if (options.normal_only) frame.forces.shear_x = frame.forces.shear_y = {};
+    for (const auto& sink : sinks) sink->append(frame);
     health.solved = health.stream.frames = index + 1;
     if (index % 10 != 9) continue;
     for (const auto& sink : sinks) sink->report(health);

@@ -5,12 +5,12 @@ import signal
 import time
 import unittest
 
-from cdr_reader import Decoder, stamp_ns
+from cdr_reader import Decoder, header_of, stamp_ns
 from expected_messages import Frames, check_message
 from mcap_reader import read_index, read_stream
-from sink_process import SCENE, SinkTest
+from sink_process import ALL_PLANES, SCENE, SinkTest
 
-EVERY_FRAME = ("/skin/normal", "/skin/raw", "/skin/forces", "/skin/time")
+EVERY_FRAME = ("/skin/normal", "/skin/raw", "/skin/forces", "/skin/field", "/skin/time")
 
 
 class McapTest(SinkTest):
@@ -37,8 +37,10 @@ class McapTest(SinkTest):
                 self.check_health(decoded)
                 continue
             if message.topic != "/skin/arrows":
-                self.assertEqual(stamp_ns(decoded["header"]), message.log_time)
-                self.assertEqual(decoded["header"]["frame_id"], "skin")
+                header = header_of(decoded)
+                self.assertEqual(stamp_ns(header), message.log_time)
+                if message.topic != "/skin/field":
+                    self.assertEqual(header["frame_id"], "skin")
             check_message(self, frames, message.topic, message.sequence, decoded)
         return counts
 
@@ -62,6 +64,18 @@ class McapTest(SinkTest):
         self.assertTrue(1 <= counts["/skin/health"] <= len(frames.time) // 10, counts)
         # 40 frames take 0.2 s or more: arrows come 30 times a second.
         self.assertTrue(1 <= counts["/skin/arrows"] < len(frames.time), counts)
+
+    def test_planes_of_the_field(self):
+        data, frames = self.record("--frames", 20, scene=self.write_scene("all.toml", ALL_PLANES))
+        self.assertEqual(len(frames.field), 13)
+        self.assertEqual(self.check(data, frames)["/skin/field"], 20)
+
+    def test_field_without_shear(self):
+        data, frames = self.record("--frames", 20, "--normal-only")
+        frames.field = {name: frames.field[name] for name in ("normal", "status")}
+        counts = self.check(data, frames)
+        self.assertEqual((counts["/skin/field"], counts["/skin/normal"]), (20, 20))
+        self.assertNotIn("/skin/forces", counts)
 
     def test_other_types_of_readings(self):
         for bits, encoding in (("12", "mono16"), ("", "32FC1")):

@@ -55,6 +55,8 @@ path = [
 ]
 """
 
+ALL_PLANES = SCENE.format(bits=8) + "[solver]\nuncertainty = true\n"
+
 
 class SinkTest(unittest.TestCase):
     """A test with its own folder and the scene in it."""

@@ -10,9 +10,12 @@ namespace {
 constexpr std::size_t kMostArrows = 500;
 constexpr std::chrono::nanoseconds kArrowInterval{33'000'000};
 
-bool is_complete(const ForceFieldView& forces, std::size_t pillars) {
-  return forces.shear_x.size() == pillars && forces.shear_y.size() == pillars &&
-         forces.normal.size() == pillars && forces.status.size() == pillars;
+bool has_normal(const ForceFieldView& forces, std::size_t pillars) {
+  return forces.normal.size() == pillars && forces.status.size() == pillars;
+}
+
+bool has_shear(const ForceFieldView& forces, std::size_t pillars) {
+  return forces.shear_x.size() == pillars && forces.shear_y.size() == pillars;
 }
 
 }  // namespace
@@ -37,16 +40,19 @@ void MessageEncoder::encode(const SolvedFrame& frame, const TopicSet& wanted,
     if (wanted[topic] && at_hand) pass(topic, sequence, receiver, put);
   };
   const ForceFieldView& forces = frame.forces;
-  const bool has_forces = is_complete(forces, geometry_.poses().size());
+  const std::size_t pillars = geometry_.poses().size();
+  const bool has_field = has_normal(forces, pillars);
   pass_if(topic::kTime, true,
           [&](CdrWriter& cdr) { message::put_time(cdr, stamp_, frame.time_s, source_); });
-  pass_if(topic::kNormal, has_forces,
+  pass_if(topic::kNormal, has_field,
           [&](CdrWriter& cdr) { message::put_normal_image(cdr, stamp_, forces); });
   pass_if(topic::kRaw, frame.readings.data != nullptr,
           [&](CdrWriter& cdr) { message::put_raw_image(cdr, stamp_, frame.readings); });
-  pass_if(topic::kForces, has_forces, [&](CdrWriter& cdr) {
+  pass_if(topic::kForces, has_field && has_shear(forces, pillars), [&](CdrWriter& cdr) {
     message::put_points(cdr, stamp_, forces, geometry_.poses(), touched_);
   });
+  pass_if(topic::kField, has_field,
+          [&](CdrWriter& cdr) { message::put_field(cdr, stamp_, forces, geometry_); });
   if (frame.contacts == nullptr) return;
   const Slots& slots = slots_.update(*frame.contacts);
   encode_wrenches(slots, wanted, sequence, receiver);

@@ -10,6 +10,7 @@
 
 #include "pillarfield/status.h"
 #include "skin/vectors.h"
+#include "solve/result_planes.h"
 
 namespace pillarfield {
 namespace {
@@ -50,6 +51,7 @@ namespace pillarfield::message {
 namespace {
 
 constexpr std::string_view kFrameId = "skin";
+constexpr std::string_view kFlatFrameId = "skin_flat";
 constexpr double kMetresPerMm = 1e-3;
 
 /// builtin_interfaces/Time, within the range of its 32-bit seconds.
@@ -118,6 +120,52 @@ void put_point_fields(CdrWriter& cdr) {
   for (const std::string_view name : kNames) {
     cdr.put_all(name, offset, name == "status" ? kUint32 : kFloat32, std::uint32_t{1});
     offset += sizeof(float);
+  }
+}
+
+/// Calls `visit` with the name and the values of each plane of the field, absent ones left out.
+template <class Visit>
+void visit_planes(const ForceFieldView& forces, const Visit& visit) {
+  const std::size_t pillars = std::size_t{forces.rows} * forces.cols;
+  for (std::size_t plane = 0; plane < kSolvedPlanes; ++plane) {
+    const std::span<const float> values = plane_of(forces, plane);
+    if (values.size() == pillars) visit(kResultPlanes[plane].field(), values);
+  }
+  if (forces.status.size() == pillars) visit(std::string("status"), forces.status);
+}
+
+/// A cell of a Grid: a value of each plane, without gaps.
+struct Cell {
+  std::uint32_t planes = 0;
+  std::uint32_t bytes = 0;
+};
+
+Cell cell_of(const ForceFieldView& forces) {
+  Cell cell;
+  visit_planes(forces, [&](const std::string&, const auto& plane) {
+    ++cell.planes;
+    cell.bytes += static_cast<std::uint32_t>(sizeof plane[0]);
+  });
+  return cell;
+}
+
+/// foxglove_msgs/PackedElementField.
+void put_cell_field(CdrWriter& cdr, std::string_view name, std::uint32_t offset,
+                    std::size_t bytes) {
+  constexpr std::uint8_t kUint8 = 1;
+  constexpr std::uint8_t kFloat32 = 7;
+  cdr.put_all(name, offset, bytes == sizeof(float) ? kFloat32 : kUint8);
+}
+
+/// Writes a plane into cells of a Grid, its last row first.
+template <class Value>
+void put_cells(std::span<const Value> plane, std::uint32_t cols, std::uint32_t cell_bytes,
+               std::byte* cell) {
+  for (std::size_t end = plane.size(); end > 0; end -= cols) {
+    for (const Value value : plane.subspan(end - cols, cols)) {
+      std::memcpy(cell, &value, sizeof value);
+      cell += cell_bytes;
+    }
   }
 }
 
@@ -259,6 +307,28 @@ void put_points(CdrWriter& cdr, Stamp stamp, const ForceFieldView& forces,
     out += kPointBytes;
   }
   cdr.put(std::uint8_t{1});  // is_dense: all points are valid
+}
+
+void put_field(CdrWriter& cdr, Stamp stamp, const ForceFieldView& forces,
+               const SkinGeometry& geometry) {
+  const double pitch = kMetresPerMm * geometry.pitch_mm();
+  const Cell cell = cell_of(forces);
+  put_stamp(cdr, stamp);
+  cdr.put(geometry.is_flat() ? kFrameId : kFlatFrameId);
+  put_vector(cdr, {-0.5 * pitch * forces.cols, -0.5 * pitch * forces.rows, 0});
+  cdr.put_all(0.0, 0.0, 0.0, 1.0);  // orientation: none
+  cdr.put_all(forces.cols, pitch, pitch, forces.cols * cell.bytes, cell.bytes);
+  cdr.put_length(cell.planes);
+  std::uint32_t offset = 0;
+  visit_planes(forces, [&](const std::string& name, const auto& plane) {
+    put_cell_field(cdr, name, offset, sizeof plane[0]);
+    offset += static_cast<std::uint32_t>(sizeof plane[0]);
+  });
+  std::byte* first = cdr.put_space(std::size_t{forces.rows} * forces.cols * cell.bytes);
+  visit_planes(forces, [&](const std::string&, const auto& plane) {
+    put_cells(plane, forces.cols, cell.bytes, first);
+    first += sizeof plane[0];
+  });
 }
 
 void put_wrench(CdrWriter& cdr, Stamp stamp, const ContactQuantities* contact) {

@@ -79,6 +79,9 @@ class SkinGeometry {
   /// Of all pillars, row by row.
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }
 
+  [[nodiscard]] double pitch_mm() const { return layout_.pitch_mm; }
+  [[nodiscard]] bool is_flat() const { return surface_.shape == SurfaceShape::plane; }
+
   /// Of a point of the skin; on a height map that of the nearest pillar.
   [[nodiscard]] Pose pose_of(const PatchPlace& place) const;
 
@@ -109,6 +112,12 @@ void put_raw_image(CdrWriter& cdr, Stamp stamp, const FrameView& readings);
 /// `touched` is memory that the function reuses.
 void put_points(CdrWriter& cdr, Stamp stamp, const ForceFieldView& forces,
                 const std::vector<Pose>& poses, std::vector<std::uint32_t>& touched);
+
+/// foxglove_msgs/Grid: every plane that the field has, each under its name in arrays of numbers
+/// (docs/formats.md). Cells run from the lower left pillar to the right, then up. On a skin that is
+/// not flat, the frame of reference is "skin_flat", the sheet before it was bent.
+void put_field(CdrWriter& cdr, Stamp stamp, const ForceFieldView& forces,
+               const SkinGeometry& geometry);
 
 /// geometry_msgs/WrenchStamped: force on the skin and its moment about the origin; null: zeros.
 void put_wrench(CdrWriter& cdr, Stamp stamp, const ContactQuantities* contact);

@@ -71,6 +71,18 @@ constexpr Definition kPointCloud = {"sensor_msgs/PointCloud2",
                                     "sensor_msgs/PointField[] fields\nbool is_bigendian\n"
                                     "uint32 point_step\nuint32 row_step\nuint8[] data\n"
                                     "bool is_dense\n"};
+constexpr Definition kVector2 = {"foxglove_msgs/Vector2", "float64 x\nfloat64 y\n"};
+constexpr Definition kPackedField = {"foxglove_msgs/PackedElementField",
+                                     "uint8 UNKNOWN=0\nuint8 UINT8=1\nuint8 INT8=2\n"
+                                     "uint8 UINT16=3\nuint8 INT16=4\nuint8 UINT32=5\n"
+                                     "uint8 INT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n"
+                                     "string name\nuint32 offset\nuint8 type\n"};
+constexpr Definition kGrid = {"foxglove_msgs/Grid",
+                              "builtin_interfaces/Time timestamp\nstring frame_id\n"
+                              "geometry_msgs/Pose pose\nuint32 column_count\n"
+                              "foxglove_msgs/Vector2 cell_size\n"
+                              "uint32 row_stride\nuint32 cell_stride\n"
+                              "foxglove_msgs/PackedElementField[] fields\nuint8[] data\n"};
 constexpr Definition kTimeReference = {
     "sensor_msgs/TimeReference",
     "std_msgs/Header header\nbuiltin_interfaces/Time time_ref\nstring source\n"};
@@ -131,6 +143,12 @@ const MessageSchema& point_cloud_schema() {
   return schema;
 }
 
+const MessageSchema& grid_schema() {
+  static const MessageSchema schema =
+      schema_of({kGrid, kTime, kPose, kPoint, kQuaternion, kVector2, kPackedField});
+  return schema;
+}
+
 const MessageSchema& wrench_schema() {
   static const MessageSchema schema = schema_of({kWrenchStamped, kHeader, kTime, kWrench, kVector});
   return schema;
@@ -160,6 +178,7 @@ std::span<const Topic> topics() {
     list[topic::kNormal] = {"/skin/normal", &image_schema()};
     list[topic::kRaw] = {"/skin/raw", &image_schema()};
     list[topic::kForces] = {"/skin/forces", &point_cloud_schema()};
+    list[topic::kField] = {"/skin/field", &grid_schema()};
     list[topic::kArrows] = {"/skin/arrows", &marker_array_schema()};
     list[topic::kHealth] = {"/skin/health", &diagnostics_schema()};
     list[topic::kTime] = {"/skin/time", &time_reference_schema()};

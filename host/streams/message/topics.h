@@ -36,9 +36,10 @@ struct MessageSchema {
   std::string definition;  ///< `ros2msg`: its members, then those of the messages it contains
 };
 
-/// Definitions as of ROS 2 Humble and later.
+/// Definitions as of ROS 2 Humble and later, with its package foxglove_msgs.
 [[nodiscard]] const MessageSchema& image_schema();
 [[nodiscard]] const MessageSchema& point_cloud_schema();
+[[nodiscard]] const MessageSchema& grid_schema();
 [[nodiscard]] const MessageSchema& wrench_schema();
 [[nodiscard]] const MessageSchema& marker_array_schema();
 [[nodiscard]] const MessageSchema& diagnostics_schema();
@@ -55,10 +56,11 @@ namespace topic {
 inline constexpr std::size_t kNormal = 0;
 inline constexpr std::size_t kRaw = 1;
 inline constexpr std::size_t kForces = 2;
-inline constexpr std::size_t kArrows = 3;
-inline constexpr std::size_t kHealth = 4;
-inline constexpr std::size_t kTime = 5;
-inline constexpr std::size_t kContacts = 6;  ///< the first of ContactSlots::kSlots
+inline constexpr std::size_t kField = 3;
+inline constexpr std::size_t kArrows = 4;
+inline constexpr std::size_t kHealth = 5;
+inline constexpr std::size_t kTime = 6;
+inline constexpr std::size_t kContacts = 7;  ///< the first of ContactSlots::kSlots
 }  // namespace topic
 
 inline constexpr std::size_t kTopics = topic::kContacts + ContactSlots::kSlots;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::string_view kFoxglovePrefix = "foxglove:";
 constexpr std::chrono::nanoseconds kPictureInterval{16'000'000};
 
-/// Sends what clients subscribe to: contacts and time of each frame, images, points and arrows at
-/// most about 60 times a second.
+/// Sends what clients subscribe to: contacts and time of each frame, images, points, fields and
+/// arrows at most about 60 times a second.
 class FoxgloveConsumer final : public SinkConsumer {
  public:
   FoxgloveConsumer(std::unique_ptr<FoxgloveServer> server, const LiveSinkInfo& info)
@@ -61,7 +61,8 @@ FrameParts FoxgloveConsumer::wants(const SolvedFrame& frame) {
       (wanted & contact_topics()).any() || wanted[topic::kArrows] || wanted[topic::kTime];
   const bool has_arrival = frame.arrived.count() != 0;
   if (has_arrival && frame.arrived - last_picture_ < kPictureInterval) return parts;
-  parts.forces = wanted[topic::kNormal] || wanted[topic::kForces];
+  parts.all_planes = wanted[topic::kField];
+  parts.forces = wanted[topic::kNormal] || wanted[topic::kForces] || parts.all_planes;
   parts.readings = wanted[topic::kRaw];
   if (parts.forces || parts.readings) last_picture_ = frame.arrived;
   return parts;

@@ -23,7 +23,7 @@ class McapConsumer final : public SinkConsumer {
       : file_(path, channels(), info.replace), encoder_(info) {}
 
   [[nodiscard]] FrameParts wants(const SolvedFrame&) override {
-    return {.forces = true, .contacts = true, .readings = true};
+    return {.forces = true, .all_planes = true, .contacts = true, .readings = true};
   }
   [[nodiscard]] bool consume(const SolvedFrame& frame) override {
     encoder_.encode(frame, TopicSet().set(), receiver_);
