@@ -9,9 +9,9 @@
 #include "pillar/elementary.h"
 #endif
 #include "pillar/sensel.h"
-#include "pillar/sensel_force.h"
 #include "pillar/direct_solve.h"
 #ifndef PF_WHOLE
+#include "pillar/sensel_force.h"
 #include "pillar/wires.h"
 #include "pillar/curve.h"
 #include "pillar/leak.h"

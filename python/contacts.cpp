@@ -42,6 +42,15 @@ void add_quantities(Class& bound, Get get) {
     bound.def_property_readonly(
         name, [get, member](const Self& self) { return get(self).*member; }, text);
   };
+  const auto add_of_pillars = [&](const char* name, auto member, const char* text) {
+    bound.def_property_readonly(
+        name,
+        [get, member](const Self& self) {
+          const ContactQuantities& quantities = get(self);
+          return quantities.has_shear ? std::optional(quantities.*member) : std::nullopt;
+        },
+        text);
+  };
   const auto add_place = [&](const char* name, PatchPlace ContactQuantities::*member,
                              const char* text) {
     bound.def_property_readonly(
@@ -53,20 +62,23 @@ void add_quantities(Class& bound, Get get) {
         text);
   };
   using Q = ContactQuantities;
-  add("pillars", &Q::pillars, "number of pillars");
-  add("ambiguous", &Q::ambiguous, "of these, ambiguous by their readings alone");
-  add("resolved", &Q::resolved, "of the ambiguous, resolved by friction");
-  add("shear_x_n", &Q::shear_x_n, "force to the right, N");
-  add("shear_y_n", &Q::shear_y_n, "force up, N");
+  add("pillars", &Q::pillars, "number of pillars, or of sensels without pillars");
+  add_of_pillars("ambiguous", &Q::ambiguous, "of these, ambiguous by their readings alone; None without pillars");
+  add_of_pillars("resolved", &Q::resolved, "of the ambiguous, resolved by friction; None without pillars");
+  add_of_pillars("shear_x_n", &Q::shear_x_n, "force to the right, N; None without pillars");
+  add_of_pillars("shear_y_n", &Q::shear_y_n, "force up, N; None without pillars");
   add("normal_n", &Q::normal_n, "pressing force, N");
   add_place("centre_of_pressure_mm", &Q::centre_of_pressure,
             "(x, y) from the centre of the skin, mm");
   add_place("centre_mm", &Q::centre, "(x, y) of the mean pillar, mm");
-  add("torque_nmm", &Q::torque_nmm, "about the outward normal, counter-clockwise, N mm");
+  add_of_pillars("torque_nmm", &Q::torque_nmm, "about the outward normal, counter-clockwise, N mm; None without pillars");
   add("area_mm2", &Q::area_mm2, "mm²");
   add("peak_n", &Q::peak_n, "largest normal force of a pillar, N");
   add_place("peak_mm", &Q::peak, "(x, y) of that pillar, mm");
   add("mean_pressure_kpa", &Q::mean_pressure_kpa, "kPa");
+  bound.def_property_readonly(
+      "peak_pressure_kpa", [get](const Self& self) { return get(self).peak_pressure_kpa(); },
+      "pressure on the most loaded element, kPa");
   add("friction", &Q::friction, "friction coefficient, or None");
   add("friction_deviation", &Q::friction_deviation, "its standard deviation, or None");
   add("slipping_share", &Q::slipping_share, "slipping fraction of the normal force, 0..1, or None");
@@ -92,6 +104,10 @@ void add_quantities(Class& bound, Get get) {
 
 std::string contact_text(const TrackedContact& contact) {
   const ContactQuantities& q = contact.quantities;
+  if (!q.has_shear) {
+    return fmt::format("<Contact {}: {} sensels, {:.3g} N, at most {:.3g} kPa>", contact.track_id,
+                       q.pillars, q.normal_n, q.peak_pressure_kpa());
+  }
   return fmt::format("<Contact {}: {} pillars, shear ({:.3g}, {:.3g}) N, normal {:.3g} N, {}>",
                      contact.track_id, q.pillars, q.shear_x_n, q.shear_y_n, q.normal_n,
                      name_of(q.slip));

@@ -23,6 +23,18 @@ namespace {
 
 constexpr const char* kReader = "Reads a file of forces; one thread at a time.";
 
+/// The skin of a file of forces, as far as the file tells.
+Skin skin_of(const ForceFileInfo& info) {
+  Skin skin;
+  skin.layout = info.layout;
+  const std::uint32_t side = skin.has_pillars() ? 2 : 1;
+  skin.rows = side * info.rows;
+  skin.cols = side * info.cols;
+  skin.sensel_pitch_mm = info.element_pitch_mm / side;
+  skin.surface = info.surface;
+  return skin;
+}
+
 class ForceReader {
  public:
   ForceReader(const std::filesystem::path& path, bool trust) {
@@ -36,7 +48,7 @@ class ForceReader {
 
   [[nodiscard]] py::dict read(const IndexRange& range) {
     range.check(reader_->frames());
-    ForceStack planes(info().rows, info().cols);
+    ForceStack planes(skin_of(info()));
     std::vector<double> times;
     std::vector<std::shared_ptr<FrameContacts>> contacts;
     {
@@ -65,16 +77,6 @@ class ForceReader {
   std::mutex mutex_;
 };
 
-/// The skin of a file of forces, as far as the file tells.
-Skin skin_of(const ForceReader& reader) {
-  Skin skin;
-  skin.rows = 2 * reader.info().rows;
-  skin.cols = 2 * reader.info().cols;
-  skin.sensel_pitch_mm = reader.info().element_pitch_mm / 2;
-  skin.surface = reader.info().surface;
-  return skin;
-}
-
 ForceFileInfo solved_by(const SolverPlan& plan) {
   ForceFileInfo info = file_info(plan, "", "");
   set_sensor(info.contacts.emplace(), plan);
@@ -86,6 +88,7 @@ py::dict component_ends_of(const py::dict& planes, const std::optional<ForceFile
   const ForceArrays forces(planes);
   ForceFileInfo info = solved_by.value_or(ForceFileInfo{});
   info.uncertainty = true;
+  info.layout = forces.layout();
   FramePlanes frame(info);
   const Shape shape = {static_cast<py::ssize_t>(forces.frames()), forces.rows(), forces.cols()};
   const std::size_t pillars = std::size_t{forces.rows()} * forces.cols();
@@ -116,6 +119,7 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   info.cols = forces.cols();
   info.frames = forces.frames();
   info.element_pitch_mm = skin.element_pitch_mm();
+  info.layout = forces.layout();
   info.angles = planes.contains("theta");
   info.uncertainty = planes.contains("uncertainty_normal");
   info.surface = skin.surface;
@@ -141,7 +145,7 @@ void bind_force_files(py::module_& module) {
   py::class_<ForceReader>(module, "ForceReader", kReader)
       .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
            py::arg("trust") = false)
-      .def_property_readonly("skin", &skin_of,
+      .def_property_readonly("skin", [](const ForceReader& self) { return skin_of(self.info()); },
                              "Skin, as far as the file tells: size, pitch and surface.")
       .def_property_readonly(
           "estimator", [](const ForceReader& self) { return self.info().estimator; },

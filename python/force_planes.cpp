@@ -57,6 +57,7 @@ py::dict ForceStack::release() {
   for (const ResultPlane& plane : kResultPlanes) {
     if (plane.index >= kSolvedPlanes) break;
     if (plane.set != PlaneSet::forces && !planes_[plane.index].memory) continue;
+    if (!has_plane(layout_, true, true, plane)) continue;
     planes[plane.field().c_str()] = array(planes_[plane.index], float{});
   }
   planes["status"] = array(status_, std::uint8_t{});
@@ -118,9 +119,9 @@ ForceArrays::ForceArrays(const py::dict& planes) {
     planes_[plane.index] = data_of<float>(planes, plane.field());
   }
   status_ = data_of<std::uint8_t>(planes, "status");
-  if (status_ == nullptr || std::find(planes_.begin(), planes_.begin() + kForcePlanes, nullptr) !=
-                                planes_.begin() + kForcePlanes) {
-    throw Error("ForceField", "a plane is missing", "give shear_x, shear_y, normal and status");
+  if (status_ == nullptr || (planes_[0] == nullptr) != (planes_[1] == nullptr)) {
+    throw Error("ForceField", "a plane is missing",
+                "give normal and status, and of pillars shear_x and shear_y");
   }
 }
 

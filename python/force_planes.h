@@ -17,7 +17,8 @@ namespace pillarfield::python {
 /// The planes of frame after frame, in memory that arrays take over.
 class ForceStack {
  public:
-  ForceStack(std::uint32_t rows, std::uint32_t cols) : rows_(rows), cols_(cols) {}
+  explicit ForceStack(const Skin& skin)
+      : layout_(skin.layout), rows_(skin.element_rows()), cols_(skin.element_cols()) {}
 
   /// Makes room for `frames` in all.
   void reserve(std::size_t frames);
@@ -41,6 +42,7 @@ class ForceStack {
 
   void append(Plane& plane, std::span<const std::byte> frame);
 
+  SkinLayout layout_;
   std::uint32_t rows_;
   std::uint32_t cols_;
   std::size_t frames_ = 0;
@@ -68,13 +70,17 @@ class ForceCopy {
 /// "status": uint8}.
 class ForceArrays {
  public:
-  /// Throws Error if a plane of the forces or the status is missing, or one has another type or
-  /// shape or is not dense.
+  /// Throws Error if normal force or status is missing, or one component of shear, or a plane has
+  /// another type or shape or is not dense.
   explicit ForceArrays(const py::dict& planes);
 
   [[nodiscard]] std::size_t frames() const { return frames_; }
   [[nodiscard]] std::uint32_t rows() const { return rows_; }
   [[nodiscard]] std::uint32_t cols() const { return cols_; }
+  /// Without shear there are no pillars.
+  [[nodiscard]] SkinLayout layout() const {
+    return planes_[0] == nullptr ? SkinLayout::sensels : SkinLayout::pillars;
+  }
   [[nodiscard]] ForceFieldView frame(std::size_t index) const;
 
  private:

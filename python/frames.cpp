@@ -53,7 +53,7 @@ class ArraySource final : public FrameSource {
       first_ = static_cast<const std::byte*>(frame.data);
     }
     check(skin_, "frames");
-    warnings_ = size_warnings(skin_.rows, skin_.cols);
+    if (skin_.has_pillars()) warnings_ = size_warnings(skin_.rows, skin_.cols);
     if (!calibration) return;
     require_fitting(*calibration, skin_, "frames");
     apply(*calibration, skin_, calibration_);
@@ -116,7 +116,7 @@ py::dict read_truth(Frames& frames, const IndexRange& range) {
   if (!source.has_truth()) {
     throw Error(source.format(), "it has no true forces", "simulate one that has");
   }
-  ForceStack stack(source.skin().element_rows(), source.skin().element_cols());
+  ForceStack stack(source.skin());
   {
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(frames.alone);
@@ -155,7 +155,8 @@ SkinCalibration calibration_of(const Frames& frames) {
 std::unique_ptr<Frames> open(
     const std::filesystem::path& path, bool trust, std::string dataset, std::string times,
     const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
-    std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes) {
+    std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes,
+    const std::string& layout) {
   const py::gil_scoped_release unlocked;
   ReadOptions options;
   options.trust = trust;
@@ -165,6 +166,13 @@ std::unique_ptr<Frames> open(
   options.rate_hz = rate_hz;
   options.tare_frames = tare_frames;
   if (!axes.empty()) options.axes = parse_axes(axes);
+  if (!layout.empty()) {
+    options.layout = layout_named(layout);
+    if (!options.layout) {
+      throw Error("layout", fmt::format("'{}' is not a layout", layout),
+                  "give 'pillars' or 'sensels'");
+    }
+  }
   return std::make_unique<Frames>(open_frames(path, options));
 }
 
@@ -209,7 +217,8 @@ void bind_frames(py::module_& module) {
   py::class_<Frames>(module, "FrameSource", kSource)
       .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("trust") = false,
            py::arg("dataset") = "", py::arg("times") = "", py::arg("frame_size") = py::none(),
-           py::arg("rate_hz") = py::none(), py::arg("tare_frames") = 0, py::arg("axes") = "")
+           py::arg("rate_hz") = py::none(), py::arg("tare_frames") = 0, py::arg("axes") = "",
+           py::arg("layout") = "")
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
                   py::arg("calibration"), py::arg("axes_are_known") = false, kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),

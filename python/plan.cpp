@@ -34,6 +34,7 @@ skin: Skin, with rows and columns of the frames
 sensel_type: 'uint8', 'uint16' or 'float32'
 calibration: Calibration, or the path of its file
 scene: Scene, or the path of its file; its constants and options replace those of skin
+layout: 'pillars' or 'sensels'; replaces that of skin and calibration
 estimator: 'direct', 'paper' or 'contact'
 outputs: of 'angles' and 'uncertainty', beside the forces
 friction: friction coefficient if it is known to 3 %, 0.1..9.9
@@ -71,6 +72,7 @@ Choice choice_named(const std::string& name, const std::array<Choice, n>& choice
 }
 
 constexpr std::array kTypes = {SenselType::u8, SenselType::u16, SenselType::f32};
+constexpr std::array kLayouts = {SkinLayout::pillars, SkinLayout::sensels};
 constexpr std::array kEstimators = {Estimator::direct, Estimator::paper, Estimator::contact};
 
 std::vector<std::string> outputs_of(const py::handle& given) {
@@ -93,7 +95,9 @@ bool set(PlanSettings& settings, const std::string& name, const py::handle& valu
         setting.whole ? argument<int>(value, name) : argument<double>(value, name);
     return true;
   }
-  if (name == "estimator") {
+  if (name == "layout") {
+    settings.layout = choice_named(argument<std::string>(value, name), kLayouts, "layout");
+  } else if (name == "estimator") {
     settings.estimator = choice_named(argument<std::string>(value, name), kEstimators, "estimator");
   } else if (name == "outputs") {
     settings.outputs = outputs_of(value);

@@ -28,7 +28,7 @@ py::dict render(const Simulator& simulator, std::uint64_t first, std::uint64_t c
   py::array readings(dtype_of(type), Shape{static_cast<py::ssize_t>(count), skin.rows, skin.cols});
   auto* out = static_cast<std::byte*>(readings.mutable_data());
   const std::size_t frame_bytes = skin.sensels() * size_of(type);
-  ForceStack truth(skin.element_rows(), skin.element_cols());
+  ForceStack truth(skin);
   std::vector<double> times;
   {
     const py::gil_scoped_release unlocked;

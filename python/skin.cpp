@@ -56,10 +56,15 @@ Surface height_map(const FloatPlane& heights_mm) {
   return surface;
 }
 
+SkinLayout layout_of(const std::string& name) {
+  if (const auto layout = layout_named(name)) return *layout;
+  throw Error("Skin", fmt::format("'{}' is not a layout", name), "give 'pillars' or 'sensels'");
+}
+
 Skin make_skin(std::uint32_t rows, std::uint32_t cols, double sensel_pitch_mm,
                double counts_per_newton, double threshold_counts,
                std::optional<double> full_scale_counts, const std::optional<Law>& power_law,
-               std::optional<Surface> surface) {
+               std::optional<Surface> surface, const std::string& layout) {
   Skin skin;
   skin.rows = rows;
   skin.cols = cols;
@@ -69,13 +74,15 @@ Skin make_skin(std::uint32_t rows, std::uint32_t cols, double sensel_pitch_mm,
   skin.full_scale_counts = full_scale_counts;
   skin.power_law = law_of(power_law);
   skin.surface = std::move(surface);
+  skin.layout = layout_of(layout);
   check(skin, "Skin");
   return skin;
 }
 
 std::string skin_text(const Skin& skin) {
-  return fmt::format("Skin({}, {}, counts_per_newton={:.6g}, threshold_counts={:.6g})", skin.rows,
-                     skin.cols, skin.counts_per_newton, skin.threshold_counts);
+  return fmt::format("Skin({}, {}, counts_per_newton={:.6g}, threshold_counts={:.6g}{})", skin.rows,
+                     skin.cols, skin.counts_per_newton, skin.threshold_counts,
+                     skin.has_pillars() ? "" : ", layout='sensels'");
 }
 
 /// Position, tangent_x, tangent_y and normal of each pillar: [4, rows, cols, 3], mm and unit
@@ -89,7 +96,7 @@ py::array_t<double> poses(const Skin& skin) {
       values.insert(values.end(), {vector.x, vector.y, vector.z});
     }
   }
-  return array_of(std::move(values), {4, skin.pillar_rows(), skin.pillar_cols(), 3});
+  return array_of(std::move(values), {4, skin.element_rows(), skin.element_cols(), 3});
 }
 
 /// The region of each status byte.
@@ -140,7 +147,7 @@ void bind_skin(py::module_& module) {
            py::arg("counts_per_newton") = usual.counts_per_newton,
            py::arg("threshold_counts") = usual.threshold_counts,
            py::arg("full_scale_counts") = py::none(), py::arg("power_law") = py::none(),
-           py::arg("surface") = py::none())
+           py::arg("surface") = py::none(), py::arg("layout") = name_of(usual.layout))
       .def_readonly("rows", &Skin::rows, "sensel rows")
       .def_readonly("cols", &Skin::cols, "sensel columns")
       .def_readonly("sensel_pitch_mm", &Skin::sensel_pitch_mm, "distance of sensels, mm")
@@ -156,9 +163,16 @@ void bind_skin(py::module_& module) {
                                   : std::nullopt;
           },
           "(exponent, reference in counts), or None")
+      .def_property_readonly(
+          "layout", [](const Skin& self) { return name_of(self.layout); },
+          "'pillars', or 'sensels' without pillars")
       .def_property_readonly("pillar_rows", &Skin::pillar_rows, "pillar rows")
       .def_property_readonly("pillar_cols", &Skin::pillar_cols, "pillar columns")
       .def_property_readonly("pillar_pitch_mm", &Skin::pillar_pitch_mm, "distance of pillars, mm")
+      .def_property_readonly("element_rows", &Skin::element_rows, "rows of the forces")
+      .def_property_readonly("element_cols", &Skin::element_cols, "columns of the forces")
+      .def_property_readonly("element_pitch_mm", &Skin::element_pitch_mm,
+                             "distance of pillars, or of sensels without pillars, mm")
       .def("__repr__", &skin_text);
   module.def("regions", &regions, "The Region of each status byte, 256 bytes.");
   module.def("poses", &poses, py::arg("skin"),

@@ -69,7 +69,7 @@ class IteratorStream final : public FrameStream {
 class Collector final : public ForceSink {
  public:
   explicit Collector(const SolverPlan& plan)
-      : planes_(plan.skin.element_rows(), plan.skin.element_cols()), check_(plan) {}
+      : planes_(plan.skin), check_(plan) {}
 
   void reserve(std::size_t frames) {
     planes_.reserve(frames);

@@ -28,10 +28,11 @@ SlipState state_of(const ContactSum& sum) {
 
 }  // namespace
 
-ContactQuantities quantities_of(const ContactSum& sum, double pillar_pitch_mm) {
+ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm, bool has_shear) {
   ContactQuantities contact;
+  contact.has_shear = has_shear;
   if (sum.pillars == 0) return contact;
-  const double half_pitch_mm = pillar_pitch_mm / 2;
+  const double half_pitch_mm = pitch_mm / 2;
   const auto pillars = static_cast<double>(sum.pillars);
   contact.pillars = static_cast<std::uint64_t>(sum.pillars);
   contact.ambiguous = static_cast<std::uint64_t>(sum.ambiguous);
@@ -49,7 +50,7 @@ ContactQuantities quantities_of(const ContactSum& sum, double pillar_pitch_mm) {
   const double about_origin_nmm = (sum.shear_y_x - sum.shear_x_y) * half_pitch_mm;
   contact.torque_nmm = about_origin_nmm - (contact.centre_of_pressure.x_mm * contact.shear_y_n -
                                            contact.centre_of_pressure.y_mm * contact.shear_x_n);
-  contact.area_mm2 = pillars * pillar_pitch_mm * pillar_pitch_mm;
+  contact.area_mm2 = pillars * pitch_mm * pitch_mm;
   contact.peak_n = sum.peak;
   contact.peak = {static_cast<double>(sum.peak_x) * half_pitch_mm,
                   static_cast<double>(sum.peak_y) * half_pitch_mm};

@@ -8,7 +8,8 @@
 namespace pillarfield {
 
 /// The quantities of a contact, except friction and slip.
-[[nodiscard]] ContactQuantities quantities_of(const ContactSum& sum, double pillar_pitch_mm);
+[[nodiscard]] ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm,
+                                              bool has_shear = true);
 
 /// Ratio of shear to normal force above which a pillar counts as slipping.
 [[nodiscard]] std::optional<double> slip_ratio(std::optional<double> friction);

@@ -174,15 +174,15 @@ void ContactTracker::State::measure_wrenches(const ForceFieldView& forces) {
 /// contact, unless `friction` holds it.
 void ContactTracker::State::measure(const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
-  const bool has_friction = options.layout == SkinLayout::pillars;
-  const bool estimates = has_friction && friction.empty() && labels.contacts() > 0;
+  const bool has_shear = options.layout == SkinLayout::pillars;
+  const bool estimates = has_shear && friction.empty() && labels.contacts() > 0;
   if (estimates) {
     friction_estimator.begin(forces, labels);
     friction = friction_estimator.friction();
   }
   const auto friction_of = [&](std::uint32_t contact, std::size_t member) {
     if (estimates) friction_estimator.update(forces, labels, contact, member);
-    if (!has_friction) return std::optional<double>();
+    if (!has_shear) return std::optional<double>();
     return known_friction(friction[contact]);
   };
   const std::vector<ContactSum>& sums = moments.measure(forces, labels, friction_of);
@@ -197,13 +197,13 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
     contact.label = label;
-    contact.quantities = quantities_of(sum, pitch_mm);
-    if (has_friction) set_slip(contact.quantities, friction[label], sum);
+    contact.quantities = quantities_of(sum, pitch_mm, has_shear);
+    if (has_shear) set_slip(contact.quantities, friction[label], sum);
     frame.contacts.push_back(contact);
   }
-  frame.total = quantities_of(total, pitch_mm);
+  frame.total = quantities_of(total, pitch_mm, has_shear);
   if (options.surface) measure_wrenches(forces);
-  if (!has_friction || !options.friction.given || frame.total.pillars == 0) return;
+  if (!has_shear || !options.friction.given || frame.total.pillars == 0) return;
   set_slip(frame.total, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
            total);
 }

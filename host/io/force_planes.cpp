@@ -17,7 +17,7 @@ std::vector<ResultPlane> planes_of(const ForceFileInfo& info) {
 
 FramePlanes::FramePlanes(const ForceFileInfo& info)
     : planes_(planes_of(info)),
-      has_ends_(info.uncertainty && info.layout == SkinLayout::pillars),
+      has_ends_(info.uncertainty),
       coefficient_(info.effects.shear_coefficient.value_or(ShearCoefficient{})) {
   if (info.estimator == name_of(Estimator::direct)) direct_point_ = info.segment_point;
 }

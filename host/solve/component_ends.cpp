@@ -20,8 +20,8 @@ struct Interval {
 
 /// One component of a pillar's force.
 struct Component {
-  double value;
-  double deviation;
+  double value = 0;
+  double deviation = 0;
 
   [[nodiscard]] Interval interval() const {
     return Interval{value, value}.wider(kDeviations95 * deviation);
@@ -60,6 +60,7 @@ std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, s
                                                  const std::optional<double>& direct_point,
                                                  const ShearCoefficient& coefficient) {
   const auto component = [&](std::span<const float> values, Uncertainty deviation) {
+    if (values.empty()) return Component{};  // without pillars
     return Component{values[pillar], forces.uncertainty[deviation][pillar]};
   };
   const Component x = component(forces.shear_x, Uncertainty::shear_x);

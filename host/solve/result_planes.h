@@ -55,11 +55,11 @@ inline constexpr std::size_t kSolvedPlanes = kResultPlanes.size() - kComponentEn
 inline constexpr std::size_t kNamedPlanes = kSolvedPlanes - kUncertaintyPlanes;
 inline constexpr std::size_t kForcePlanes = 3;
 
-/// True if a plan or file with these options has a plane. Without pillars only normal force and its
-/// deviation exist.
+/// True if a plan or file with these options has a plane. Without pillars only normal force, its
+/// deviation and the ends of its interval exist.
 constexpr bool has_plane(SkinLayout layout, bool angles, bool uncertainty,
                          const ResultPlane& plane) {
-  if (layout == SkinLayout::sensels && std::string_view(plane.name) != "normal") return false;
+  if (layout == SkinLayout::sensels && !std::string_view(plane.name).starts_with("normal")) return false;
   return plane.set == PlaneSet::forces || (plane.set == PlaneSet::angles ? angles : uncertainty);
 }
 

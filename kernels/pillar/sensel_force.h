@@ -12,11 +12,10 @@ static inline Bits sensel_status(Sensel sensel) {
 /* N, from newtons per count; zero where the sensel is inactive or missing, the least force where it
  * is saturated. */
 static inline Real sensel_force(Sensel sensel, Real newtons_per_count) {
-  return (sensel.usable || sensel.saturated) ? real_of(sensel.reading) * newtons_per_count
+  return (sensel.usable || sensel.saturated) ? sensel.reading * newtons_per_count
                                              : PF_REAL(0.0);
 }
 
-#ifndef PF_WHOLE
 /* Standard deviation of the force, N, from that of the corrected reading, counts: infinite where
  * the sensel is saturated or missing, zero where it is inactive or absent. */
 static inline Real sensel_deviation(Sensel sensel, Real noise, Real newtons_per_count) {
@@ -24,4 +23,3 @@ static inline Real sensel_deviation(Sensel sensel, Real noise, Real newtons_per_
   const Real known = sensel.usable ? noise * newtons_per_count : PF_REAL(0.0);
   return open ? PF_INFINITY : known;
 }
-#endif

@@ -42,18 +42,19 @@ class Calibration:
 
 class _Quantities:
     pillars: int
-    ambiguous: int
-    resolved: int
-    shear_x_n: float
-    shear_y_n: float
+    ambiguous: Optional[int]
+    resolved: Optional[int]
+    shear_x_n: Optional[float]
+    shear_y_n: Optional[float]
     normal_n: float
     centre_of_pressure_mm: _Place
     centre_mm: _Place
-    torque_nmm: float
+    torque_nmm: Optional[float]
     area_mm2: float
     peak_n: float
     peak_mm: _Place
     mean_pressure_kpa: float
+    peak_pressure_kpa: float
     friction: Optional[float]
     friction_deviation: Optional[float]
     friction_source: str
@@ -97,7 +98,7 @@ class FrameSource:
     warnings: list[str]
     def __init__(self, path: _Path, *, trust: bool = ..., dataset: str = ..., times: str = ...,
                  frame_size: Optional[tuple[int, int]] = ..., rate_hz: Optional[float] = ...,
-                 tare_frames: int = ..., axes: str = ...) -> None: ...
+                 tare_frames: int = ..., axes: str = ..., layout: str = ...) -> None: ...
     @staticmethod
     def of_array(readings: npt.NDArray[Any], times: npt.NDArray[np.float64], skin: Skin,
                  calibration: Optional[Calibration], axes_are_known: bool = ...) -> FrameSource: ...
@@ -176,6 +177,10 @@ class Skin:
     pillar_cols: int
     sensel_pitch_mm: float
     pillar_pitch_mm: float
+    layout: str
+    element_rows: int
+    element_cols: int
+    element_pitch_mm: float
     counts_per_newton: float
     threshold_counts: float
     full_scale_counts: Optional[float]
@@ -185,7 +190,7 @@ class Skin:
                  counts_per_newton: float = ..., threshold_counts: float = ...,
                  full_scale_counts: Optional[float] = ...,
                  power_law: Optional[tuple[float, float]] = ...,
-                 surface: Optional[Surface] = ...) -> None: ...
+                 surface: Optional[Surface] = ..., layout: str = ...) -> None: ...
 
 class Surface:
     axis_deg: float

@@ -33,18 +33,18 @@ class Uncertainty:
     shear_x, shear_y and normal are standard deviations, N. The others bound direction (rad) and
     magnitude (N) over the segment of an ambiguous pillar, without noise; phi runs counter-clockwise
     from low to high. What saturated sensels leave open is infinite. Valid for pillars without
-    missing sensels.
+    missing sensels. Without pillars, all but normal is None.
     """
 
-    shear_x: Floats
-    shear_y: Floats
     normal: Floats
-    theta_low: Floats
-    theta_high: Floats
-    phi_low: Floats
-    phi_high: Floats
-    magnitude_low: Floats
-    magnitude_high: Floats
+    shear_x: Optional[Floats] = None
+    shear_y: Optional[Floats] = None
+    theta_low: Optional[Floats] = None
+    theta_high: Optional[Floats] = None
+    phi_low: Optional[Floats] = None
+    phi_high: Optional[Floats] = None
+    magnitude_low: Optional[Floats] = None
+    magnitude_high: Optional[Floats] = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,15 +52,15 @@ class Intervals:
     """Ends of the 95 % intervals of the forces, N, float32 arrays of their shape.
 
     Noise included; a normal force is not below zero. The interval of an ambiguous pillar spans what
-    its estimator leaves possible (docs/formats.md).
+    its estimator leaves possible (docs/formats.md). Without pillars, those of shear are None.
     """
 
-    shear_x_low: Floats
-    shear_x_high: Floats
-    shear_y_low: Floats
-    shear_y_high: Floats
     normal_low: Floats
     normal_high: Floats
+    shear_x_low: Optional[Floats] = None
+    shear_x_high: Optional[Floats] = None
+    shear_y_low: Optional[Floats] = None
+    shear_y_high: Optional[Floats] = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -80,7 +80,9 @@ class Points:
 class ForceField:
     """Forces on the pillars of one frame, planes [P, Q], or of T frames, planes [T, P, Q].
 
-    shear_x, shear_y: tangential force on the skin, + right and + up, float32, N
+    Without pillars, P and Q count sensels, and there is normal force alone.
+
+    shear_x, shear_y: tangential force on the skin, + right and + up, float32, N; both None: no pillars
     normal: pressing force, float32, N
     status: bits of Status, uint8
     times: of the frames, float64 [T], or one number, s
@@ -97,12 +99,13 @@ class ForceField:
 
     __slots__ = ("_planes", "_times", "_contacts", "_skin", "_solved_by")
 
-    def __init__(self, shear_x: npt.ArrayLike, shear_y: npt.ArrayLike, normal: npt.ArrayLike, *,
+    def __init__(self, shear_x: Optional[npt.ArrayLike], shear_y: Optional[npt.ArrayLike],
+                 normal: npt.ArrayLike, *,
                  status: Optional[npt.ArrayLike] = None, times: Optional[npt.ArrayLike] = None,
                  skin: Optional[_core.Skin] = None) -> None:
         planes: dict[str, Any] = {
             name: np.asarray(plane, np.float32)
-            for name, plane in zip(_FORCES, (shear_x, shear_y, normal))}
+            for name, plane in zip(_FORCES, (shear_x, shear_y, normal)) if plane is not None}
         shape = planes["normal"].shape
         planes["status"] = np.asarray(0 * planes["normal"] if status is None else status, np.uint8)
         if len(shape) not in (2, 3) or any(plane.shape != shape for plane in planes.values()):
@@ -136,9 +139,27 @@ class ForceField:
         try:
             plane: Floats = self._planes[name]
         except KeyError:
+            if not self.has_pillars:
+                raise Error("ForceField", f"without pillars there is no {name}",
+                            "give the skin the layout 'pillars', if it has some") from None
             raise Error("ForceField", f"it has no {name}",
                         f"solve with outputs=['{output}']") from None
         return plane
+
+    @property
+    def has_pillars(self) -> bool:
+        """False: each sensel is by itself, with normal force alone."""
+        return "shear_x" in self._planes
+
+    @property
+    def pressure_kpa(self) -> Floats:
+        """Normal force over the area of a pillar, or of a sensel, float32, kPa.
+
+        Raises Error without a skin.
+        """
+        if self._skin is None:
+            raise Error("ForceField.pressure_kpa", "the skin is unknown", "solve with skin=Skin(...)")
+        return self.normal * np.float32(1000 / self._skin.element_pitch_mm**2)
 
     @property
     def shear_x(self) -> Floats:
@@ -163,7 +184,8 @@ class ForceField:
 
     @property
     def region(self) -> Bytes:
-        """Values of Region, uint8."""
+        """Values of Region, uint8. Raises Error without pillars."""
+        self._plane("shear_x", "")
         return REGIONS[self.status]
 
     @property
@@ -184,8 +206,10 @@ class ForceField:
     @property
     def uncertainty(self) -> Uncertainty:
         """Standard deviations and bounds; with the output 'uncertainty'."""
-        return Uncertainty(*(self._plane(f"uncertainty_{field.name}", "uncertainty")
-                             for field in dataclasses.fields(Uncertainty)))
+        self._plane("uncertainty_normal", "uncertainty")
+        return Uncertainty(**{field.name: self._planes[f"uncertainty_{field.name}"]
+                              for field in dataclasses.fields(Uncertainty)
+                              if f"uncertainty_{field.name}" in self._planes})
 
     @property
     def intervals(self) -> Intervals:
@@ -265,19 +289,22 @@ class ForceField:
 
         overwrite: replace any file, not only other results. Raises Error if it cannot be written.
         """
-        skin = self._skin or _core.Skin(2 * self.shape[-2], 2 * self.shape[-1])
+        side, layout = (2, "pillars") if self.has_pillars else (1, "sensels")
+        skin = self._skin or _core.Skin(side * self.shape[-2], side * self.shape[-1], layout=layout)
         _core.save_forces(path, self._batch(), self._times.reshape(-1), self._contacts, skin,
                           self._solved_by, overwrite)
 
     def __repr__(self) -> str:
         frames = len(self)
         rows, cols = self.shape[-2:]
-        size = np.sqrt(self.shear_x**2 + self.shear_y**2 + self.normal**2)
+        size = np.sqrt(sum(self._planes[name]**2 for name in _FORCES if name in self._planes))
         low, high = (size.min(), size.max()) if size.size else (0, 0)
+        text = f"{frames} frame{'s' * (frames != 1)} of {rows} x {cols}"
+        if not self.has_pillars:
+            return f"<ForceField: {text} sensels, {low:.3g}..{high:.3g} N>"
         touched = self.where(Status.USABLE)
         share = 100 * self.where(Status.AMBIGUOUS).sum() / max(1, touched.sum())
-        return (f"<ForceField: {frames} frame{'s' * (frames != 1)} of {rows} x {cols} pillars, "
-                f"{low:.3g}..{high:.3g} N, {share:.0f} % ambiguous>")
+        return f"<ForceField: {text} pillars, {low:.3g}..{high:.3g} N, {share:.0f} % ambiguous>"
 
     def picture(self, quantity: str = "normal", *, limits: Optional[tuple[float, float]] = None,
                 theme: str = "dark") -> bytes:
@@ -308,7 +335,7 @@ class ForceField:
         import xarray
 
         rows, cols = self.shape[-2:]
-        pitch_mm = self._skin.pillar_pitch_mm if self._skin else 1.0
+        pitch_mm = self._skin.element_pitch_mm if self._skin else 1.0
         coordinates: dict[str, Any] = {
             "y": ("y", (np.arange(rows)[::-1] - (rows - 1) / 2) * pitch_mm, {"units": "mm"}),
             "x": ("x", (np.arange(cols) - (cols - 1) / 2) * pitch_mm, {"units": "mm"})}
@@ -335,6 +362,8 @@ class ForceField:
             raise Error("ForceField.to_points", "the skin is unknown", "solve with skin=Skin(...)")
         position, tangent_x, tangent_y, normal = _core.poses(self._skin).reshape(4, -1, 3)
         shape = (*self.shape[:-2], -1, 1)
-        force = (self.shear_x.reshape(shape) * tangent_x + self.shear_y.reshape(shape) * tangent_y
-                 - self.normal.reshape(shape) * normal)
+        force = -self.normal.reshape(shape) * normal
+        if self.has_pillars:
+            force = (self.shear_x.reshape(shape) * tangent_x
+                     + self.shear_y.reshape(shape) * tangent_y + force)
         return Points(force.astype(np.float32), position / 1000, normal)

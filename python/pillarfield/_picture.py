@@ -31,7 +31,8 @@ def picture(planes: dict[str, Any], quantity: str, limits: Optional[tuple[float,
     pillars, low, high, unit = _core.paint(planes, quantity, limits, light)
     zoom = max(1, math.ceil(_LEAST_PIXELS / max(1, *pillars.shape[:2])))
     skin = pillars.repeat(zoom, 0).repeat(zoom, 1)
-    _draw_arrows(skin, planes, zoom, light)
+    if "shear_x" in planes:
+        _draw_arrows(skin, planes, zoom, light)
     colours = _core.colours(quantity, light)
     image = np.empty((max(skin.shape[0], 80) + 40, skin.shape[1] + 130, 3), np.uint8)
     image[:] = colours[-1]

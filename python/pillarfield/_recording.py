@@ -36,16 +36,19 @@ class Recording(_core.FrameSource):
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
     axes: order of the axes of an array, such as 'rows,columns,frames'; by default frames first
+    layout: 'pillars' or 'sensels', in place of that of the file; plain data and Tekscan exports have
+        'sensels'
 
     Raises Error if it holds no frames, is damaged, or an option does not fit it.
     """
 
     def __init__(self, path: Path, *, trust: bool = False, dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
-                 tare_frames: int = 0, axes: Axes = "") -> None:
+                 tare_frames: int = 0, axes: Axes = "", layout: str = "") -> None:
         super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
-            rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes))
+            rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes),
+            layout=layout)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -104,8 +107,9 @@ class ForceFile(_core.ForceReader):
         return (self[frame] for frame in range(len(self)))
 
     def __repr__(self) -> str:
-        rows, cols = self.skin.pillar_rows, self.skin.pillar_cols
-        return f"<ForceFile: {len(self)} frames of {rows} x {cols} pillars, {self.estimator}>"
+        rows, cols = self.skin.element_rows, self.skin.element_cols
+        return (f"<ForceFile: {len(self)} frames of {rows} x {cols} {self.skin.layout}, "
+                f"{self.estimator}>")
 
 
 def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _core.Calibration]:
@@ -184,7 +188,7 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
 def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:
     """The skin of frames of this shape; raises Error if a given one has another size."""
     if skin is None:
-        return _core.Skin(*shape)
+        return _core.Skin(*shape, layout="sensels")
     if (skin.rows, skin.cols) != shape:
         raise Error("frames", f"they are {shape[0]} x {shape[1]}",
                     f"the skin has {skin.rows} x {skin.cols} sensels")

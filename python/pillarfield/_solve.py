@@ -31,7 +31,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
 
     frames: path of a recording or Tekscan export; readings, counts, [T, R, C] or [R, C]; an iterator
         of arrays [R, C]; a Recording or a Simulation
-    skin: constants of the skin; by default those of the file, or Skin() for arrays
+    skin: constants of the skin; by default those of the file, or Skin() for arrays, without pillars
     calibration: replaces that of the file; a step of pf.calibrate holds one
     tare_frames: the first frames, at least 10, are of the unloaded skin: tare, noise and threshold are
         measured in them
@@ -41,16 +41,19 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         default frames, rows, columns, and an array that more likely has another order is refused
     contacts: find and track the contacts too
     device: OpenCL device, by its index or a part of its name; '': the best one
-    options: those of Plan: estimator, outputs, noise_counts, threshold_counts, ...
+    options: those of Plan: layout, estimator, outputs, noise_counts, threshold_counts, ...
 
-    Returns the forces of all frames, planes [T, R // 2, C // 2], or of the frame [R, C]. Arrays of
+    Returns the forces of all frames, planes [T, R, C], or with pillars (layout='pillars')
+    [T, R // 2, C // 2]; of a frame [R, C] one field. Arrays of
     uint8, uint16 and float32 with frames first are read in place; others are converted (docs/python.md). Python's lock
     is released meanwhile; Ctrl+C ends it. Raises Error if a file or an option is wrong; warns of constants
     that nothing gives and are assumed, counts_per_newton above all, and of an odd row or column.
 
     >>> import numpy as np, pillarfield as pf
-    >>> forces = pf.solve(np.full((5, 8, 12), 32, np.uint8), counts_per_newton=320)
-    >>> forces
+    >>> frames = np.full((5, 8, 12), 32, np.uint8)
+    >>> pf.solve(frames, counts_per_newton=320)
+    <ForceField: 5 frames of 8 x 12 sensels, 0.1..0.1 N>
+    >>> pf.solve(frames, counts_per_newton=320, layout="pillars")
     <ForceField: 5 frames of 4 x 6 pillars, 0.1..0.1 N, 0 % ambiguous>
     """
     calibration = _calibration_of(calibration)
@@ -128,10 +131,11 @@ def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibrati
     if readings.ndim != 2:
         raise Error("frames", f"the iterator's array has {readings.ndim} axes",
                     "give frames [rows, cols]")
-    warn(_core.size_warnings(*readings.shape))
     options = {"frame_interval_s": 1 / rate_hz, **options}
     plan = _core.Plan(skin_of(skin, readings.shape), sensel_type=str(readings.dtype),
                       calibration=calibration, **options)
+    if plan.skin.layout == "pillars":
+        warn(_core.size_warnings(*readings.shape))
     stream = timed(itertools.chain([first], iterator), str(readings.dtype), rate_hz)
     return _field_of(_core.solve_iterator(stream, plan, contacts, device), plan, False)
 

@@ -31,7 +31,7 @@ inline constexpr std::size_t kComponentEnds = 6;
 /// For ambiguous pillars of Estimator::direct pass its SolverPlan::segment_point as `direct_point`:
 /// their intervals then span the segment, widened by 1.96 standard deviations of the noise. Leave
 /// it unset for other estimators. `coefficient` is that of the skin. `forces` must have the planes
-/// of Uncertainty.
+/// of Uncertainty. Without pillars the ends of shear are zero.
 [[nodiscard]] std::array<float, kComponentEnds> component_ends(
     const ForceFieldView& forces, std::size_t pillar, const std::optional<double>& direct_point,
     const ShearCoefficient& coefficient = {});

@@ -42,6 +42,7 @@ struct ContactQuantities {
   std::uint64_t ambiguous = 0;  ///< of these, ambiguous by their readings alone
   std::uint64_t resolved = 0;   ///< of the ambiguous, resolved by friction
 
+  bool has_shear = true;  ///< false without pillars: shear, torque, friction, slip do not exist
   double shear_x_n = 0;
   double shear_y_n = 0;
   double normal_n = 0;

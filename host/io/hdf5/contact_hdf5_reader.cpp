@@ -143,6 +143,10 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   read_columns(columns_, patch_.columns.data() + std::size(force_format::kPatchRows),
                index, patch, itself);
   frame.total = patch[0];
+  frame.total.has_shear = options_.layout == SkinLayout::pillars;
+  for (TrackedContact& contact : frame.contacts) {
+    contact.quantities.has_shear = frame.total.has_shear;
+  }
   return frame;
 }
 

@@ -20,6 +20,7 @@ namespace {
 constexpr std::uint64_t kMostSlots = 1 << 20;
 constexpr std::uint64_t kMostSlotBytes = 1 << 30;
 constexpr std::uint64_t kResultBytes = 3 * sizeof(float) + 1;  ///< of a pillar
+constexpr std::uint64_t kPressureBytes = sizeof(float) + 1;    ///< of a sensel without pillars
 
 std::uint64_t reading_bytes_of(std::uint32_t type) {
   switch (type) {
@@ -42,6 +43,9 @@ std::optional<std::uint64_t> content_bytes(const RingLayout& layout) {
   if (elements > PILLARFIELD_MAX_SENSELS) return std::nullopt;
   if (layout.kind == PILLARFIELD_RING_RESULTS) {
     return sizeof(PillarfieldResultSlot) + elements * kResultBytes;
+  }
+  if (layout.kind == PILLARFIELD_RING_PRESSURES) {
+    return sizeof(PillarfieldResultSlot) + elements * kPressureBytes;
   }
   const std::uint64_t bytes = reading_bytes_of(layout.type);
   if (layout.kind != PILLARFIELD_RING_FRAMES || bytes == 0) return std::nullopt;

@@ -26,7 +26,8 @@ std::uint32_t slots_of(const RingLayout& layout) {
 }
 
 RingLayout layout_of_results(const Skin& skin) {
-  return {PILLARFIELD_RING_RESULTS, skin.element_rows(), skin.element_cols(), 0};
+  return {skin.has_pillars() ? PILLARFIELD_RING_RESULTS : PILLARFIELD_RING_PRESSURES,
+          skin.element_rows(), skin.element_cols(), 0};
 }
 
 PillarfieldContact contact_of(std::uint64_t track_id, const ContactQuantities& contact) {
@@ -61,6 +62,11 @@ PillarfieldContact total_of(const ForceFieldView& forces) {
   total.torque_nmm = total.area_mm2 = kUnknown;
   total.centre_of_pressure = {kUnknown, kUnknown};
   return contact_of(0, total);
+}
+
+/// Without pillars, shear is unknown.
+void forget_shear(PillarfieldContact& contact) {
+  contact.shear_x_n = contact.shear_y_n = contact.torque_nmm = kUnknown;
 }
 
 class RingSink final : public LiveSink {
@@ -124,6 +130,9 @@ void RingSink::write_head(PillarfieldResultSlot& slot, const SolvedFrame& frame)
   } else {
     write_contacts(slot, *frame.contacts);
   }
+  if (layout_.kind == PILLARFIELD_RING_RESULTS) return;
+  forget_shear(slot.total);
+  for (std::uint32_t i = 0; i < slot.contacts; ++i) forget_shear(slot.contact[i]);
 }
 
 void RingSink::write_contacts(PillarfieldResultSlot& slot, const FrameContacts& contacts) {

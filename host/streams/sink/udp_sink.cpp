@@ -51,11 +51,16 @@ class DatagramSocket {
 
 /// The members of a contact or of the total.
 void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contact) {
-  fmt::format_to(std::back_inserter(json),
-                 R"("force":{{"shear_x":{},"shear_y":{},"normal":{}}},"torque_nmm":{},)"
-                 R"("pillars":{},"centre_mm":{{"x":{},"y":{}}})",
-                 contact.shear_x_n, contact.shear_y_n, contact.normal_n, contact.torque_nmm,
-                 contact.pillars, contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm);
+  const auto out = std::back_inserter(json);
+  if (contact.has_shear) {
+    fmt::format_to(out, R"("force":{{"shear_x":{},"shear_y":{},"normal":{}}},"torque_nmm":{},)",
+                   contact.shear_x_n, contact.shear_y_n, contact.normal_n, contact.torque_nmm);
+  } else {
+    fmt::format_to(out, R"("force":{{"normal":{}}},"peak_pressure_kpa":{},)", contact.normal_n,
+                   contact.peak_pressure_kpa());
+  }
+  fmt::format_to(out, R"("{}":{},"centre_mm":{{"x":{},"y":{}}})", contact.has_shear ? "pillars" : "sensels", contact.pillars,
+                 contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm);
   if (contact.friction) {
     fmt::format_to(std::back_inserter(json), R"(,"friction":{})", *contact.friction);
   }
@@ -68,7 +73,9 @@ class UdpConsumer final : public SinkConsumer {
  public:
   UdpConsumer(const std::string& target, const LiveSinkInfo& info)
       : socket_(address_of(std::string_view(target).substr(kUdpPrefix.size()), target, 1), target) {
-    if (!info.forces.contacts) tracker_.emplace(info.forces.element_pitch_mm);
+    ContactOptions options;
+    options.layout = info.forces.layout;
+    if (!info.forces.contacts) tracker_.emplace(info.forces.element_pitch_mm, options);
   }
 
   [[nodiscard]] FrameParts wants(const SolvedFrame& frame) override {
