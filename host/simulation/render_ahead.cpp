@@ -11,7 +11,7 @@ RenderAhead::RenderAhead(const Simulator& simulator, std::uint64_t first, std::u
   const Skin& skin = simulator.scene().skin;
   for (std::uint64_t i = 0; i < std::min<std::uint64_t>(count, std::uint64_t{threads} + 2); ++i) {
     ring_.push_back({.raw = FrameBuffer(simulator.sensel_type(), skin.rows, skin.cols),
-                     .truth = ForceField(skin.pillar_rows(), skin.pillar_cols())});
+                     .truth = ForceField(skin)});
   }
   try {
     for (unsigned i = 1; i < threads && i < count; ++i) helpers_.emplace_back([this] { help(); });

@@ -56,6 +56,13 @@ void add_forces(const IndenterForces& forces, ForceField& field, PressureMoments
   }
 }
 
+/// V of sensels without pillars: a sensel answers compression alone.
+void read_sensels(std::span<const float> normal, const Scene& scene, std::span<double> signal) {
+  std::ranges::transform(normal, signal.begin(), [&](float force_n) {
+    return scene.skin.counts_per_newton * std::max(0.0, static_cast<double>(force_n));
+  });
+}
+
 /// The load of a frame.
 struct FrameLoad {
   ForceField& forces;
@@ -119,14 +126,17 @@ struct Simulator::State {
   /// Fills the three planes of force, and clears the status bytes.
   [[nodiscard]] FrameLoad load(std::uint64_t index, ForceField& truth) const {
     FrameLoad load{
-        truth, pillars.needs_moments() ? PressureMoments(scene.skin.pillars()) : PressureMoments()};
+        truth, pillars.needs_moments() ? PressureMoments(scene.skin.elements()) : PressureMoments()};
     if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load)) {
       truth = sweep_truth;
       scale(truth, factor_at(*sweep, time_of(index)));
       return load;
     }
+    if (!scene.skin.has_pillars()) {
+      for (auto* plane : {&truth.shear_x, &truth.shear_y}) plane->resize(truth.elements());
+    }
     clear(truth);
-    const double pitch_mm = scene.skin.pillar_pitch_mm();
+    const double pitch_mm = scene.skin.element_pitch_mm();
     for (const ClosedFormContact& contact : std::get<std::vector<ClosedFormContact>>(scene.load)) {
       const ContactKey state = state_at(contact, time_of(index));
       add_contact(contact, state, pitch_mm, truth);
@@ -145,10 +155,14 @@ struct Simulator::State {
     const Skin& skin = scene.skin;
     FrameLoad frame_load = load(index, truth);
     std::vector<double> signal(skin.sensels());
-    for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
-      const std::size_t first = std::size_t{2} * row * skin.cols;
-      read_pillars(row, scene, pillars, frame_load,
-                   std::span(signal).subspan(first, std::size_t{2} * skin.cols));
+    if (!skin.has_pillars()) {
+      read_sensels(truth.normal, scene, signal);
+    } else {
+      for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
+        const std::size_t first = std::size_t{2} * row * skin.cols;
+        read_pillars(row, scene, pillars, frame_load,
+                     std::span(signal).subspan(first, std::size_t{2} * skin.cols));
+      }
     }
     sensor.load(signal);
     return signal;
@@ -158,7 +172,7 @@ struct Simulator::State {
     std::vector<double> signal = loaded_sensels(index, truth);
     if (memory) {
       memory->apply(index, signal, [&](std::uint64_t earlier) {
-        ForceField forces(truth.rows, truth.cols);
+        ForceField forces(scene.skin);
         return loaded_sensels(earlier, forces);
       });
     }
@@ -168,6 +182,7 @@ struct Simulator::State {
   void render_rows(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const {
     const Skin& skin = scene.skin;
     FrameLoad frame_load = load(index, truth);
+    if (!skin.has_pillars()) return render_sensel_rows(index, truth.normal, raw);
     std::vector<double> signal(std::size_t{2} * skin.cols);
     const std::span<double> upper = std::span(signal).first(skin.cols);
     for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
@@ -178,6 +193,16 @@ struct Simulator::State {
     if (skin.rows % 2 != 0) {
       std::ranges::fill(upper, 0.0);
       sensor.read_row(index, skin.rows - 1, upper, raw);
+    }
+  }
+
+  void render_sensel_rows(std::uint64_t index, std::span<const float> normal,
+                          FrameBuffer& raw) const {
+    std::vector<double> signal(scene.skin.cols);
+    for (std::uint32_t row = 0; row < scene.skin.rows; ++row) {
+      read_sensels(normal.subspan(std::size_t{row} * scene.skin.cols, scene.skin.cols), scene,
+                   signal);
+      sensor.read_row(index, row, signal, raw);
     }
   }
 
@@ -193,9 +218,9 @@ struct Simulator::State {
                   fmt::format("the scene needs {} x {} of {}", skin.rows, skin.cols,
                               name_of(sensor.sensel_type())));
     }
-    if (truth.rows != skin.pillar_rows() || truth.cols != skin.pillar_cols()) {
-      throw Error("truth", fmt::format("has {} x {} pillars", truth.rows, truth.cols),
-                  fmt::format("the scene needs {} x {}", skin.pillar_rows(), skin.pillar_cols()));
+    if (truth.rows != skin.element_rows() || truth.cols != skin.element_cols()) {
+      throw Error("truth", fmt::format("has {} x {} elements", truth.rows, truth.cols),
+                  fmt::format("the scene needs {} x {}", skin.element_rows(), skin.element_cols()));
     }
   }
 
@@ -225,6 +250,12 @@ void Simulator::render(std::uint64_t index, FrameBuffer& raw, ForceField& truth)
   } else {
     state_->render_rows(index, raw, truth);
   }
+  if (state_->scene.skin.has_pillars()) return;
+  truth.shear_x.clear();
+  truth.shear_y.clear();
+  std::ranges::transform(truth.normal, truth.status.begin(), [](float force_n) {
+    return force_n > 0 ? status::kSensel1 : std::uint8_t{0};
+  });
 }
 
 void Simulator::render_all(std::uint64_t first, std::uint64_t count, const TakeFrame& take,

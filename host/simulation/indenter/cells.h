@@ -94,9 +94,9 @@ template <class Condition>
 class CellGrid {
  public:
   explicit CellGrid(const Skin& skin)
-      : pillar_rows_(skin.pillar_rows()),
-        pillar_cols_(skin.pillar_cols()),
-        cell_mm_(skin.pillar_pitch_mm() / static_cast<double>(kCellsPerPillar)) {}
+      : pillar_rows_(skin.element_rows()),
+        pillar_cols_(skin.element_cols()),
+        cell_mm_(skin.element_pitch_mm() / static_cast<double>(kCellsPerPillar)) {}
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
   /// Place of a cell's centre.

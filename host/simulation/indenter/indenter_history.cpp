@@ -93,12 +93,12 @@ IndenterHistory::IndenterHistory(const Scene& scene, std::size_t number)
       number_(number),
       rate_hz_(scene.rate_hz),
       last_frame_(last_frame_of(indenter_, scene.rate_hz)),
-      pillar_rows_(scene.skin.pillar_rows()),
-      pillar_cols_(scene.skin.pillar_cols()),
+      pillar_rows_(scene.skin.element_rows()),
+      pillar_cols_(scene.skin.element_cols()),
       grid_(scene.skin),
       traction_to_force_n_(grid_.cell_mm() * grid_.cell_mm() * std::numbers::pi * (4.0 / 3) *
                            scene.modulus_kpa * 1e-3),
-      surface_(indenter_, scene.skin.pillar_pitch_mm(), scene.seed, number),
+      surface_(indenter_, scene.skin.element_pitch_mm(), scene.seed, number),
       half_spaces_(grid_.cell_mm()) {}
 
 std::shared_ptr<const IndenterForces> IndenterHistory::forces(std::uint64_t frame) {

@@ -10,6 +10,7 @@
 #include "simulation/closed_form/direction_sweep.h"
 #include "simulation/effects/known_effects.h"
 #include "simulation/effects/memory_history.h"
+#include "simulation/effects/pillar_model.h"
 #include "simulation/indenter/indenter_path.h"
 
 namespace pillarfield {
@@ -87,6 +88,21 @@ void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string
                           largest));
 }
 
+/// Throws Error if a scene without pillars has an effect of pillars, or a sweep of their forces.
+void check_layout(const Scene& scene, const std::string& where) {
+  if (scene.skin.has_pillars()) return;
+  if (!PillarModel(scene.sensor).is_ideal()) {
+    throw Error(where, "the skin has no pillars, but its sensor an effect of pillars",
+                "leave leak between pillars, arm and shear coefficients out");
+  }
+  if (std::holds_alternative<DirectionSweep>(scene.load)) {
+    throw Error(where, "a direction sweep needs pillars", "give contacts or indenters");
+  }
+  if (scene.parity_tolerance_counts) {
+    throw Error(where, "the parity test needs pillars", "leave parity_tolerance_counts out");
+  }
+}
+
 void check_contact(const ClosedFormContact& contact, const std::string& where) {
   if (!is_possible(contact.shape, contact.motion)) {
     throw Error(where, "this shape cannot have this motion",
@@ -110,7 +126,7 @@ void check_edge(const Indenter& indenter, const std::string& where) {
 
 void check_height_map(const Indenter& indenter, const Skin& skin, const std::string& where) {
   if (indenter.height_map.empty()) throw Error(where, "height_map is missing", "name a file");
-  const double most_mm = (kMaxContactPillars - 1) * skin.pillar_pitch_mm();
+  const double most_mm = (kMaxContactPillars - 1) * skin.element_pitch_mm();
   for (const double size : indenter.height_map_size_mm) {
     check_range(where, "height_map_size_mm", size, kIndenterSizeMm);
     if (size <= most_mm) continue;
@@ -172,9 +188,9 @@ void check_direction_sweep(const DirectionSweep& sweep, const Skin& skin,
   }
   check_times(sweep.path, where);
   for (const FactorKey& key : sweep.path) check_range(where, "factor", key.factor, kSweepFactor);
-  if (skin.pillar_rows() == pillar_rows(sweep) && skin.pillar_cols() == sweep.directions) return;
+  if (skin.element_rows() == pillar_rows(sweep) && skin.element_cols() == sweep.directions) return;
   throw Error(
-      where, fmt::format("the skin has {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()),
+      where, fmt::format("the skin has {} x {} pillars", skin.element_rows(), skin.element_cols()),
       fmt::format("its direction sweep needs {} x {}", pillar_rows(sweep), sweep.directions));
 }
 
@@ -207,6 +223,7 @@ void check(const Scene& scene, const char* where) {
                 fmt::format("a scene takes {} at most", kMaxSkinSensels));
   }
   check_sensor(scene.sensor, scene.skin, where);
+  check_layout(scene, where);
   if (scene.bending) check_bending(*scene.bending, where);
   check_range(where, "rate_hz", scene.rate_hz, kRateHz);
   check_range(where, "frames", scene.frames, {1, kMaxFrames});

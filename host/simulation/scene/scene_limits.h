@@ -169,6 +169,11 @@ struct Named {
   Value value;
 };
 
+inline constexpr std::array<Named<SkinLayout>, 2> kLayouts = {{
+    {"pillars", SkinLayout::pillars},
+    {"sensels", SkinLayout::sensels},
+}};
+
 inline constexpr std::array<Named<ContactShape>, 3> kShapes = {{
     {"sphere", ContactShape::sphere},
     {"flat_punch", ContactShape::flat_punch},

@@ -190,34 +190,44 @@ void set_size(const TomlSection& section, std::string_view key, PillarCounts cou
   const Range allowed = {1, kMaxPillars};
   const bool fits = 4 * counts.rows * counts.cols <= double{kMaxSkinSensels};
   if (!allowed.contains(counts.rows) || !allowed.contains(counts.cols) || !fits) {
-    section.fail(key, fmt::format("means {} x {} pillars", counts.rows, counts.cols),
+    section.fail(key, fmt::format("means {} x {} {}", counts.rows, counts.cols, name_of(skin.layout)),
                  fmt::format("1 to {} each way, {} in all", kMaxPillars, kMaxSkinSensels / 4));
   }
-  skin.rows = 2 * static_cast<std::uint32_t>(counts.rows);
-  skin.cols = 2 * static_cast<std::uint32_t>(counts.cols);
+  const std::uint32_t side = skin.has_pillars() ? 2 : 1;
+  skin.rows = side * static_cast<std::uint32_t>(counts.rows);
+  skin.cols = side * static_cast<std::uint32_t>(counts.cols);
 }
 
 /// Number of whole pillars along a length, tolerant of rounding.
 double pillars_along(double length_mm, const Skin& skin) {
-  return std::floor(length_mm / skin.pillar_pitch_mm() + 1e-9);
+  return std::floor(length_mm / skin.element_pitch_mm() + 1e-9);
 }
 
 void read_size(TomlSection& section, Skin& skin) {
   const auto size_mm = section.numbers("size_mm", 2, {0, 1e8, true});
-  const auto pillars = section.numbers("pillars", 2, {1, kMaxPillars});
-  if (size_mm && pillars) section.fail("pillars", "comes with size_mm", "one of the two");
+  const std::string_view elements = name_of(skin.layout);
+  const std::string_view other = skin.has_pillars() ? "sensels" : "pillars";
+  if (section.has(other)) {
+    section.fail(other, fmt::format("does not go with the layout {}", elements),
+                 fmt::format("{} = [rows, columns]", elements));
+  }
+  const auto counted = section.numbers(elements, 2, {1, kMaxPillars});
+  if (size_mm && counted) section.fail(elements, "comes with size_mm", "one of the two");
   if (size_mm) {
     const PillarCounts counts = {pillars_along(size_mm->back(), skin),
                                  pillars_along(size_mm->front(), skin)};
     set_size(section, "size_mm", counts, skin);
     return;
   }
-  if (!pillars) section.fail_missing("size_mm", "size_mm = [x, y] or pillars = [rows, columns]");
-  const PillarCounts counts = {pillars->front(), pillars->back()};
-  if (counts.rows != std::floor(counts.rows) || counts.cols != std::floor(counts.cols)) {
-    section.fail("pillars", "has a fraction", "whole numbers, [rows, columns]");
+  if (!counted) {
+    section.fail_missing("size_mm",
+                         fmt::format("size_mm = [x, y] or {} = [rows, columns]", elements));
   }
-  set_size(section, "pillars", counts, skin);
+  const PillarCounts counts = {counted->front(), counted->back()};
+  if (counts.rows != std::floor(counts.rows) || counts.cols != std::floor(counts.cols)) {
+    section.fail(elements, "has a fraction", "whole numbers, [rows, columns]");
+  }
+  set_size(section, elements, counts, skin);
 }
 
 // [direction_sweep] and [skin]
@@ -250,6 +260,7 @@ DirectionSweep read_direction_sweep(TomlSection section, Skin& skin) {
 
 void read_skin(TomlSection section, Scene& scene) {
   read_quantities(section, kSkinQuantities, scene.skin);
+  if (const auto layout = read_name(section, "layout", kLayouts)) scene.skin.layout = *layout;
   scene.modulus_kpa = section.number("modulus_kpa", kModulusKpa).value_or(scene.modulus_kpa);
   if (!std::holds_alternative<DirectionSweep>(scene.load)) read_size(section, scene.skin);
   for (const std::string_view key : {"size_mm", "pillars"}) {

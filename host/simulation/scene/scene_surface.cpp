@@ -37,6 +37,7 @@ std::optional<Surface> surface_of(const Scene& scene) {
 }
 
 void set_skin(Skin& skin, const Scene& scene) {
+  skin.layout = scene.skin.layout;
   skin.sensel_pitch_mm = scene.skin.sensel_pitch_mm;
   skin.counts_per_newton = scene.skin.counts_per_newton;
   skin.threshold_counts = scene.skin.threshold_counts;
