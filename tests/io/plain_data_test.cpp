@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "pillarfield/recording.h"
+#include "tests/io/all_readings.h"
 #include "tests/io/damage.h"
 
 // The corpus of fuzz/ holds plain data written by NumPy and h5py; tests/cli/plain_data_test.py
@@ -17,22 +18,6 @@ const std::filesystem::path kPlainFiles =
     std::filesystem::path(PILLARFIELD_DAMAGED_FILES) / "plain";
 
 ReadOptions untimed() { return {.untimed = true}; }
-
-/// The readings of all frames as floats.
-std::vector<float> all_readings(FrameSource& source) {
-  std::vector<float> all;
-  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
-  for (std::uint64_t index = 0; index < source.frames(); ++index) {
-    source.read(index, frame);
-    const auto append = [&](const auto& readings) {
-      for (const auto reading : readings) all.push_back(static_cast<float>(reading));
-    };
-    if (source.sensel_type() == SenselType::u8) append(frame.readings<std::uint8_t>());
-    if (source.sensel_type() == SenselType::u16) append(frame.readings<std::uint16_t>());
-    if (source.sensel_type() == SenselType::f32) append(frame.readings<float>());
-  }
-  return all;
-}
 
 class PlainTable : public testing::Test {
  protected:
