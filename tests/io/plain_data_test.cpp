@@ -99,7 +99,6 @@ TEST_F(PlainTable, MistakesNameTheirLine) {
   const ReadOptions shape = {.frame_size = FrameSize{2, 2}, .untimed = true};
   EXPECT_TRUE(has_all(refused("1,2\n3\n"), {"table.csv:2", "has 1 numbers", "2"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,x\n"), {"table.csv:2", "'x' in column 2"}));
-  EXPECT_TRUE(has_all(refused(",0,1\n0,5,6\n1,7,8\n"), {"empty cell", "without index"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n\n5,6\n"), {"a frame of 1 rows", "2"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n5,6\n", shape), {"holds 3 rows"}));
   EXPECT_TRUE(has_all(refused("1,2,3\n", shape), {"has 3 numbers", "2 x 2 needs 4"}));
