@@ -167,19 +167,21 @@ class TableParser {
     append();
   }
 
-  /// Whether the empty cell at the end of the first line is none: a separator may follow the last
-  /// cell, unless the header or the size of a frame counts it.
+  /// Whether an empty cell at the end of the first line is none: a separator may follow the last
+  /// cell, unless the size of a frame or the header counts it.
   [[nodiscard]] bool ends_with_separator() const {
     const std::size_t count = cells_.size();
     if (count < 2) return false;
-    if (count == header_.size()) return false;
-    return !size_ || fits(count - 1) || !fits(count);
+    if (size_ && fits(count - 1)) return true;
+    return size_ ? !fits(count) : count != header_.size();
   }
 
   /// Whether a line of so many cells holds a frame, with its time or without, or a row of it.
   [[nodiscard]] bool fits(std::size_t count) const {
+    const std::size_t leading = find_leading_columns(header_, cells_).count;
     const std::size_t sensels = std::size_t{size_->rows} * size_->cols;
-    return count == sensels || count == sensels + 1 || count == size_->cols;
+    return count == leading + sensels || count == leading + size_->cols ||
+           (leading == 0 && count == sensels + 1);
   }
 
   /// Takes the number and the meaning of the cells of the first line of numbers.
