@@ -141,7 +141,7 @@ class VariableLister {
       case MatClass::text:
         return refuse("is a text");
       case MatClass::sparse:
-        return refuse("is sparse; save full() of it");
+        return refuse("is sparse");
       default:
         return refuse("is an object or a function");
     }
