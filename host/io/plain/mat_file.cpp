@@ -173,7 +173,8 @@ class VariableLister {
     for (std::uint64_t index = 1; index <= header.count; ++index) {
       const std::string element = header.count == 1 ? name : fmt::format("{}({})", name, index);
       for (std::size_t at = 0; at < fields.size(); at += length) {
-        const std::string field(fields.substr(at, length).c_str());
+        std::string field = fields.substr(at, length);
+        field.resize(std::min(field.find('\0'), field.size()));
         reader_.skip_to(list_matrix(fmt::format("{}.{}", element, field), false, end, depth + 1));
       }
     }

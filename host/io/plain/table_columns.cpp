@@ -101,7 +101,7 @@ ColumnMeaning meaning_of(std::string_view name) {
   unit.remove_prefix(std::min(unit.find_first_not_of(kBetween), unit.size()));
   unit = unit.substr(0, unit.find_last_not_of(kBetween) + 1);
   if (unit.empty()) return {.is_time = true};
-  const auto known = std::ranges::find(kTimeUnits, unit, &TimeUnit::name);
+  const TimeUnit* const known = std::ranges::find(kTimeUnits, unit, &TimeUnit::name);
   if (known == kTimeUnits.end()) return {};
   return {.is_time = true, .unit_s = known->seconds};
 }
