@@ -19,6 +19,8 @@ import zlib
 import h5py
 import numpy
 
+import mat_files
+
 KINDS = ("recording", "forces", "calibration", "tekscan", "scene", "plain")
 
 SCENE = """\
@@ -388,7 +390,16 @@ def plain_files():
         "deflated.npz": npz(raw=frames.astype(">f4"), rate=numpy.array(100.0), name="text"),
         "frames.csv": b"\n".join(table(frame) for frame in frames),
         "lines.csv": b"time;" + b"s;" * 24 + b"\n" + table(numpy.hstack([times, lines]), ";"),
+        "pandas.csv": pandas_table(lines),
+        **mat_files.seeds(frames, real, times),
         "blanks.txt": b"# saved by numpy\n" + table(real[0], " ")}
+
+
+def pandas_table(lines):
+    """A table of frames in lines, as DataFrame.to_csv() writes one with a DatetimeIndex."""
+    header = "," + ",".join(str(column) for column in range(lines.shape[1]))
+    rows = [f"2024-05-01 12:00:00.{2 * n:03}000," + ",".join(map(str, line)) for n, line in enumerate(lines)]
+    return "\n".join([header, *rows, ""]).encode()
 
 
 def claim(data, old, new):
@@ -426,6 +437,8 @@ def hostile_plain_files():
         "too_many_times.npz": npz(raw=frames, time=numpy.arange(9)),
         "times_fall.npz": npz(raw=frames, time=-numpy.arange(3)),
         "bomb_claims_1_byte.npz": zip_bomb(1), "bomb_claims_3_gib.npz": zip_bomb(3 << 30),
+        **mat_files.hostile(frames),
+        "iso_time_of_month_13.csv": pandas_table(frames.reshape(3, -1)).replace(b"-05-01 12:00:00.004", b"-13-01 12:00:00.004"),
         "ragged.csv": 3 * line + b"1,2,3,4,5\n", "uneven_frames.csv": 3 * line + b"\n" + 2 * line,
         "decimal_commas.csv": b"1,5;2,5\n1,5;2,5\n", "words.csv": line + b"1,2,3,four,5,6\n",
         "one_column.csv": b"1 2\n1\n"}

@@ -20,19 +20,42 @@
 #include "pillarfield/printable.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/resultant_comparison.h"
+#include "pillarfield/status.h"
 
 namespace pillarfield::cli {
 namespace {
+
+/// Coverage of normal force on sensels without pillars: truths within 1.96 deviations, of those
+/// that are loaded and not flagged.
+struct SenselCoverage {
+  std::uint64_t sensels = 0;
+  std::uint64_t covered = 0;
+
+  void add(const ForceField& solved, const ForceField& truth) {
+    const std::vector<float>& deviations = solved.uncertainty[Uncertainty::normal];
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+      if (solved.status[i] != status::kSensel1) continue;
+      ++sensels;
+      const float error = std::abs(solved.normal[i] - truth.normal[i]);
+      if (error <= 1.96F * deviations[i]) ++covered;
+    }
+  }
+  [[nodiscard]] double share() const {
+    return static_cast<double>(covered) / static_cast<double>(std::max<std::uint64_t>(1, sensels));
+  }
+};
 
 struct Row {
   std::string name;
   RegionErrors errors;
 };
 
-std::vector<Row> rows_of(const Comparison& comparison) {
+std::vector<Row> rows_of(const Comparison& comparison, SkinLayout layout) {
   std::vector<Row> rows;
   for (const Region region : {Region::one, Region::two, Region::three, Region::four}) {
-    rows.push_back({name_of(region), comparison.region(region)});
+    if (layout == SkinLayout::pillars) {
+      rows.push_back({name_of(region), comparison.region(region)});
+    }
   }
   rows.push_back({"loaded", comparison.loaded()});
   rows.push_back({"none", comparison.region(Region::none)});
@@ -73,6 +96,28 @@ nlohmann::ordered_json json_of_contacts(const ContactErrors& errors) {
           {"worst_torque_error_nmm", errors.torque.worst},
           {"centre_error_rms_mm", errors.centre.rms},
           {"worst_centre_error_mm", errors.centre.worst}};
+}
+
+/// Without pillars there are neither angles nor torques, nor sensels that share a pillar.
+void print_sensel_json(const std::vector<Row>& rows, const ResultantComparison& resultants,
+                       const std::optional<SenselCoverage>& coverage, std::uint64_t frames) {
+  nlohmann::ordered_json json = {{"frames", frames}, {"layout", name_of(SkinLayout::sensels)}};
+  for (const auto& [name, errors] : rows) {
+    json["sensels"][name] = {{"sensels", errors.pillars},
+                             {"rms_n", errors.rms_n},
+                             {"p95_n", errors.p95_n},
+                             {"rms_relative", errors.rms_relative},
+                             {"p95_relative", errors.p95_relative}};
+  }
+  json["resultant"] = json_of_resultant(resultants.patch());
+  json["contacts"] = json_of_contacts(resultants.contacts());
+  for (const char* torque : {"true_torque_rms_nmm", "torque_error_rms_nmm",
+                             "worst_torque_error_nmm", "worst_torque_frame"}) {
+    json["resultant"].erase(torque);
+    json["contacts"].erase(torque);
+  }
+  if (coverage) json["coverage"] = {{"sensels", coverage->sensels}, {"normal", coverage->share()}};
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_json(const std::vector<Row>& rows, const ResultantComparison& resultants,
@@ -140,14 +185,14 @@ void print_errors(const char* name, const VectorErrors& errors) {
              percentage(errors.worst, errors.worst_true));
 }
 
-void print_resultants(const ResultantComparison& resultants) {
+void print_resultants(const ResultantComparison& resultants, bool has_torque) {
   const ContactErrors& contacts = resultants.contacts();
   fmt::print("\n{:<26} {:>9} {:>9} {:>8} {:>9} {:>8}\n", "", "true RMS", "RMS error", "of true",
              "worst", "of true");
   print_errors("Resultant force, N", resultants.patch().force);
-  print_errors("Resultant torque, N mm", resultants.patch().torque);
+  if (has_torque) print_errors("Resultant torque, N mm", resultants.patch().torque);
   print_errors("Force of a contact, N", contacts.force);
-  print_errors("Torque of a contact, N mm", contacts.torque);
+  if (has_torque) print_errors("Torque of a contact, N mm", contacts.torque);
   print_errors("Centre of pressure, mm", contacts.centre);
   fmt::print("Contacts: {} found", grouped(contacts.found));
   const auto print_others = [](const char* kind, std::uint64_t count, double most_n) {
@@ -168,7 +213,7 @@ void print_text(const std::vector<Row>& rows, const ResultantComparison& resulta
   fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
              "RMS", "95 %", "RMS", "95 %", "theta", "phi", "differs");
   for (const Row& row : rows) print_row(row);
-  print_resultants(resultants);
+  print_resultants(resultants, true);
   fmt::print(
       "\nForce error: length of (solved - true). 95 %: the 95th percentile over pillars.\n"
       "phi is weighted by sin(theta). Status differs: the usable sensels differ from those of the "
@@ -177,6 +222,27 @@ void print_text(const std::vector<Row>& rows, const ResultantComparison& resulta
       "Resultant torque: about the centre of the patch. Torque of a contact: about the normal "
       "through "
       "its\ntrue centre of pressure. Worst: the largest error of a frame or contact.\n");
+}
+
+void print_sensel_text(const std::vector<Row>& rows, const ResultantComparison& resultants,
+                       const std::optional<SenselCoverage>& coverage, std::uint64_t frames,
+                       const CompareOptions& options) {
+  fmt::print("{} against the truth in {}, {}\n\n", printable(options.forces),
+             printable(options.recording), counted(frames, "frame"));
+  fmt::print("{:<8} {:>13} {:^19} {:^17}\n", "", "", "force error, N", "of the true force");
+  fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8}\n", "", "sensels", "RMS", "95 %", "RMS", "95 %");
+  for (const auto& [name, errors] : rows) {
+    const bool loaded = name == "loaded" && errors.pillars > 0;
+    fmt::print("{:<8} {:>13} {} {} {:>8} {:>8}\n", name, grouped(errors.pillars),
+               fitted(errors.rms_n, 9, 4), fitted(errors.p95_n, 9, 4),
+               loaded ? percentage(errors.rms_relative, 1) : "-",
+               loaded ? percentage(errors.p95_relative, 1) : "-");
+  }
+  print_resultants(resultants, false);
+  fmt::print("\n95 %: the 95th percentile over sensels. Worst: the largest error of a frame or contact.\n");
+  if (!coverage) return;
+  fmt::print("Truths within 1.96 deviations: {:.1f}% of {} loaded sensels without a flag\n",
+             100 * coverage->share(), grouped(coverage->sensels));
 }
 
 void print_coverage(const Coverage& coverage) {
@@ -205,10 +271,11 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   }
   const Skin& skin = recording.skin();
   const ForceFileInfo& info = forces.info();
-  if (info.rows != skin.element_rows() || info.cols != skin.element_cols()) {
+  if (info.layout != skin.layout || info.rows != skin.element_rows() || info.cols != skin.element_cols()) {
     throw Error(options.forces,
-                fmt::format("it has {} x {} pillars and {} has {} x {}", info.rows, info.cols,
-                            options.recording, skin.element_rows(), skin.element_cols()),
+                fmt::format("it has {} x {} {} and {} has {} x {} {}", info.rows, info.cols,
+                            name_of(info.layout), options.recording, skin.element_rows(),
+                            skin.element_cols(), name_of(skin.layout)),
                 "give the recording that these forces were solved from");
   }
   if (info.part) {
@@ -240,21 +307,36 @@ void compare(const CompareOptions& options) {
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
   ResultantComparison resultants(info.element_pitch_mm);
+  const bool has_pillars = info.layout == SkinLayout::pillars;
   std::optional<Coverage> coverage;
-  if (info.uncertainty) coverage.emplace();
+  std::optional<SenselCoverage> sensel_coverage;
+  if (info.uncertainty && has_pillars) coverage.emplace();
+  if (info.uncertainty && !has_pillars) sensel_coverage.emplace();
   {
     Progress progress("Comparing", frames, options.quiet);
     for (std::uint64_t index = 0; index < frames; ++index) {
       stop_if_interrupted(index, options.forces);
       forces.read(index, solved);
       recording->read_truth(first + index, truth);
+      if (sensel_coverage) sensel_coverage->add(solved, truth);
+      if (!has_pillars) {
+        // The comparison of vectors, whose shear is exact.
+        for (ForceField* field : {&solved, &truth}) {
+          field->shear_x.assign(field->elements(), 0);
+          field->shear_y.assign(field->elements(), 0);
+        }
+      }
       comparison.add(solved.view(), truth.view());
       resultants.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
   }
-  const std::vector<Row> rows = rows_of(comparison);
+  const std::vector<Row> rows = rows_of(comparison, info.layout);
+  if (!has_pillars) {
+    if (options.json) return print_sensel_json(rows, resultants, sensel_coverage, frames);
+    return print_sensel_text(rows, resultants, sensel_coverage, frames, options);
+  }
   if (options.json) {
     print_json(rows, resultants, coverage, frames);
   } else {

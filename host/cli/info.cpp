@@ -102,8 +102,11 @@ void add_surface(Json& facts, const std::optional<Surface>& surface) {
 void add_skin(Json& facts, const Skin& skin) {
   facts["sensel_rows"] = skin.rows;
   facts["sensel_cols"] = skin.cols;
-  facts["pillar_rows"] = skin.pillar_rows();
-  facts["pillar_cols"] = skin.pillar_cols();
+  facts["layout"] = name_of(skin.layout);
+  if (skin.has_pillars()) {
+    facts["pillar_rows"] = skin.pillar_rows();
+    facts["pillar_cols"] = skin.pillar_cols();
+  }
   facts["sensel_pitch_mm"] = skin.sensel_pitch_mm;
   facts["counts_per_newton"] = skin.counts_per_newton;
   facts["threshold_counts"] = skin.threshold_counts;
@@ -136,16 +139,18 @@ Json facts_of_forces(const std::string& file, const InfoOptions& options) {
   const ForceFileInfo& info = reader.info();
   Json facts = {{"format", "force field"},
                 {"frames", reader.frames()},
-                {"pillar_rows", info.rows},
-                {"pillar_cols", info.cols},
-                {"pillar_pitch_mm", info.element_pitch_mm},
-                {"estimator", info.estimator},
+                {"layout", name_of(info.layout)}};
+  const std::string element = info.layout == SkinLayout::pillars ? "pillar" : "sensel";
+  facts[element + "_rows"] = info.rows;
+  facts[element + "_cols"] = info.cols;
+  facts[element + "_pitch_mm"] = info.element_pitch_mm;
+  facts.update({{"estimator", info.estimator},
                 {"device", info.device},
                 {"source", info.source},
                 {"angles", info.angles},
                 {"uncertainty", info.uncertainty},
                 {"contacts", info.contacts.has_value()},
-                {"warnings", reader.warnings()}};
+                {"warnings", reader.warnings()}});
   if (info.segment_point) facts["segment_point"] = *info.segment_point;
   add_surface(facts, info.surface);
   if (info.part) {

@@ -36,11 +36,12 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
   if (options.quiet) return;
   const double millimetres = skin.sensel_pitch_mm;
   fmt::print(
-      "Simulated '{}': {} at {} Hz of {} x {} sensels ({:.0f} x {:.0f} mm, {} pillars) "
-      "in {:.2f} s\nWrote {} with the true force of every pillar\n",
+      "Simulated '{}': {} at {} Hz of {} x {} sensels ({:.0f} x {:.0f} mm, {}) "
+      "in {:.2f} s\nWrote {} with the true force of every {}\n",
       printable(scene.title), counted(scene.frames, "frame"), rounded(scene.rate_hz), skin.rows,
-      skin.cols, skin.cols * millimetres, skin.rows * millimetres, grouped(skin.pillars()), seconds,
-      printable(options.output));
+      skin.cols, skin.cols * millimetres, skin.rows * millimetres,
+      skin.has_pillars() ? grouped(skin.pillars()) + " pillars" : "no pillars", seconds,
+      printable(options.output), skin.has_pillars() ? "pillar" : "sensel");
 }
 
 /// Files that a scene names.

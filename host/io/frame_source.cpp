@@ -14,6 +14,7 @@ namespace pillarfield {
 SourceFormat tekscan_format();
 SourceFormat npy_format();
 SourceFormat npz_format();
+SourceFormat mat_format();
 SourceFormat table_format();
 
 namespace {
@@ -35,7 +36,8 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
 }  // namespace
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format(), npy_format(), npz_format(), table_format()};
+  static const std::array formats = {tekscan_format(), npy_format(), npz_format(), mat_format(),
+                                     table_format()};
   return formats;
 }
 

@@ -31,7 +31,7 @@ class Recording(_core.FrameSource):
     float32 counts.
 
     trust: the file comes from your own programs, so it is not examined first
-    dataset, times: names of the arrays of frames and times in an HDF5 file or .npz archive
+    dataset, times: names of the arrays of frames and times in an HDF5 file, .npz archive or .mat file
     frame_size: (R, C) of frames that lie in one line of a table or array
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none

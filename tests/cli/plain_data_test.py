@@ -1,7 +1,9 @@
-"""Plain data: .npy, .npz, tables of numbers and HDF5 datasets give the forces of the same recording."""
+"""Plain data: .npy, .npz, .mat, tables of numbers and HDF5 datasets give the forces of the same recording."""
 
 import itertools
+import struct
 import unittest
+import zlib
 
 import h5py
 import numpy as np
@@ -161,6 +163,34 @@ class PlainData(CommandTest):
         self.assert_solved(path, "--shape", "6x8")
         np.savetxt(path, frames.reshape(5, -1), delimiter="\t", fmt="%d")
         self.assert_solved(path, "--shape", "6x8", "--rate", 100)
+
+    def test_tables_of_row_numbers_and_times(self):
+        frames, path = readings().reshape(5, -1), self.path("table.csv")
+        header = "," + ",".join(str(column) for column in range(48))
+        stamps = [f"2024-05-01 12:00:00.{10 * n:03}000" for n in range(5)]
+        for index, times, rate in ((range(5), np.arange(5) / 100, ("--rate", 100)),
+                                   (stamps, 1714564800 + np.arange(5) / 100, ())):
+            lines = [f"{n}," + ",".join(map(str, frame)) for n, frame in zip(index, frames)]
+            path.write_text("\n".join([header, *lines, ""]))
+            self.assert_solved(path, "--shape", "6x8", *rate, times=times)
+
+    def test_matlab_files(self):
+        """Bytes of a file that MATLAB's manual describes: a cell of a double, stored as uint16."""
+        def element(kind, data):
+            return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+        def matrix(kind, shape, name, content):
+            return element(14, element(6, struct.pack("<II", kind, 0)) + element(5, struct.pack(f"<{len(shape)}i", *shape))
+                           + element(1, name) + content)
+
+        numbers = element(4, readings("<u2").transpose(1, 2, 0).tobytes("F"))
+        variable = zlib.compress(matrix(1, (1, 1), b"pads", matrix(6, (6, 8, 5), b"", numbers)))
+        head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4d49)
+        path = self.path("pads.mat")
+        path.write_bytes(head + struct.pack("<II", 15, len(variable)) + variable)
+        for dataset in ((), ("--dataset", "pads{1}")):
+            self.assert_solved(path, "--rate", 100, "--axes", "rows,columns,frames", *dataset)
+        self.assert_fails("solve", path, "-o", self.path("f.h5"), "--dataset", "pads", names=["it has pads{1}"])
 
     def test_a_recording_without_times(self):
         with h5py.File(self.recording, "r+") as file:

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 
 #include "pillarfield/recording.h"
+#include "tests/io/all_readings.h"
 #include "tests/io/damage.h"
 
 // The corpus of fuzz/ holds plain data written by NumPy and h5py; tests/cli/plain_data_test.py
@@ -18,24 +21,30 @@ const std::filesystem::path kPlainFiles =
 
 ReadOptions untimed() { return {.untimed = true}; }
 
-/// The readings of all frames as floats.
-std::vector<float> all_readings(FrameSource& source) {
-  std::vector<float> all;
-  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+/// Frames of two rows and two columns.
+ReadOptions square() { return {.frame_size = FrameSize{2, 2}}; }
+
+std::vector<double> times_of(FrameSource& source) {
+  std::vector<double> times_s;
   for (std::uint64_t index = 0; index < source.frames(); ++index) {
-    source.read(index, frame);
-    const auto append = [&](const auto& readings) {
-      for (const auto reading : readings) all.push_back(static_cast<float>(reading));
-    };
-    if (source.sensel_type() == SenselType::u8) append(frame.readings<std::uint8_t>());
-    if (source.sensel_type() == SenselType::u16) append(frame.readings<std::uint16_t>());
-    if (source.sensel_type() == SenselType::f32) append(frame.readings<float>());
+    times_s.push_back(source.time(index));
   }
-  return all;
+  return times_s;
 }
 
 class PlainTable : public testing::Test {
  protected:
+  /// Two frames of the readings 1 to 8 at these times.
+  void expect_two_frames(const std::string& text, std::vector<double> times_s,
+                         const ReadOptions& options = square()) {
+    SCOPED_TRACE(text);
+    const auto source = open(text, options);
+    EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
+    EXPECT_EQ(source->sensel_type(), SenselType::u16);
+    EXPECT_EQ(source->frames(), 2);
+    EXPECT_EQ(times_of(*source), times_s);
+  }
+
   std::unique_ptr<FrameSource> open(const std::string& text,
                                     const ReadOptions& options = untimed()) {
     write_bytes(path_, text);
@@ -110,11 +119,114 @@ TEST_F(PlainTable, AFrameMayLieInALineAfterItsTime) {
   EXPECT_EQ(all_readings(*timed)[4], 5);
 }
 
+TEST_F(PlainTable, RowNumbersOfPandasAreNoReadings) {
+  ReadOptions rated = square();
+  rated.rate_hz = 2;
+  for (const char* const text :
+       {",0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n", ",a,b,c,d\n10,1,2,3,4\n13,5,6,7,8\n",
+        ";0;1;2;3\r\n0;1;2;3;4\r\n1;5;6;7;8\r\n", "index,0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n",
+        "Unnamed: 0,0,1,2,3\n0,1,2,3,4\n1,5,6,7,8\n",
+        "\"\",\"0\",\"1\",\"2\",\"3\"\n\"0\",1,2,3,4\n\"1\",5,6,7,8\n"}) {
+    expect_two_frames(text, {0, 0.5}, rated);
+    EXPECT_TRUE(has_all(refused(text, square()), {"no times"}));
+  }
+  const auto rows = open(",0,1\n0,1,2\n1,3,4\n");
+  EXPECT_EQ(all_readings(*rows), (std::vector<float>{1, 2, 3, 4}));
+  ReadOptions blocks;
+  blocks.rate_hz = 2;
+  expect_two_frames(",0,1\n0,1,2\n1,3,4\n\n,0,1\n0,5,6\n1,7,8\n", {0, 0.5}, blocks);
+  expect_two_frames(",0,1\n0,1,2\n1,3,4\n2,5,6\n3,7,8\n", {0, 0.5}, rated);
+}
+
+TEST_F(PlainTable, IsoTimesAreSecondsSince1970) {
+  constexpr double kFirst = 1714564800;  // 2024-05-01 12:00:00 UTC
+  const std::vector<double> times_s = {kFirst, kFirst + 0.002};
+  for (const char* const text :
+       {"2024-05-01 12:00:00,1,2,3,4\n2024-05-01 12:00:00.002,5,6,7,8\n",
+        "2024-05-01T12:00:00Z;1;2;3;4\n2024-05-01T12:00:00.002Z;5;6;7;8\n",
+        ",0,1,2,3\n2024-05-01 12:00:00.000000,1,2,3,4\n2024-05-01 12:00:00.002000,5,6,7,8\n",
+        "time,0,1,2,3\n2024-05-01T14:00:00+02:00,1,2,3,4\n2024-05-01T14:00:00.002+02:00,5,6,7,8\n",
+        "0,2024-05-01 05:30:00-0630,1,2,3,4\n1,2024-05-01 05:30:00.002-0630,5,6,7,8\n",
+        ",stamp,a,b,c,d\n0,2024-05-01 12:00:00,1,2,3,4\n1,2024-05-01 12:00:00.002,5,6,7,8\n",
+        "2024-05-01 12:00:00 1 2 3 4\n2024-05-01 12:00:00.002 5 6 7 8\n",
+        "2024-05-01T12:00:00+00\t1\t2\t3\t4\n2024-05-01T12:00:00,002\t5\t6\t7\t8\n",
+        "\"date\",\"a\",\"b\",\"c\",\"d\"\n\"2024-05-01 12:00\",1,2,3,4\n"
+        "\"2024-05-01 12:00:00.002\",5,6,7,8\n"}) {
+    expect_two_frames(text, times_s);
+  }
+  ReadOptions blocks;
+  expect_two_frames(
+      "time,a,b\n2024-05-01 12:00:00,1,2\n2024-05-01 12:00:00,3,4\n\n"
+      "2024-05-01 12:00:00.002,5,6\n2024-05-01 12:00:00.002,7,8\n",
+      times_s, blocks);
+  const auto times_of_days = times_of(*open(
+      "1969-12-31 23:59:59,1,2,3,4\n2000-02-29 00:00:00,1,2,3,4\n2016-12-31 23:59:60,1,2,3,4\n",
+      square()));
+  EXPECT_EQ(times_of_days, (std::vector<double>{-1, 951782400, 1483228800}));
+}
+
+TEST_F(PlainTable, AColumnOfTimesHasItsUnit) {
+  const auto with_times = [](const char* name, const char* first, const char* second) {
+    return fmt::format("{},a,b,c,d\n{},1,2,3,4\n{},5,6,7,8\n", name, first, second);
+  };
+  const std::vector<double> times_s = {0.5, 0.75};
+  for (const char* const name : {"time", "Timestamp", "t", "time_s", "Time (s)", ""}) {
+    expect_two_frames(with_times(name, "0.5", "0.75"), times_s);
+  }
+  for (const char* const name : {"time_ms", "Time [ms]", "t (ms)", "timestamp.ms"}) {
+    expect_two_frames(with_times(name, "500", "750"), times_s);
+  }
+  expect_two_frames(with_times("time_us", "500000", "750000"), times_s);
+  expect_two_frames("time,0,1,2,3\n0.5,1,2,3,4\n0.75,5,6,7,8\n", times_s);
+  expect_two_frames(",time,0,1,2,3\n0,0.5,1,2,3,4\n1,0.75,5,6,7,8\n", times_s);
+  expect_two_frames("time,frame,a,b,c,d\n0.5,0,1,2,3,4\n0.75,1,5,6,7,8\n", times_s);
+  expect_two_frames("time,a,b\n0.5,1,2\n0.5,3,4\n\n0.75,5,6\n0.75,7,8\n", times_s, {});
+  expect_two_frames("time,a,b\n0.5,1,2\n0.6,3,4\n0.75,5,6\n0.8,7,8\n", times_s);
+  const auto warned = [&](const char* first, const char* second, const std::string& words) {
+    const auto source = open(with_times("time", first, second), square());
+    EXPECT_EQ(std::ranges::count_if(source->warnings(),
+                                    [&](const std::string& warning) {
+                                      return warning.find(words) != std::string::npos;
+                                    }),
+              1)
+        << words;
+    return source->time(1) - source->time(0);
+  };
+  EXPECT_NEAR(warned("1714564800000", "1714564800002", "milliseconds since 1970"), 0.002, 1e-6);
+  EXPECT_NEAR(warned("1714564800000000000", "1714564800002000000", "nanoseconds"), 0.002, 1e-6);
+  EXPECT_EQ(warned("0", "66", "66 s apart"), 66);
+}
+
+TEST_F(PlainTable, AMissingLastReadingIsNoSeparator) {
+  for (const char* const text :
+       {"t,a,b,c,d\n0.5,1,2,3,\n0.75,5,,7,8\n", "t,a,b,c,d,\n0.5,1,2,3,NaN,\n0.75,5,nan,7,8,\n"}) {
+    SCOPED_TRACE(text);
+    const auto readings = all_readings(*open(text, square()));
+    ASSERT_EQ(readings.size(), 8);
+    EXPECT_TRUE(std::isnan(readings[3]) && std::isnan(readings[5]));
+    EXPECT_EQ(readings[7], 8);
+  }
+  EXPECT_TRUE(std::isnan(all_readings(*open("1,2,3,\n", square()))[3]));
+  EXPECT_EQ(all_readings(*open("1,2,3,4,\n", square())), (std::vector<float>{1, 2, 3, 4}));
+}
+
+TEST_F(PlainTable, TimesThatAreNoneNameTheirLine) {
+  const std::string first = "2024-05-01 12:00:00,1,2,3,4\n";
+  for (const char* const time :
+       {"12", "", "2024-05-01", "2024-13-01 12:00:00", "2023-02-29 12:00:00", "2024-05-01 24:00:00",
+        "2024-05-01 12:60:00", "2024-05-01 12:00:61", "2024-05-01 12:00:00.",
+        "2024-05-01 12:00:00x", "2024-05-01 12:00:00+2"}) {
+    EXPECT_TRUE(has_all(refused(first + time + ",5,6,7,8\n", square()),
+                        {"table.csv:2", "in column 1 is not a time"}));
+  }
+  EXPECT_TRUE(has_all(refused(first + first, square()), {"frame 1 has the time"}));
+  EXPECT_TRUE(has_all(refused("time,a,b\n0,1,2\n1,3,4\n"), {"a time in each line", "--shape"}));
+}
+
 TEST_F(PlainTable, MistakesNameTheirLine) {
   const ReadOptions shape = {.frame_size = FrameSize{2, 2}, .untimed = true};
   EXPECT_TRUE(has_all(refused("1,2\n3\n"), {"table.csv:2", "has 1 numbers", "2"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,x\n"), {"table.csv:2", "'x' in column 2"}));
-  EXPECT_TRUE(has_all(refused(",0,1\n0,5,6\n1,7,8\n"), {"empty cell", "without index"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n\n5,6\n"), {"a frame of 1 rows", "2"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n5,6\n", shape), {"holds 3 rows"}));
   EXPECT_TRUE(has_all(refused("1,2,3\n", shape), {"has 3 numbers", "2 x 2 needs 4"}));

@@ -80,7 +80,7 @@ void add_solve(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   input.file(
       "INPUT", options->input,
-      "Recording (HDF5), Tekscan ASCII export, or plain data: .npy, .npz, CSV, HDF5 dataset");
+      "Recording (HDF5), Tekscan ASCII export, or plain data: .npy, .npz, .mat, CSV, HDF5 dataset");
   add_tare_frames(command, options->plan.read);
   add_plain_data(command, options->plan.read, true);
   Group(command, "Output")

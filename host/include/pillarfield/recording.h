@@ -49,10 +49,10 @@ class FrameSource {
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
 };
 
-/// Opens a recording (HDF5), a Tekscan ASCII export or plain data (docs/formats.md): .npy, .npz, a
-/// table of numbers, an HDF5 dataset. The content decides, not the name. If its writer was killed
-/// or still writes, a recording has the frames flushed so far. Frames are read on demand, except
-/// those of text files and compressed arrays. Throws Error if the file is none of these, is
+/// Opens a recording (HDF5), a Tekscan ASCII export or plain data (docs/formats.md): .npy, .npz,
+/// .mat, a table of numbers, an HDF5 dataset. The content decides, not the name. If its writer was
+/// killed or still writes, a recording has the frames flushed so far. Frames are read on demand,
+/// except those of text files and compressed arrays. Throws Error if the file is none of these, is
 /// damaged, holds values out of range or times that do not rise, or contradicts the options.
 [[nodiscard]] std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
                                                        const ReadOptions& options = {});

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/npy.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -43,6 +44,27 @@ class ArrayInMemory final : public NumberArray {
 
  private:
   std::vector<std::byte> numbers_;
+};
+
+class ArrayInFile final : public NumberArray {
+ public:
+  ArrayInFile(InputFile file, std::uint64_t at, bool is_swapped, std::string place, NumberType type,
+              std::vector<std::uint64_t> shape)
+      : NumberArray(std::move(place), type, std::move(shape)),
+        file_(std::move(file)),
+        at_(at),
+        is_swapped_(is_swapped) {}
+
+  void read(std::uint64_t first, std::uint64_t count, std::byte* numbers) override {
+    const std::size_t bytes = count * slice_bytes();
+    file_.read(at_ + first * slice_bytes(), {numbers, bytes});
+    if (is_swapped_) swap_bytes(numbers, bytes / type().bytes, type().bytes);
+  }
+
+ private:
+  InputFile file_;
+  std::uint64_t at_;
+  bool is_swapped_;
 };
 
 }  // namespace
@@ -91,6 +113,13 @@ std::unique_ptr<NumberArray> array_in_memory(std::string place, NumberType type,
                                              std::vector<std::byte> numbers) {
   return std::make_unique<ArrayInMemory>(std::move(place), type, std::move(shape),
                                          std::move(numbers));
+}
+
+std::unique_ptr<NumberArray> array_in_file(InputFile file, std::uint64_t at, bool is_swapped,
+                                           std::string place, NumberType type,
+                                           std::vector<std::uint64_t> shape) {
+  return std::make_unique<ArrayInFile>(std::move(file), at, is_swapped, std::move(place), type,
+                                       std::move(shape));
 }
 
 }  // namespace pillarfield

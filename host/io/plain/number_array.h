@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/input_file.h"
 #include "base/number_type.h"
 #include "pillarfield/skin.h"
 
@@ -57,5 +58,12 @@ class NumberArray {
 [[nodiscard]] std::unique_ptr<NumberArray> array_in_memory(std::string place, NumberType type,
                                                            std::vector<std::uint64_t> shape,
                                                            std::vector<std::byte> numbers);
+
+/// An array whose numbers follow each other from byte `at` of a file on; they are read when they
+/// are asked for. With `is_swapped`, their byte order is not that of the host.
+[[nodiscard]] std::unique_ptr<NumberArray> array_in_file(InputFile file, std::uint64_t at,
+                                                         bool is_swapped, std::string place,
+                                                         NumberType type,
+                                                         std::vector<std::uint64_t> shape);
 
 }  // namespace pillarfield

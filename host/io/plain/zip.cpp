@@ -7,6 +7,7 @@
 #include <array>
 #include <string_view>
 
+#include "io/plain/inflater.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -129,57 +130,12 @@ void check_member(const InputFile& archive, const ZipMember& member, std::uint64
   }
 }
 
-/// Runs zlib on a member's data.
-class Inflater {
- public:
-  Inflater(const InputFile& archive, const ZipMember& member) : archive_(archive), member_(member) {
-    constexpr int kWithoutHeader = -15;
-    if (inflateInit2(&stream_, kWithoutHeader) != Z_OK) throw std::bad_alloc();
-  }
-  ~Inflater() { inflateEnd(&stream_); }
-  Inflater(const Inflater&) = delete;
-  Inflater& operator=(const Inflater&) = delete;
-
-  /// Fills `bytes` and returns how many of them there are.
-  std::size_t read(std::span<std::byte> bytes) {
-    const std::size_t wanted = bytes.size();
-    while (!bytes.empty() && !has_ended_) {
-      if (stream_.avail_in == 0) fill();
-      const auto room = static_cast<uInt>(std::min<std::size_t>(bytes.size(), 1U << 30U));
-      stream_.next_out = reinterpret_cast<Bytef*>(bytes.data());
-      stream_.avail_out = room;
-      const int result = inflate_step();
-      bytes = bytes.subspan(room - stream_.avail_out);
-      if (result == Z_STREAM_END) has_ended_ = true;
-      const bool is_stuck =
-          result == Z_BUF_ERROR && stream_.avail_in == 0 && read_ == member_.stored_bytes;
-      if (is_stuck || (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR)) {
-        throw Error(fmt::format("{}: {:.60}", archive_.path().string(), member_.name),
-                    "cannot be decompressed", kDamagedArchive);
-      }
-    }
-    return wanted - bytes.size();
-  }
-
- private:
-  int inflate_step() { return ::inflate(&stream_, Z_NO_FLUSH); }
-
-  void fill() {
-    const std::uint64_t count =
-        std::min<std::uint64_t>(input_.size(), member_.stored_bytes - read_);
-    archive_.read(member_.data + read_, std::span(input_).first(count));
-    read_ += count;
-    stream_.next_in = reinterpret_cast<Bytef*>(input_.data());
-    stream_.avail_in = static_cast<uInt>(count);
-  }
-
-  const InputFile& archive_;
-  const ZipMember& member_;
-  z_stream stream_ = {};
-  std::vector<std::byte> input_ = std::vector<std::byte>(64U << 10U);
-  std::uint64_t read_ = 0;
-  bool has_ended_ = false;
-};
+Inflater inflater_of(const InputFile& archive, const ZipMember& member) {
+  return {archive,
+          {.at = member.data, .bytes = member.stored_bytes},
+          fmt::format("{}: {:.60}", archive.path().string(), member.name),
+          kDamagedArchive};
+}
 
 }  // namespace
 
@@ -216,12 +172,11 @@ std::string head_of(const InputFile& archive, const ZipMember& member, std::size
     return archive.text_at(member.data, std::min<std::uint64_t>(count, member.bytes));
   }
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(count, member.bytes)), '\0');
-  head.resize(Inflater(archive, member).read(std::as_writable_bytes(std::span(head))));
+  head.resize(inflater_of(archive, member).read(std::as_writable_bytes(std::span(head))));
   return head;
 }
 
 std::vector<std::byte> inflate(const InputFile& archive, const ZipMember& member) {
-  constexpr std::uint64_t kMostRatio = 1032;  // of deflate
   const std::string place = fmt::format("{}: {:.60}", archive.path().string(), member.name);
   if (member.bytes > kMostInflatedBytes) {
     throw Error(place,
@@ -229,12 +184,12 @@ std::vector<std::byte> inflate(const InputFile& archive, const ZipMember& member
                             member.bytes, kMostInflatedBytes),
                 "save it uncompressed, with numpy.savez");
   }
-  if (member.bytes / kMostRatio > member.stored_bytes) {
+  if (member.bytes / kMostDeflateRatio > member.stored_bytes) {
     throw Error(place, "is smaller than any compression makes it", kDamagedArchive);
   }
   // One byte more, so that too long a member is noticed.
   std::vector<std::byte> bytes(member.bytes + 1);
-  const std::size_t found = Inflater(archive, member).read(bytes);
+  const std::size_t found = inflater_of(archive, member).read(bytes);
   bytes.resize(member.bytes);
   uLong checksum = crc32(0, nullptr, 0);
   checksum = crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());

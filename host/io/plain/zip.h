@@ -19,9 +19,6 @@ struct ZipMember {
   std::uint64_t data = 0;          ///< offset in the archive
 };
 
-/// Largest deflated member that is read, uncompressed bytes.
-inline constexpr std::uint64_t kMostInflatedBytes = std::uint64_t{1} << 30;
-
 /// Lists the stored and deflated members of a ZIP archive (APPNOTE.TXT of PKWARE, version 6.3), in
 /// 64-bit form too. Throws Error if it is damaged, encrypted, or a member lies outside the file.
 [[nodiscard]] std::vector<ZipMember> list_zip(const InputFile& archive);

@@ -1,0 +1,334 @@
+#include "pillarfield/array_axes.h"
+#include "pillarfield/recording.h"
+#include "tests/io/all_readings.h"
+#include "tests/io/damage.h"
+#include "tests/io/mat_bytes.h"
+
+namespace pillarfield {
+namespace {
+
+// NOLINTNEXTLINE(google-build-using-namespace): tests of these files
+using namespace io_test;
+
+/// Reading of frame, row and column, from 0 to 119.
+int mat_reading(int frame, int row, int column) { return 30 * frame + 7 * row + column; }
+
+constexpr int kMatFrames = 3;
+constexpr int kMatRows = 4;
+constexpr int kMatColumns = 6;
+
+/// The readings with the axes in the order of MATLAB's size(): the first varies fastest.
+template <class Number>
+std::vector<Number> by_columns(const std::vector<ArrayAxis>& axes) {
+  const auto size = [](ArrayAxis axis) {
+    return axis == ArrayAxis::frames ? kMatFrames
+           : axis == ArrayAxis::rows ? kMatRows
+                                     : kMatColumns;
+  };
+  std::vector<Number> values;
+  std::array<int, 3> at{};  // frame, row, column
+  const auto index = [&](std::size_t axis) -> int& {
+    return at[static_cast<std::size_t>(axes[axis])];
+  };
+  for (index(2) = 0; index(2) < size(axes[2]); ++index(2)) {
+    for (index(1) = 0; index(1) < size(axes[1]); ++index(1)) {
+      for (index(0) = 0; index(0) < size(axes[0]); ++index(0)) {
+        values.push_back(static_cast<Number>(mat_reading(at[0], at[1], at[2])));
+      }
+    }
+  }
+  return values;
+}
+
+std::vector<float> expected_readings() {
+  std::vector<float> expected;
+  for (int frame = 0; frame < kMatFrames; ++frame) {
+    for (int row = 0; row < kMatRows; ++row) {
+      for (int column = 0; column < kMatColumns; ++column) {
+        expected.push_back(static_cast<float>(mat_reading(frame, row, column)));
+      }
+    }
+  }
+  return expected;
+}
+
+const std::vector<ArrayAxis> kTimeLastAxes = {ArrayAxis::rows, ArrayAxis::columns,
+                                              ArrayAxis::frames};
+const std::vector<std::int32_t> kTimeLastShape = {kMatRows, kMatColumns, kMatFrames};
+
+ReadOptions time_last(const std::string& dataset = {}) {
+  return {.dataset = dataset, .axes = kTimeLastAxes, .untimed = true};
+}
+
+class MatFileTest : public testing::TestWithParam<std::endian> {
+ protected:
+  std::unique_ptr<FrameSource> open(const std::string& variables,
+                                    const ReadOptions& options = time_last()) {
+    write_bytes(path_, bytes_.header() + variables);
+    return open_frames(path_, options);
+  }
+  std::string refused(const std::string& variables, const ReadOptions& options = time_last()) {
+    return error_of([&] { (void)open(variables, options); });
+  }
+
+  template <class Number>
+  std::string pad(const std::string& name, MxClass kind = MxClass::real64) {
+    return bytes_.array(kind, kTimeLastShape, name, by_columns<Number>(kTimeLastAxes));
+  }
+
+  template <class Number>
+  void expect_read(MxClass kind, SenselType type) {
+    const std::string variable = pad<Number>("raw", kind);
+    for (const std::string& stored : {variable, bytes_.compressed(variable)}) {
+      SCOPED_TRACE(testing::Message() << "class " << static_cast<int>(kind) << ", type "
+                                      << mi_type<Number>() << ", " << stored.size() << " bytes");
+      const auto source = open(stored);
+      EXPECT_EQ(source->sensel_type(), type);
+      EXPECT_EQ(source->frames(), kMatFrames);
+      EXPECT_EQ(all_readings(*source), expected_readings());
+    }
+  }
+
+  TemporaryDirectory directory_;
+  std::filesystem::path path_ = directory_ / "pads.mat";
+  MatBytes bytes_{GetParam()};
+};
+
+INSTANTIATE_TEST_SUITE_P(Orders, MatFileTest,
+                         testing::Values(std::endian::little, std::endian::big),
+                         [](const auto& order) {
+                           return order.param == std::endian::little ? "Little" : "Big";
+                         });
+
+TEST_P(MatFileTest, EveryClassIsRead) {
+  using enum SenselType;
+  expect_read<std::uint8_t>(MxClass::uint8, u8);
+  expect_read<std::int8_t>(MxClass::int8, f32);
+  expect_read<std::uint16_t>(MxClass::uint16, u16);
+  expect_read<std::int16_t>(MxClass::int16, f32);
+  expect_read<std::uint32_t>(MxClass::uint32, f32);
+  expect_read<std::int32_t>(MxClass::int32, f32);
+  expect_read<std::uint64_t>(MxClass::uint64, f32);
+  expect_read<std::int64_t>(MxClass::int64, f32);
+  expect_read<float>(MxClass::real32, f32);
+  expect_read<double>(MxClass::real64, f32);
+  // MATLAB stores whole numbers in the shortest type.
+  expect_read<std::uint8_t>(MxClass::real64, u8);
+  expect_read<std::uint16_t>(MxClass::real32, u16);
+  expect_read<std::int16_t>(MxClass::real64, f32);
+}
+
+TEST_P(MatFileTest, LogicalsAreZeroAndOne) {
+  const auto source = open(bytes_.array(MxClass::uint8, {2, 2}, "touched",
+                                        std::vector<std::uint8_t>{1, 0, 1, 1}, kMxLogical),
+                           {.axes = parse_axes("rows,columns")});
+  EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 1, 0, 1}));
+}
+
+TEST_P(MatFileTest, AxesAreInTheOrderOfMatlab) {
+  for (const char* const words :
+       {"frames,rows,columns", "rows,columns,frames", "columns,rows,frames", "rows,frames,columns",
+        "columns,frames,rows", "frames,columns,rows"}) {
+    SCOPED_TRACE(words);
+    const std::vector<ArrayAxis> axes = parse_axes(words);
+    std::vector<std::int32_t> shape;
+    for (const ArrayAxis axis : axes) {
+      shape.push_back(axis == ArrayAxis::frames ? kMatFrames
+                      : axis == ArrayAxis::rows ? kMatRows
+                                                : kMatColumns);
+    }
+    const std::string variable =
+        bytes_.array(MxClass::int16, shape, "raw", by_columns<std::int16_t>(axes));
+    for (const std::string& stored : {variable, bytes_.compressed(variable)}) {
+      EXPECT_EQ(all_readings(*open(stored, {.axes = axes, .untimed = true})), expected_readings());
+    }
+  }
+}
+
+TEST_P(MatFileTest, APlaneIsAFrameOrAFrameALine) {
+  std::vector<float> first = expected_readings();
+  first.resize(kMatRows * kMatColumns);
+  std::vector<std::uint8_t> plane;
+  std::vector<std::uint8_t> lines;
+  for (int column = 0; column < kMatColumns; ++column) {
+    for (int row = 0; row < kMatRows; ++row) {
+      plane.push_back(static_cast<std::uint8_t>(mat_reading(0, row, column)));
+    }
+  }
+  for (int sensel = 0; sensel < kMatRows * kMatColumns; ++sensel) {
+    for (int frame = 0; frame < kMatFrames; ++frame) {
+      lines.push_back(static_cast<std::uint8_t>(
+          mat_reading(frame, sensel / kMatColumns, sensel % kMatColumns)));
+    }
+  }
+  const auto frame = open(bytes_.array(MxClass::real64, {kMatRows, kMatColumns}, "raw", plane),
+                          {.axes = parse_axes("rows,columns")});
+  EXPECT_EQ(all_readings(*frame), first);
+  const std::string variable =
+      bytes_.array(MxClass::real64, {kMatFrames, kMatRows * kMatColumns}, "raw", lines);
+  const auto frames =
+      open(variable, {.frame_size = FrameSize{kMatRows, kMatColumns}, .untimed = true});
+  EXPECT_EQ(all_readings(*frames), expected_readings());
+}
+
+TEST_P(MatFileTest, TheOnlyArrayOfThreeAxesIsTakenAndTimeRead) {
+  const std::string others =
+      bytes_.array(MxClass::real64, {1, 1}, "k", std::vector<double>{3.5}) +
+      bytes_.array(MxClass::real64, {kMatFrames, 1}, "time", std::vector<double>{0, 0.5, 0.75}) +
+      bytes_.array(MxClass::real64, {1, kMatFrames}, "t", std::vector<std::uint8_t>{4, 6, 9}) +
+      bytes_.matrix(MxClass::text, {1, 2}, "note", bytes_.element(4, std::string(4, 'a'))) +
+      bytes_.array(MxClass::real64, {0, 0}, "none", std::vector<double>{}) +
+      bytes_.array(MxClass::real64, {2, 2}, "plane", std::vector<double>{1, 2, 3, 4});
+  const auto source =
+      open(others + bytes_.compressed(pad<std::uint8_t>("raw")), {.axes = kTimeLastAxes});
+  EXPECT_EQ(all_readings(*source), expected_readings());
+  EXPECT_EQ(source->time(2), 0.75);
+  const auto named = open(others + pad<float>("raw"), {.times = "t", .axes = kTimeLastAxes});
+  EXPECT_EQ(named->time(1), 6);
+  EXPECT_TRUE(has_all(refused(others + pad<float>("raw") + pad<float>("second")),
+                      {"pads.mat", "several arrays: raw, second", "--dataset"}));
+  EXPECT_TRUE(has_all(refused(others, time_last("raw")), {"no array 'raw'", "k, time, t, plane"}));
+  EXPECT_TRUE(has_all(refused(others, time_last("note")), {"note is a text"}));
+  EXPECT_TRUE(has_all(refused(others, time_last("k")), {"k: has the shape 1"}));
+}
+
+TEST_P(MatFileTest, CellsAndFieldsAreNamedAsInMatlab) {
+  std::string field_names =
+      std::string("raw") + std::string(5, '\0') + "mask" + std::string(4, '\0');
+  const std::string fields =
+      bytes_.numbers(std::vector<std::int32_t>{8}) + bytes_.element(1, field_names);
+  const std::string small =
+      bytes_.array(MxClass::real64, {2, 2}, "", std::vector<float>{1, 2, 3, 4});
+  const std::string cells = bytes_.matrix(MxClass::cell, {1, 3}, "pads",
+                                          small + bytes_.element(14, "") + pad<std::uint16_t>(""));
+  const std::string log =
+      bytes_.matrix(MxClass::structure, {1, 1}, "log", fields + pad<std::int8_t>("") + small);
+  const std::string logs = bytes_.matrix(MxClass::structure, {2, 1}, "logs",
+                                         fields + small + small + pad<float>("") + small);
+  const std::string nested = bytes_.matrix(
+      MxClass::cell, {1, 1}, "deep",
+      bytes_.matrix(MxClass::structure, {1, 1}, "", fields + pad<double>("") + small));
+  const std::string all = cells + bytes_.compressed(log) + logs + bytes_.compressed(nested);
+  for (const char* const name : {"pads{3}", "log.raw", "logs(2).raw", "deep{1}.raw"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(all_readings(*open(all, time_last(name))), expected_readings());
+  }
+  EXPECT_TRUE(has_all(refused(all), {"pads{3}, log.raw, logs(2).raw, deep{1}.raw"}));
+  EXPECT_EQ(all_readings(*open(bytes_.compressed(cells))), expected_readings());
+}
+
+TEST_P(MatFileTest, OtherValuesAreNamedWhereTheyAreAsked) {
+  const auto values = by_columns<double>(kTimeLastAxes);
+  const std::string two = bytes_.numbers(values) + bytes_.numbers(values);
+  const std::string index = bytes_.numbers(std::vector<std::int32_t>{0});
+  const std::string all =
+      bytes_.matrix(MxClass::real64, kTimeLastShape, "z", two, kMxComplex) +
+      bytes_.matrix(MxClass::sparse, {4, 4}, "s", index + index + bytes_.numbers(values)) +
+      bytes_.matrix(MxClass::object, {1, 1}, "o", bytes_.element(1, "thing"));
+  EXPECT_TRUE(has_all(refused(all, time_last("z")), {"z is complex"}));
+  EXPECT_TRUE(has_all(refused(all, time_last("s")), {"s is sparse"}));
+  EXPECT_TRUE(has_all(refused(all, time_last("o")), {"o is an object"}));
+  EXPECT_TRUE(has_all(refused(all), {"no array of frames", "z is complex", "s is sparse"}));
+  EXPECT_EQ(all_readings(*open(all + pad<double>("raw"))), expected_readings());
+}
+
+TEST_P(MatFileTest, HostileClaimsAreRefused) {
+  const std::vector<std::uint8_t> few(8);
+  const auto claimed = [&](const std::vector<std::int32_t>& shape) {
+    return bytes_.array(MxClass::uint8, shape, "raw", few);
+  };
+  for (const auto& shape :
+       std::vector<std::vector<std::int32_t>>{{2, 2, 3},
+                                              {2147483647, 2147483647, 2147483647},
+                                              {-1, 2, 4},
+                                              {1 << 16, 1 << 16, 1 << 16, 0}}) {
+    for (const std::string& stored : {claimed(shape), bytes_.compressed(claimed(shape))}) {
+      EXPECT_TRUE(has_all(refused(stored), {"pads.mat", "damaged or truncated"}));
+    }
+  }
+  const std::string endless = bytes_.matrix(MxClass::cell, {2147483647, 1}, "c", "");
+  EXPECT_TRUE(has_all(refused(endless), {"c has 2147483647 elements"}));
+  std::string deep = claimed({2, 4});
+  for (int depth = 0; depth < 30; ++depth) deep = bytes_.matrix(MxClass::cell, {1, 1}, "", deep);
+  deep = bytes_.matrix(MxClass::cell, {1, 1}, "c", deep);
+  EXPECT_TRUE(has_all(refused(bytes_.compressed(deep)), {"nested deeply"}));
+  std::string many;
+  for (int variable = 0; variable < 1001; ++variable) many += claimed({2, 4});
+  EXPECT_TRUE(has_all(refused(many), {"more than 1000 variables"}));
+  EXPECT_NE(refused(bytes_.number(std::uint32_t{15}) + bytes_.number(0xffffffffU)), "");
+  EXPECT_NE(refused(""), "");
+}
+
+TEST_P(MatFileTest, ACompressedVariableIsNoLargerThanItCanBe) {
+  const std::uint32_t length = 3U << 29U;
+  const std::string content = bytes_.number(std::uint32_t{2}) + bytes_.number(length);
+  const std::string variable =
+      bytes_.matrix(MxClass::uint8, {3, 1 << 14, 1 << 15}, "raw", content).substr(8);
+  const std::string tag = bytes_.number(std::uint32_t{14}) +
+                          bytes_.number(static_cast<std::uint32_t>(variable.size()) + length);
+  EXPECT_TRUE(has_all(refused(bytes_.compressed(tag + variable)), {"raw", "smaller than any"}));
+  EXPECT_TRUE(has_all(refused(tag + variable), {"ends within"}));
+}
+
+TEST_P(MatFileTest, AChangedByteOfACompressedVariableChangesNoReading) {
+  const std::string stored = bytes_.compressed(pad<std::uint8_t>("raw"));
+  for (std::size_t at = 10; at < stored.size(); ++at) {
+    SCOPED_TRACE(at);
+    std::string damaged = stored;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+    try {  // The last bits of the compressed bytes mean nothing.
+      EXPECT_EQ(all_readings(*open(damaged)), expected_readings());
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {"pads.mat"}));
+    }
+  }
+}
+
+TEST_P(MatFileTest, TruncatedAndChangedFilesEndInAnError) {
+  const std::string variable = pad<std::int16_t>("raw");
+  const auto read = [&](const auto& path) {
+    const auto source = open_frames(path, time_last());
+    if (source->skin().sensels() > 10000 || source->frames() > 1000) return;
+    (void)all_readings(*source);
+  };
+  for (const std::string& stored : {variable, bytes_.compressed(variable)}) {
+    const std::string whole = bytes_.header() + stored;
+    read_changed(path_, whole, 100, read);
+    for (std::size_t size = 0; size < whole.size(); size += 3) {
+      write_bytes(path_, whole.substr(0, size));
+      EXPECT_NE(error_of([&] { (void)open_frames(path_, time_last()); }), "") << size;
+    }
+  }
+}
+
+TEST(MatFile, Version4IsRefusedInWords) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "old.mat";
+  for (const std::endian order : {std::endian::little, std::endian::big}) {
+    const MatBytes bytes(order);
+    std::string old = bytes.number(std::uint32_t{order == std::endian::big ? 1000U : 0U});
+    for (const std::uint32_t word : {2U, 3U, 0U, 4U}) old += bytes.number(word);
+    old += std::string("raw\0", 4) + std::string(48, '\0');
+    write_bytes(path, old);
+    EXPECT_TRUE(
+        has_all(error_of([&] { (void)open_frames(path); }), {"old.mat", "version 4", "-v7"}));
+  }
+}
+
+/// A hand of Schunk that closes on a bottle: Drimus et al., Robotics and Autonomous Systems 2012;
+/// Madry et al., ICRA 2014.
+TEST(MatFile, ReadsARealRecordingAsItsCopyInNumPy) {
+  const std::filesystem::path folder = std::filesystem::path(PILLARFIELD_TEST_DATA) / "real";
+  if (!std::filesystem::exists(folder / "schunk_balsam.mat")) GTEST_SKIP();
+  for (const auto& [element, copy] : {std::pair("TS{1}", "schunk_balsam_proximal1.npy"),
+                                      std::pair("TS{2}", "schunk_balsam_distal1.npy")}) {
+    SCOPED_TRACE(element);
+    const auto read = open_frames(folder / "schunk_balsam.mat", time_last(element));
+    const auto expected = open_frames(folder / copy, {.untimed = true});
+    EXPECT_EQ(read->read_as(), expected->read_as());
+    EXPECT_EQ(all_readings(*read), all_readings(*expected));
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
