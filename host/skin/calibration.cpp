@@ -40,13 +40,19 @@ std::size_t count_absent(const Calibration& calibration) {
   return static_cast<std::size_t>(std::ranges::count(calibration.mask, kAbsent));
 }
 
+bool lacks_sensels(const Calibration& calibration, const Skin& skin, std::uint32_t row,
+                   std::uint32_t col) {
+  const auto is_absent = [&](std::size_t sensel) { return calibration.mask[sensel] == kAbsent; };
+  if (calibration.mask.empty()) return false;
+  if (!skin.has_pillars()) return is_absent(std::size_t{row} * skin.cols + col);
+  return std::ranges::all_of(pillar_sensels(skin, row, col), is_absent);
+}
+
 std::size_t count_absent_elements(const Calibration& calibration, const Skin& skin) {
-  if (!skin.has_pillars() || calibration.mask.empty()) return count_absent(calibration);
+  if (!skin.has_pillars()) return count_absent(calibration);
   std::size_t count = 0;
-  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
-    const bool absent = std::ranges::all_of(
-        sensels, [&](std::size_t i) { return calibration.mask[i] == kAbsent; });
-    if (absent) ++count;
+  for_each_pillar(skin, [&](auto row, auto col, const auto&) {
+    if (lacks_sensels(calibration, skin, row, col)) ++count;
   });
   return count;
 }

@@ -1,5 +1,5 @@
 /* The force on a sensel that is an element of its own, without a pillar: normal alone, V / k
- * (docs/derivations/direct_solve.md, section 7). */
+ * (docs/derivations/direct_solve.md, section 9). */
 
 /* Bits of its status byte: PF_STATUS_SENSEL_1 where it is usable, PF_STATUS_SATURATED, and
  * PF_STATUS_INCONSISTENT where it is missing but not absent. */

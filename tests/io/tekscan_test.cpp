@@ -342,7 +342,7 @@ TEST_F(Tekscan, ForcesOfAnInsoleArePressureTimesArea) {
   EXPECT_NEAR(std::accumulate(field.normal.begin(), field.normal.end(), 0.0), newtons,
               1e-5 * newtons);
   const auto quiet = static_cast<std::size_t>(std::ranges::count(field.status, 0));
-  EXPECT_EQ(quiet, count_pillars_without_sensels(plan.calibration, plan.skin));
+  EXPECT_EQ(quiet, count_absent_elements(plan.calibration, plan.skin));
   EXPECT_GT(quiet, 50U);
   EXPECT_EQ(quiet + static_cast<std::size_t>(std::ranges::count(field.status, status::kUsable)),
             field.elements());

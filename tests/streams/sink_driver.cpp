@@ -105,7 +105,7 @@ Recording record(const DriverOptions& options) {
   ForceFileInfo& info = recording.info.forces;
   info = {.rows = plan.skin.pillar_rows(),
           .cols = plan.skin.pillar_cols(),
-          .pillar_pitch_mm = plan.skin.pillar_pitch_mm(),
+          .element_pitch_mm = plan.skin.pillar_pitch_mm(),
           .estimator = name_of(plan.estimator),
           .device = "host",
           .source = "a scene",

@@ -54,6 +54,10 @@ struct Calibration {
   return calibration.mask.empty() || calibration.mask[sensel] == kGood;
 }
 
+/// Whether no sensel of an element, a pillar or a sensel by itself, exists.
+[[nodiscard]] bool lacks_sensels(const Calibration& calibration, const Skin& skin,
+                                 std::uint32_t row, std::uint32_t col);
+
 /// The number of elements none of whose sensels exists.
 [[nodiscard]] std::size_t count_absent_elements(const Calibration& calibration, const Skin& skin);
 
