@@ -49,9 +49,7 @@ py::dict render(const Simulator& simulator, std::uint64_t first, std::uint64_t c
 }
 
 SkinCalibration simulated_calibration(const Simulator& simulator) {
-  SkinCalibration calibration;
-  calibration.rows = simulator.scene().skin.rows;
-  calibration.cols = simulator.scene().skin.cols;
+  SkinCalibration calibration = blank_calibration(simulator.scene().skin);
   calibration.planes = simulator.calibration();
   return calibration;
 }

@@ -42,13 +42,11 @@ void require_presses(const SkinCalibration& before, std::span<const UniformPress
   }
 }
 
-/// The responses of all sensels; unresponsive for masked sensels and sensels outside pillars.
+/// The responses of all sensels; unresponsive for masked ones and those that no element has.
 std::vector<Response> fit_all(const ResponseFit& fit, const Skin& skin, const FindingList& found) {
   std::vector<Response> responses(skin.sensels());
-  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
-    for (const std::size_t i : sensels) {
-      if (found.good(i)) responses[i] = fit(i);
-    }
+  for_each_solved_sensel(skin, [&](std::size_t i) {
+    if (found.good(i)) responses[i] = fit(i);
   });
   return responses;
 }
@@ -60,11 +58,9 @@ SenselFault fault_of(Response::Kind kind) {
 
 void mask_unresponsive(const std::vector<Response>& responses, const Skin& skin,
                        FindingList& found) {
-  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
-    for (const std::size_t i : sensels) {
-      if (!found.good(i) || responses[i].kind == Response::Kind::good) continue;
-      found.mask(i, fault_of(responses[i].kind));
-    }
+  for_each_solved_sensel(skin, [&](std::size_t i) {
+    if (!found.good(i) || responses[i].kind == Response::Kind::good) return;
+    found.mask(i, fault_of(responses[i].kind));
   });
 }
 
@@ -189,6 +185,7 @@ double unevenness_of(const std::vector<Response>& responses, const Skin& skin,
 /// V = kN (1 + c) it is √2 times the mean contrast c of the sides; random differences cancel.
 double shear_of(const std::vector<Response>& responses, const Skin& skin,
                 const FindingList& found) {
+  if (!skin.has_pillars()) return 0;
   double pillars = 0;
   double right = 0;
   double up = 0;
@@ -272,8 +269,8 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   const std::size_t masked_before = skin.sensels() - found.count_good();
   const std::vector<Response> responses = fit_all(fit, skin, found);
   mask_unresponsive(responses, skin, found);
-  require_responses(found, 4 * skin.pillars() - std::min(4 * skin.pillars(), masked_before),
-                    last.name());
+  const std::size_t solved = skin.has_pillars() ? 4 * skin.pillars() : skin.sensels();
+  require_responses(found, solved - std::min(solved, masked_before), last.name());
   const ResponseSummary summary(responses, found);
   mask_unequal(responses, summary.median_newtons_per_count(), found);
 

@@ -12,21 +12,19 @@ HeldOutLevel compare(const ResponseFit& fit, const ResponseFit& all, double leve
                      const std::vector<std::uint8_t>& mask) {
   HeldOutLevel held;
   double count = 0;
-  for_each_pillar(all.presses().front().frames.skin(), [&](auto, auto, const auto& sensels) {
-    for (const std::size_t i : sensels) {
-      if (!mask.empty() && mask[i] != kGood) continue;
-      const Response fitted = fit(i);
-      if (fitted.kind != Response::Kind::good) continue;
-      for (const UniformPress& press : all.presses()) {
-        if (press.pressure_kpa != level) continue;
-        const auto response = all.response(press, i);
-        if (!response) continue;
-        const double force_n = all.force_n(press, i);
-        const double residual = fit.force_at(fitted, *response) - force_n;
-        held.force_n += force_n;
-        held.mean_square += residual * residual;
-        ++count;
-      }
+  for_each_solved_sensel(all.presses().front().frames.skin(), [&](std::size_t i) {
+    if (!mask.empty() && mask[i] != kGood) return;
+    const Response fitted = fit(i);
+    if (fitted.kind != Response::Kind::good) return;
+    for (const UniformPress& press : all.presses()) {
+      if (press.pressure_kpa != level) continue;
+      const auto response = all.response(press, i);
+      if (!response) continue;
+      const double force_n = all.force_n(press, i);
+      const double residual = fit.force_at(fitted, *response) - force_n;
+      held.force_n += force_n;
+      held.mean_square += residual * residual;
+      ++count;
     }
   });
   if (count > 0) held = {held.force_n / count, held.mean_square / count};

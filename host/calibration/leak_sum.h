@@ -31,8 +31,10 @@ namespace pillarfield {
                                             std::size_t sensel) {
   const std::size_t row = sensel / skin.cols;
   const std::size_t col = sensel % skin.cols;
-  const int at_row_edge = row == 0 || row + 1 == std::size_t{2} * skin.pillar_rows() ? 1 : 0;
-  const int at_col_edge = col == 0 || col + 1 == std::size_t{2} * skin.pillar_cols() ? 1 : 0;
+  const std::size_t solved_rows = skin.has_pillars() ? 2 * skin.pillar_rows() : skin.rows;
+  const std::size_t solved_cols = skin.has_pillars() ? 2 * skin.pillar_cols() : skin.cols;
+  const int at_row_edge = row == 0 || row + 1 == solved_rows ? 1 : 0;
+  const int at_col_edge = col == 0 || col + 1 == solved_cols ? 1 : 0;
   return sensel_leak_sum(effects, at_row_edge + at_col_edge);
 }
 

@@ -27,9 +27,7 @@ const std::vector<float>* LiveTare::add(const FrameView& frame, std::chrono::nan
 
 const std::vector<float>& LiveTare::finish() {
   const FrameStatistics unloaded = *std::exchange(statistics_, std::nullopt);
-  SkinCalibration before;
-  before.rows = skin_.rows;
-  before.cols = skin_.cols;
+  const SkinCalibration before = blank_calibration(skin_);
   static_cast<void>(take_tare(before, unloaded, {.preloaded = preloaded_}));  // Refuses a touch.
   tare_.clear();
   for (const SenselStatistics& sensel : unloaded.sensels()) {

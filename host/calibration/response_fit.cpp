@@ -197,7 +197,7 @@ ResponseFit::ResponseFit(std::span<const UniformPress> presses, const Calibratio
 
 double ResponseFit::force_n(const UniformPress& press, std::size_t sensel) const {
   const Skin& skin = press.frames.skin();
-  const double area_mm2 = skin.pillar_pitch_mm() * skin.pillar_pitch_mm();
+  const double area_mm2 = skin.element_pitch_mm() * skin.element_pitch_mm();
   return press.pressure_kpa * area_mm2 * kNewtonsPerKpaMm2 *
          leak_sum(planes_.effects, skin, sensel);
 }
@@ -302,15 +302,13 @@ std::optional<RespondingSensels> responding_sensels(const ResponseFit& fit,
   RespondingSensels sums{std::vector<double>(fit.presses().size())};
   std::vector<double> responses(fit.presses().size());
   std::size_t good = 0;
-  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
-    for (const std::size_t i : sensels) {
-      if (!mask.empty() && mask[i] != kGood) continue;
-      ++good;
-      if (!all_responses(fit, i, responses)) continue;
-      ++sums.count;
-      sums.leaks += leak_sum(fit.planes().effects, skin, i);
-      for (std::size_t p = 0; p < responses.size(); ++p) sums.responses[p] += responses[p];
-    }
+  for_each_solved_sensel(skin, [&](std::size_t i) {
+    if (!mask.empty() && mask[i] != kGood) return;
+    ++good;
+    if (!all_responses(fit, i, responses)) return;
+    ++sums.count;
+    sums.leaks += leak_sum(fit.planes().effects, skin, i);
+    for (std::size_t p = 0; p < responses.size(); ++p) sums.responses[p] += responses[p];
   });
   return 2 * sums.count > good ? std::optional(sums) : std::nullopt;
 }
@@ -332,7 +330,7 @@ std::optional<LevelReadings> level_readings(const ResponseFit& fit,
       sum += responding->responses[p] * presses[p].frames.frames();
       frames += presses[p].frames.frames();
     }
-    const double area_mm2 = skin.pillar_pitch_mm() * skin.pillar_pitch_mm();
+    const double area_mm2 = skin.element_pitch_mm() * skin.element_pitch_mm();
     const auto count = static_cast<double>(responding->count);
     at.readings.push_back(sum / frames / count);
     at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * responding->leaks / count);

@@ -24,9 +24,7 @@ constexpr std::chrono::milliseconds kWatchInterval(50);
 constexpr int kWatchDuty = 9;  // The thread rests this many times as long as it works.
 
 SkinCalibration watched_calibration(const SolverPlan& plan) {
-  SkinCalibration calibration;
-  calibration.rows = plan.skin.rows;
-  calibration.cols = plan.skin.cols;
+  SkinCalibration calibration = blank_calibration(plan.skin);
   calibration.planes = plan.calibration;
   return calibration;
 }

@@ -27,6 +27,7 @@ Skin skin_of(const SkinCalibration& calibration) {
   skin.counts_per_newton = calibration.counts_per_newton.value_or(skin.counts_per_newton);
   skin.power_law = calibration.power_law;
   skin.layout = calibration.layout.value_or(skin.layout);
+  skin.falling = calibration.falling;
   return skin;
 }
 
@@ -81,6 +82,7 @@ SkinCalibration blank_calibration(const Skin& skin) {
   calibration.rows = skin.rows;
   calibration.cols = skin.cols;
   calibration.layout = skin.layout;
+  calibration.falling = skin.falling;
   return calibration;
 }
 
@@ -103,6 +105,12 @@ void check(const SkinCalibration& calibration, std::string_view where) {
 }
 
 void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where) {
+  if (calibration.falling != skin.falling) {
+    throw Error(where,
+                calibration.falling ? "the calibration is of readings that fall under load"
+                                    : "the calibration is of readings that rise under load",
+                calibration.falling ? "give --falling" : "leave out --falling");
+  }
   if (calibration.rows == skin.rows && calibration.cols == skin.cols) return;
   throw Error(where,
               fmt::format("has {} x {} sensels, the calibration {} x {}", skin.rows, skin.cols,

@@ -40,6 +40,8 @@ double untouched_share(const SkinCalibration& calibration) {
   SolverPlan plan;
   plan.skin.rows = calibration.rows;
   plan.skin.cols = calibration.cols;
+  plan.skin.layout = calibration.layout.value_or(plan.skin.layout);
+  plan.skin.falling = calibration.falling;
   plan.sensel_type = SenselType::f32;
   apply(calibration, plan.skin, plan.calibration);
   plan.calibration.effects.wires.reset();  // Tares and noise are without their crosstalk.

@@ -60,7 +60,7 @@ void write_all(const hdf5::File& file, const SkinCalibration& calibration) {
   hdf5::write_attribute(file, file.id.get(), "version", calibration_format::kVersion);
   const hdf5::Handle skin =
       write_skin(file, {std::nullopt, calibration.counts_per_newton, calibration.threshold_counts,
-                        std::nullopt, calibration.power_law, calibration.layout});
+                        std::nullopt, calibration.power_law, calibration.layout, calibration.falling});
   hdf5::write_attribute(file, skin.get(), calibration_format::kRows,
                         static_cast<int>(calibration.rows));
   hdf5::write_attribute(file, skin.get(), calibration_format::kCols,
@@ -154,6 +154,7 @@ SkinCalibration read_calibration(const hdf5::File& file) {
   calibration.threshold_counts = constants.threshold_counts;
   calibration.power_law = constants.power_law;
   calibration.layout = constants.layout;
+  calibration.falling = constants.falling;
   calibration.threshold_factor =
       hdf5::read_number(file, skin.get(), calibration_format::kThresholdFactor);
   calibration.planes = read_planes(file, size_of_skin(calibration));

@@ -55,6 +55,8 @@ void FileSource::take_constants(const StoredSkin& stored, const ReadOptions& opt
   skin_.full_scale_counts =
       options.full_scale_counts ? options.full_scale_counts : stored.full_scale_counts;
   skin_.power_law = stored.power_law;
+  skin_.falling = options.falling || stored.falling;
+  mirrors_ = options.falling && !stored.falling;
   skin_.layout = options.layout.value_or(stored.layout.value_or(SkinLayout::sensels));
 }
 
@@ -81,6 +83,7 @@ void FileSource::require_no_rate(const ReadOptions& options) const {
 void FileSource::take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
                                FrameBuffer& frame) const {
   const auto inexact = convert_to_readings(type, numbers, skin_.sensels(), frame.bytes().data());
+  if (!inexact && mirrors_) mirror(frame);
   if (!inexact) return;
   throw Error(path_.string(),
               fmt::format("frame {}, row {}, column {} holds an {} beyond ±16777216", index,

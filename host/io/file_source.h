@@ -66,6 +66,7 @@ class FileSource : public FrameSource {
 
  private:
   std::optional<double> rate_hz_;
+  bool mirrors_ = false;  // falling readings
 };
 
 /// Checks that the times of all frames are finite and rise.

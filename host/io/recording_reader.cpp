@@ -68,6 +68,10 @@ Recording::Recording(hdf5::File file, const ReadOptions& options)
   read_size();
   take_skin(options);
   calibration_ = read_planes(file_, skin_, type_);
+  if (options.falling && !read_skin(file_).falling && !calibration_.tare.empty()) {
+    throw Error(path_.string(), "its tare is that of readings that rise under load",
+                "leave out --falling");
+  }
   open_truth();
   count_frames();
   check_times(options);

@@ -80,7 +80,7 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
                         : options.truth     ? recording_format::kSparseTruthSince
                                             : 1);
   write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
-                    skin.full_scale_counts, skin.power_law, skin.layout});
+                    skin.full_scale_counts, skin.power_law, skin.layout, skin.falling});
   write_planes(file, skin, calibration);
   if (skin.surface) write_surface(file, *skin.surface, skin.element_grid());
   create_datasets();

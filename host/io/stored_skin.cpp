@@ -104,6 +104,7 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
     hdf5::write_attribute(file, group.get(), recording_format::kLayout,
                           std::string(name_of(*skin.layout)));
   }
+  if (skin.falling) hdf5::write_attribute(file, group.get(), recording_format::kFalling, 1);
   return group;
 }
 
@@ -118,7 +119,8 @@ StoredSkin read_skin(const hdf5::File& file) {
   const auto read = [&](const char* name) { return hdf5::read_number(file, object.get(), name); };
   return {read(recording_format::kPitch), read(recording_format::kCountsPerNewton),
           read(recording_format::kThreshold), read(recording_format::kFullScale),
-          read_power_law(file, object.get()), read_layout(file, object.get())};
+          read_power_law(file, object.get()), read_layout(file, object.get()),
+          read(recording_format::kFalling).value_or(0) != 0};
 }
 
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration) {

@@ -17,6 +17,7 @@ struct StoredSkin {
   std::optional<double> full_scale_counts;
   std::optional<PowerLaw> power_law;
   std::optional<SkinLayout> layout;
+  bool falling = false;
 };
 
 /// Creates the group /skin with the constants that are set, and returns it.

@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <new>
+#include <type_traits>
 
 #include "pillarfield/error.h"
 
@@ -26,6 +27,23 @@ FrameBuffer::FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols
 void FrameBuffer::Free::operator()(std::byte* memory) const { ::operator delete[](memory, kPage); }
 
 FrameView FrameBuffer::view() const { return {data_.get(), type_, rows_, cols_, cols_}; }
+
+void mirror(FrameBuffer& frame) {
+  const auto each = [](auto readings, auto top) {
+    for (auto& reading : readings) {
+      reading = static_cast<std::remove_reference_t<decltype(reading)>>(top - reading);
+    }
+  };
+  switch (frame.view().type) {
+    case SenselType::u8:
+      return each(frame.readings<std::uint8_t>(), 255);
+    case SenselType::u16:
+      return each(frame.readings<std::uint16_t>(), 65535);
+    case SenselType::f32:
+      break;
+  }
+  each(frame.readings<float>(), 0.0F);
+}
 
 void copy_readings(const FrameView& frame, std::byte* to) {
   const std::size_t row_bytes = frame.cols * size_of(frame.type);

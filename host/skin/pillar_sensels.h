@@ -25,4 +25,16 @@ void for_each_pillar(const Skin& skin, Use use) {
   }
 }
 
+/// Calls `use(sensel)` for each sensel of an element: pillar by pillar, or, without pillars, all.
+template <class Use>
+void for_each_solved_sensel(const Skin& skin, Use use) {
+  if (!skin.has_pillars()) {
+    for (std::size_t i = 0; i < skin.sensels(); ++i) use(i);
+    return;
+  }
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    for (const std::size_t i : sensels) use(i);
+  });
+}
+
 }  // namespace pillarfield

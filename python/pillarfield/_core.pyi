@@ -98,7 +98,8 @@ class FrameSource:
     warnings: list[str]
     def __init__(self, path: _Path, *, trust: bool = ..., dataset: str = ..., times: str = ...,
                  frame_size: Optional[tuple[int, int]] = ..., rate_hz: Optional[float] = ...,
-                 tare_frames: int = ..., axes: str = ..., layout: str = ...) -> None: ...
+                 tare_frames: int = ..., axes: str = ..., layout: str = ...,
+                 falling: bool = ...) -> None: ...
     @staticmethod
     def of_array(readings: npt.NDArray[Any], times: npt.NDArray[np.float64], skin: Skin,
                  calibration: Optional[Calibration], axes_are_known: bool = ...) -> FrameSource: ...

@@ -39,16 +39,19 @@ class Recording(_core.FrameSource):
     layout: 'pillars' or 'sensels', in place of that of the file; plain data and Tekscan exports have
         'sensels'
 
+    falling: readings fall under load; they are mirrored, 255 or 65535 less the reading, or negated
+
     Raises Error if it holds no frames, is damaged, or an option does not fit it.
     """
 
     def __init__(self, path: Path, *, trust: bool = False, dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
-                 tare_frames: int = 0, axes: Axes = "", layout: str = "") -> None:
+                 tare_frames: int = 0, axes: Axes = "", layout: str = "",
+                 falling: bool = False) -> None:
         super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
             rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes),
-            layout=layout)
+            layout=layout, falling=falling)
 
     @property
     def dtype(self) -> np.dtype[Any]:

@@ -426,7 +426,7 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
     EXPECT_NE(message.find(words), std::string::npos) << message;
   };
   for (const double pitch_mm : {0.0, -1.0, kNan}) {
-    says([&] { const ContactTracker tracker(pitch_mm); }, "pillar pitch");
+    says([&] { const ContactTracker tracker(pitch_mm); }, "a pitch of");
   }
   for (const double friction : {0.0, -1.0, 101.0, kNan}) {
     says([&] { const ContactTracker tracker(1, {.friction = {.given = friction}}); }, "friction");

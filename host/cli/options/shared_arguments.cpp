@@ -100,6 +100,8 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
                           "pillars: one on each 2 x 2 sensels, three components of force; sensels: "
                           "none, normal force and pressure on each [the file's; of plain data and "
                           "Tekscan exports sensels]");
+  plain.flag("--falling", options.falling,
+             "Readings fall under load: they are mirrored, 255 or 65535 less the reading");
   plain.number("--pitch-mm", options.sensel_pitch_mm, "MM",
                "Distance between neighbouring sensels [the file's]", 0.001, 1000);
 }

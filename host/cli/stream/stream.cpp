@@ -44,6 +44,7 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
   live.size = stated_size(options.plan);
+  live.skin.falling = options.plan.read.falling;
   live.say = [&](const std::string& words) {
     fmt::print(stderr, "pillarfield: {}: {}\n", printable(options.source), words);
   };

@@ -22,6 +22,12 @@ struct FrameView {
   std::size_t row_stride = 0;  ///< readings from one row to the next, at least cols
 };
 
+class FrameBuffer;
+
+/// Makes readings that fall under load rise: r becomes 255 − r of uint8, 65535 − r of uint16, −r of
+/// float32.
+void mirror(FrameBuffer& frame);
+
 /// A rectangle of sensels.
 struct SenselBlock {
   std::uint32_t first_row = 0;

@@ -49,6 +49,9 @@ struct ReadOptions {
   /// What stands on the sensels, in place of what the file says; plain data and Tekscan exports,
   /// which say nothing, have SkinLayout::sensels.
   std::optional<SkinLayout> layout = {};
+  /// Readings fall under load, as those of dividers whose lower resistor is the sensel: frames are
+  /// mirrored as they are read. A recording that says so itself is mirrored already.
+  bool falling = false;
 
   /// Number of first frames, of the unloaded skin, from which take_tare() measures tare, noise and
   /// threshold in place of those in the file; at least kLeastTareFrames. 0: none.

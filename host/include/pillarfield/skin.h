@@ -57,6 +57,7 @@ struct Skin {
   std::optional<PowerLaw> power_law;        ///< unset: readings are proportional to force
   std::optional<Surface> surface;           ///< unset: unknown; forces stay in the skin's own axes
   SkinLayout layout = SkinLayout::pillars;
+  bool falling = false;  ///< the sensor's readings fall under load, and its frames are mirrored()
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }

@@ -35,6 +35,7 @@ struct SkinCalibration {
   std::optional<double> counts_per_newton;
   std::optional<PowerLaw> power_law;     ///< set only with counts_per_newton
   std::optional<SkinLayout> layout;      ///< unset in files of earlier versions
+  bool falling = false;  ///< it is of mirrored readings
   std::vector<CalibrationStep> history;  ///< oldest first
 };
 
@@ -55,7 +56,8 @@ void mask_missing(SkinCalibration& calibration, const std::vector<std::uint8_t>&
 /// Throws Error, naming `where`, if a plane or a constant is out of range.
 void check(const SkinCalibration& calibration, std::string_view where);
 
-/// Throws Error, naming `where`, if the calibration and the skin differ in size.
+/// Throws Error, naming `where`, if the calibration and the skin differ in size or in
+/// Skin::falling.
 void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where);
 
 /// Puts a calibration into effect: replaces all of `planes`, effects included, and the constants of

@@ -40,6 +40,10 @@ Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
     : FileSource(path, "Tekscan ASCII") {
   refuse_dataset(path, options);
   refuse_layout(path, options);
+  if (options.falling) {
+    throw Error(path.string(), "the readings of a Tekscan export rise under load",
+                "leave out --falling");
+  }
   TekscanExport data = parse_tekscan(path);
   readings_ = std::move(data.readings);
   type_ = readings_.type();

@@ -98,6 +98,7 @@ class PacketStream final : public FrameStream {
   [[nodiscard]] Arrival next(StreamedFrame& frame, nanoseconds timeout) override;
 
  private:
+  bool pop(StreamedFrame& frame);
   [[nodiscard]] Arrival receive(Packet& packet, nanoseconds timeout);
 
   std::unique_ptr<PacketSource> source_;
@@ -146,12 +147,18 @@ void PacketStream::discard_waiting() {
   source_->clear_counts();
 }
 
+bool PacketStream::pop(StreamedFrame& frame) {
+  const bool popped = assembler_.pop(frame);
+  if (popped && skin_.falling) mirror(frame.buffer);
+  return popped;
+}
+
 Arrival PacketStream::next(StreamedFrame& frame, nanoseconds timeout) {
   constexpr int kMostPackets = 4096;  // of a sensor that is faster than this loop
   const nanoseconds until = steady_now() + std::clamp<nanoseconds>(timeout, 0ns, 24h);
   Packet packet;
   for (int packets = 0; packets < kMostPackets;) {
-    if (assembler_.pop(frame)) return Arrival::arrived;
+    if (pop(frame)) return Arrival::arrived;
     const nanoseconds deadline = std::min(assembler_.deadline().value_or(until), until);
     const Arrival arrival = receive(packet, std::max(deadline - steady_now(), 0ns));
     if (arrival == Arrival::arrived) {
@@ -163,7 +170,7 @@ Arrival PacketStream::next(StreamedFrame& frame, nanoseconds timeout) {
     if (arrival == Arrival::ended || now >= assembler_.deadline().value_or(24h * 36500)) {
       assembler_.give_up();
     }
-    if (assembler_.pop(frame)) return Arrival::arrived;
+    if (pop(frame)) return Arrival::arrived;
     if (arrival == Arrival::ended) return Arrival::ended;
     if (now >= until) break;
   }
