@@ -30,6 +30,10 @@ using Json = nlohmann::ordered_json;
 Diagnosis look_at_file(const DoctorOptions& options) {
   ReadOptions read = options.read;
   read.untimed = !read.rate_hz;
+  // Constants of forces do not matter here, so that none is missing.
+  read.sensel_pitch_mm = 1;
+  read.counts_per_newton = 1;
+  read.threshold_counts = 0;
   const auto source = open_frames_with_warnings(options.source, read, options.quiet);
   Doctor doctor(options.source, source->skin(), source->sensel_type());
   FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
@@ -187,7 +191,7 @@ Json json_of(const DoctorOptions& options, const Diagnosis& found) {
 std::string timing_text(const FrameTiming& timing) {
   if (!timing.rate_hz) return "no times; give --rate HZ";
   std::string text =
-      fmt::format("{} Hz, jitter {} ms", rounded(*timing.rate_hz), rounded(timing.jitter_ms));
+      fmt::format("{} Hz, jitter {:.2f} ms", rounded(*timing.rate_hz), timing.jitter_ms);
   if (timing.gap_count == 0) return text + ", no gaps";
   const FrameGap& first = timing.gaps.front();
   return text + fmt::format(", {} with room for {}, the first of {} s before frame {}",
@@ -202,9 +206,9 @@ std::string worst_text(const SenselFigure& figure) {
 
 std::string load_text(const Diagnosis& found) {
   if (found.polarity == Polarity::unknown)
-    return "nothing touched the array; sweep a finger over it";
+    return "no contact stands out; sweep a finger over the array";
   std::string text = fmt::format(
-      "readings {} under load{}, by {} counts, in {} of {} frames looked at",
+      "readings {} under load{}, by {} counts, in {} of the {} looked at",
       found.polarity == Polarity::rises ? "rise" : "fall",
       found.polarity == Polarity::rises ? "" : " (--falling)", rounded(found.contact_counts),
       grouped(found.contact_frames), counted(found.kept, "frame"));

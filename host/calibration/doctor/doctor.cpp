@@ -86,6 +86,8 @@ Diagnosis Doctor::result() {
   seen.touched.resize(skin.sensels());
   seen.good.assign(skin.sensels(), 1);
   seen.constant = constant_sensels(statistics);
+  seen.doubtful_rows.resize(skin.rows);
+  seen.doubtful_columns.resize(skin.cols);
   seen.row_order.resize(skin.rows);
   std::iota(seen.row_order.begin(), seen.row_order.end(), 0U);
   seen.column_order.resize(skin.cols);

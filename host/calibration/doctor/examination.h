@@ -12,6 +12,9 @@
 
 namespace pillarfield {
 
+/// Multiple of the noise beyond which a reading is not noise.
+inline constexpr double kBeyondNoise = 6;
+
 /// Rows or columns.
 enum class LineAxis : std::uint8_t { rows, columns };
 
@@ -41,6 +44,8 @@ struct Examination {
   std::vector<std::uint32_t> column_order = {};
 
   std::vector<LinePair> shorted = {};
+  std::vector<std::uint8_t> doubtful_rows = {};  ///< 1: nothing tells what lies beside this place
+  std::vector<std::uint8_t> doubtful_columns = {};
 
   [[nodiscard]] std::size_t lines(LineAxis axis) const {
     return axis == LineAxis::rows ? rows : cols;
@@ -52,6 +57,9 @@ struct Examination {
   [[nodiscard]] std::size_t sensel_lying_at(std::size_t row, std::size_t col) const {
     return std::size_t{row_order[row]} * cols + column_order[col];
   }
+  [[nodiscard]] bool has_doubtful_place(std::size_t row, std::size_t col) const {
+    return doubtful_rows[row] != 0 || doubtful_columns[col] != 0;
+  }
   /// Least signal of a loaded sensel, counts.
   [[nodiscard]] double threshold(std::size_t sensel) const;
 };
@@ -62,6 +70,9 @@ struct Examination {
 
 /// Whether small contacts moved over most lines.
 [[nodiscard]] bool is_swept(const Examination& seen, LineAxis axis);
+
+/// Which way readings go under load; `slopes` are the sensels' drifts, counts per kept frame.
+[[nodiscard]] Polarity find_polarity(const Examination& seen, const std::vector<float>& slopes);
 
 // Each step writes what it finds into the examination and into the diagnosis, in this order.
 

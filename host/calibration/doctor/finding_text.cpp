@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "calibration/doctor/named_orders.h"
 
 namespace pillarfield {
 namespace {
@@ -22,38 +23,16 @@ std::string places_of(const ArrayFinding& finding) {
   return finding.sensels.size() > kListedPlaces ? text + ", ..." : text;
 }
 
-/// What makes the order that `order` is of 0, 1, 2 ..., where that has a name.
-std::string name_of_order(const std::vector<std::uint32_t>& order,
-                          const std::vector<std::uint32_t>& moved, std::string_view lines) {
-  if (moved.size() == 2) return fmt::format("{} {} and {} are swapped", lines, moved[0], moved[1]);
-  const std::uint32_t first = moved.front();
-  const std::uint32_t last = moved.back();
-  bool is_mirrored = true;
-  for (std::uint32_t i = first; i <= last; ++i) is_mirrored &= order[i] == first + last - i;
-  if (is_mirrored) return fmt::format("{} {} to {} are mirrored", lines, first, last);
-  const auto half = static_cast<std::uint32_t>((order.size() + 1) / 2);
-  bool are_halves_read_by_turns = true;  // 0, 2, 4 ... lie first
-  bool lie_by_turns = true;              // 0, half, 1, half + 1 ...
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    are_halves_read_by_turns &= order[i] == (i < half ? 2 * i : 2 * (i - half) + 1);
-    lie_by_turns &= order[i] == (i % 2 == 0 ? i / 2 : half + i / 2);
-  }
-  if (are_halves_read_by_turns || lie_by_turns) {
-    return fmt::format("the halves of the {} are interleaved", lines);
-  }
-  bool is_shifted = true;
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    is_shifted &= order[i] == (i + order[0]) % order.size();
-  }
-  if (is_shifted) return fmt::format("the {} begin with {}", lines, order[0]);
-  return fmt::format("{} of the {} lie elsewhere", moved.size(), lines);
-}
-
 std::string order_text(const ArrayFinding& finding, std::string_view lines) {
-  std::string text = name_of_order(finding.in_order, finding.lines, lines);
-  text.front() = static_cast<char>(std::toupper(text.front()));
-  return text + fmt::format(": a contact passes {} of {} lines out of turn", finding.lines.size(),
-                            finding.in_order.size());
+  const auto count = static_cast<std::uint32_t>(finding.in_order.size());
+  std::string name = fmt::format("{} of them lie elsewhere", finding.lines.size());
+  for (const NamedOrder& each : named_orders(count, finding.lines.front(), finding.lines.back())) {
+    if (each.order != finding.in_order) continue;
+    name = each.name;
+    break;
+  }
+  return fmt::format("Wiring: {} {}; a contact passes {} of {} out of turn", lines, name,
+                     finding.lines.size(), count);
 }
 
 std::string count_text(const ArrayFinding& finding) {
@@ -88,9 +67,9 @@ std::string sentence_of(const ArrayFinding& finding) {
       return fmt::format("Shorted: columns {} and {} differ by {:.1f} % of their signals", lines[0],
                          lines[1], finding.figure);
     case ArrayFault::row_order:
-      return "Wiring: " + order_text(finding, "rows");
+      return order_text(finding, "rows");
     case ArrayFault::column_order:
-      return "Wiring: " + order_text(finding, "columns");
+      return order_text(finding, "columns");
     case ArrayFault::row_crosstalk:
       return fmt::format("Crosstalk: {:.1f} % of a contact shows all along its rows",
                          finding.figure);

@@ -29,6 +29,17 @@ void KeptFrames::add(const FrameView& frame, double time_s) {
   });
 }
 
+void KeptFrames::read_sensel(std::size_t sensel, SenselReadings& to) const {
+  to.values.clear();
+  to.frames.clear();
+  for (std::uint32_t index = 0; index < frames(); ++index) {
+    const float reading = frame(index)[sensel];
+    if (std::isnan(reading)) continue;
+    to.values.push_back(reading);
+    to.frames.push_back(index);
+  }
+}
+
 void KeptFrames::drop_every_second() {
   const std::size_t left = (times_.size() + 1) / 2;
   for (std::size_t i = 1; i < left; ++i) {

@@ -13,6 +13,12 @@ inline constexpr std::size_t kMostKeptFrames = 4096;
 inline constexpr std::size_t kMostKeptReadings = std::size_t{1} << 25U;
 inline constexpr std::size_t kLeastKeptFrames = 16;
 
+/// A sensel's readings, and the kept frames that have one.
+struct SenselReadings {
+  std::vector<float> values;
+  std::vector<std::uint32_t> frames;
+};
+
 /// Frames of an unlimited number of frames, evenly thinned: when they are too many, every second
 /// one is dropped.
 class KeptFrames {
@@ -26,6 +32,7 @@ class KeptFrames {
   [[nodiscard]] std::uint64_t stride() const { return stride_; }
   [[nodiscard]] std::size_t sensels() const { return sensels_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
+  void read_sensel(std::size_t sensel, SenselReadings& to) const;
   /// Readings of a frame, [row, col]; NaN where there is none.
   [[nodiscard]] std::span<float> frame(std::size_t index) {
     return {&readings_[index * sensels_], sensels_};

@@ -9,6 +9,7 @@
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/finding_text.h"
 #include "calibration/doctor/line_path.h"
+#include "calibration/doctor/named_orders.h"
 
 namespace pillarfield {
 namespace {
@@ -23,6 +24,8 @@ constexpr double kMostLoadedSensels = 0.15;
 constexpr float kLoaded = 0.3F;
 /// Share of a line in the load of the most loaded one that counts as a visit.
 constexpr float kVisit = 0.2F;
+/// Share of the contacts that must be small.
+constexpr double kLeastSmallShare = 0.6;
 /// Share of the lines that contacts must visit.
 constexpr double kLeastVisitedShare = 0.6;
 /// Least gain of the sum of similarities of neighbours by another order, and least median of these
@@ -38,15 +41,27 @@ struct LineLoads {
   std::size_t places = 0;  ///< different places of their centres of pressure, in whole sensels
 };
 
+/// The largest signal of a frame.
+float peak_of(const Examination& seen, std::uint32_t frame) {
+  const auto signals = std::as_const(seen.kept).frame(frame);
+  float most = 0;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (seen.good[i] != 0) most = std::max(most, signals[i]);
+  }
+  return most;
+}
+
+/// Sums of the loaded sensels, which ghosts of crosstalk are not.
 std::vector<float> loads_of_frame(const Examination& seen, LineAxis axis, std::uint32_t frame) {
   const auto signals = std::as_const(seen.kept).frame(frame);
+  const float most = peak_of(seen, frame);
   const std::size_t lines = seen.lines(axis);
   const std::size_t length = signals.size() / lines;
   std::vector<float> loads(lines);
   for (std::size_t line = 0; line < lines; ++line) {
     for (std::size_t along = 0; along < length; ++along) {
       const std::size_t i = seen.sensel(axis, line, along);
-      const bool is_loaded = seen.good[i] != 0 && signals[i] > seen.threshold(i);
+      const bool is_loaded = seen.good[i] != 0 && signals[i] > kLoaded * most;
       loads[line] += is_loaded ? signals[i] : 0;
     }
   }
@@ -86,7 +101,10 @@ LineLoads find_loads(const Examination& seen, LineAxis axis) {
 
 /// Whether contacts moved so much that the order of lines can be judged.
 bool shows_order(const Examination& seen, const LineLoads& loads, LineAxis axis) {
-  return loads.frames >= kLeastOrderFrames && loads.lines.size() >= kLeastLines &&
+  return loads.frames >= kLeastOrderFrames &&
+         static_cast<double>(loads.frames) >
+             kLeastSmallShare * static_cast<double>(seen.contacts.size()) &&
+         loads.lines.size() >= kLeastLines &&
          static_cast<double>(loads.lines.size()) >=
              kLeastVisitedShare * static_cast<double>(seen.lines(axis)) &&
          loads.places >= std::size_t{seen.rows} + seen.cols;
@@ -141,31 +159,54 @@ bool agrees(const std::vector<std::uint32_t>& order, const LineLoads& loads, con
   return true;
 }
 
-/// Order of all lines: a mirrored part that agrees with the path, or the judged lines in the path's
-/// order at their places and the others where they are.
-std::vector<std::uint32_t> order_of(const LineLoads& loads, const LinePath& path,
-                                    std::size_t lines) {
-  constexpr std::size_t kReach = 2;  // lines that were not judged, at the ends of the mirrored part
-  std::vector<std::uint32_t> order(lines);
-  std::iota(order.begin(), order.end(), 0U);
-  const std::vector<std::uint32_t> given = order;
-  std::size_t first = lines;
-  std::size_t last = 0;
+/// Order of all lines.
+struct LineOrder {
+  std::vector<std::uint32_t> lines;
+  bool is_complete = true;  ///< places of lines that were not judged are known too
+};
+
+/// A frequent fault of wiring that agrees with the path, or the judged lines in the path's order at
+/// their places and the others where they are.
+LineOrder order_of(const LineLoads& loads, const LinePath& path, std::size_t lines) {
+  LineOrder order;
+  order.lines.resize(lines);
+  std::iota(order.lines.begin(), order.lines.end(), 0U);
+  std::uint32_t first = loads.lines.back();
+  std::uint32_t last = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (path[i] == i) continue;
-    first = std::min<std::size_t>(first, loads.lines[i]);
+    first = std::min(first, loads.lines[i]);
     last = loads.lines[i];
-    order[loads.lines[i]] = loads.lines[path[i]];
+    order.lines[loads.lines[i]] = loads.lines[path[i]];
   }
-  for (std::size_t a = first; a + kReach >= first && a < lines; --a) {
-    for (std::size_t b = last; b < std::min(lines, last + kReach + 1); ++b) {
-      std::vector<std::uint32_t> mirrored = given;
-      std::reverse(mirrored.begin() + static_cast<std::ptrdiff_t>(a),
-                   mirrored.begin() + static_cast<std::ptrdiff_t>(b) + 1);
-      if (agrees(mirrored, loads, path)) return mirrored;
+  if (path.size() == lines) return order;
+  for (NamedOrder& named : named_orders(static_cast<std::uint32_t>(lines), first, last)) {
+    if (!agrees(named.order, loads, path)) continue;
+    order.lines = std::move(named.order);
+    return order;
+  }
+  order.is_complete = false;
+  return order;
+}
+
+/// Marks the places of lines that resemble a neighbour too little to be sure of it, and those of
+/// and beside lines whose place is not known.
+void note_doubts(const LineSimilarities& similar, const LineLoads& loads, const LinePath& path,
+                 const LineOrder& order, std::vector<std::uint8_t>& doubtful) {
+  std::vector<std::uint8_t> lines(order.lines.size());
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    if (similar(path[i], path[i + 1]) >= kLeastSimilar) continue;
+    lines[loads.lines[path[i]]] = 1;
+    lines[loads.lines[path[i + 1]]] = 1;
+  }
+  for (std::size_t place = 0; place < lines.size(); ++place) {
+    const std::uint32_t line = order.lines[place];
+    if (lines[line] != 0) doubtful[place] = 1;
+    if (order.is_complete || std::ranges::binary_search(loads.lines, line)) continue;
+    for (const std::size_t near : {place - 1, place, place + 1}) {
+      if (near < lines.size()) doubtful[near] = 1;
     }
   }
-  return order;
 }
 
 void find_order(Examination& seen, LineAxis axis, Diagnosis& found) {
@@ -183,12 +224,13 @@ void find_order(Examination& seen, LineAxis axis, Diagnosis& found) {
   const LinePath best = find_path(similar);
   const double gain = sum_along(similar, best) - sum_along(similar, given);
   if (gain < kLeastGainSum || usual_similarity(similar, best) < kLeastSimilar) return;
-  std::vector<std::uint32_t>& order = are_rows ? seen.row_order : seen.column_order;
-  order = order_of(loads, best, lines);
+  const LineOrder order = order_of(loads, best, lines);
+  (are_rows ? seen.row_order : seen.column_order) = order.lines;
+  note_doubts(similar, loads, best, order, are_rows ? seen.doubtful_rows : seen.doubtful_columns);
   ArrayFinding finding = {.fault = are_rows ? ArrayFault::row_order : ArrayFault::column_order,
-                          .in_order = order};
+                          .in_order = order.lines};
   for (std::uint32_t i = 0; i < lines; ++i) {
-    if (order[i] != i) finding.lines.push_back(i);
+    if (order.lines[i] != i) finding.lines.push_back(i);
   }
   finding.figure = static_cast<double>(finding.lines.size());
   add(found, std::move(finding));
@@ -198,10 +240,7 @@ void find_order(Examination& seen, LineAxis axis, Diagnosis& found) {
 
 std::optional<SenselPlace> centre_of_small_contact(const Examination& seen, std::uint32_t frame) {
   const auto signals = std::as_const(seen.kept).frame(frame);
-  float most = 0;
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    if (seen.good[i] != 0) most = std::max(most, signals[i]);
-  }
+  const float most = peak_of(seen, frame);
   std::size_t loaded = 0;
   double sum = 0;
   double row = 0;

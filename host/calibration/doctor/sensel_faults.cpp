@@ -23,6 +23,9 @@ constexpr std::uint32_t kVisibleFrames = 100;
 /// added to it for each part of crosstalk.
 constexpr double kDeadResponse = 0.12;
 constexpr double kDeadCrosstalk = 3;
+constexpr double kMostDeadResponse = 0.35;
+/// The same where no small contact was swept over the array: large ones have edges and holes.
+constexpr double kSilentResponse = 0.04;
 /// Frames in which the neighbours of a sensel must be loaded, and the least precision of the
 /// response.
 constexpr std::uint32_t kLeastEvidence = 6;
@@ -31,8 +34,8 @@ constexpr double kLeastPrecision = 0.025;
 constexpr double kTestShare = 0.2;
 constexpr double kSweepShare = 0.08;
 constexpr double kTestNoise = 4;
-/// Share of a line's sensels that must be faulty for a dead line.
-constexpr double kDeadLineShare = 0.3;
+/// Share of a line's sensels that must be faulty, while none responds, for a dead line.
+constexpr double kDeadLineShare = 0.15;
 
 /// How a sensel responds where its neighbours are loaded.
 struct SenselResponse {
@@ -70,7 +73,9 @@ class SenselVerdicts {
 
   /// Judges the others by those around them.
   void judge_by_neighbours(double crosstalk) {
-    dead_response_ = kDeadResponse + kDeadCrosstalk * crosstalk;
+    dead_response_ = was_swept_
+                         ? std::min(kMostDeadResponse, kDeadResponse + kDeadCrosstalk * crosstalk)
+                         : kSilentResponse;
     // The second time, dead neighbours do not count.
     for (int pass = 0; pass < 2; ++pass) judge_responses();
   }
@@ -144,7 +149,7 @@ class SenselVerdicts {
       for (std::uint32_t row = 0; row < seen_.rows; ++row) {
         for (std::uint32_t col = 0; col < seen_.cols; ++col) {
           const std::size_t i = seen_.sensel_lying_at(row, col);
-          if (seen_.good[i] == 0) continue;
+          if (seen_.good[i] == 0 || seen_.has_doubtful_place(row, col)) continue;
           const double expected = was_swept_ ? signals.least_under_small_contact(row, col)
                                              : signals.least_under_contact(row, col);
           if (expected > std::max(least, kTestNoise * noise(i))) {

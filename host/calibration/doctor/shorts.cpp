@@ -13,11 +13,13 @@ namespace {
 /// LineDifference of two shorted lines, relative to their signals: of their readings, and, where a
 /// small contact swept over the lines, of what no gains of single sensels explain.
 constexpr double kMostUnequal = 0.03;
+constexpr double kMostGainDifference = 0.5;
 constexpr double kMostUnexplained = 0.1;
 /// Least difference of each from its other neighbours.
 constexpr double kLeastDifference = 0.12;
 constexpr double kShortRatio = 0.3;
 constexpr std::size_t kLeastShared = 3;  ///< sensels of a line
+constexpr double kLeastPower = 4;        ///< of the signals of loaded sensels, over that of noise
 constexpr double kMostProducts = 4e9;
 
 /// Frames of contacts, thinned so that all pairs of lines can be compared.
@@ -61,7 +63,6 @@ class LineSignals {
   [[nodiscard]] std::optional<LineDifference> difference(std::size_t a, std::size_t b) const {
     const std::size_t lines = seen_.lines(axis_);
     const std::size_t length = seen_.kept.sensels() / lines;
-    const auto frames = static_cast<double>(frames_.size());
     double unequal = 0;
     double unexplained = 0;
     double first_power = 0;
@@ -73,20 +74,21 @@ class LineSignals {
       const std::size_t second = seen_.sensel(axis_, b, along);
       if (seen_.good[first] == 0 || seen_.good[second] == 0) continue;
       if (seen_.touched[first] < 3 || seen_.touched[second] < 3) continue;
-      const PairMoments m = moments(along, a, b);
+      const PairMoments m =
+          moments(along, {a, seen_.threshold(first)}, {b, seen_.threshold(second)});
       const double half = (m.aa - m.bb) / 2;
       unequal += (m.aa + m.bb - 2 * m.ab) / 2;
       unexplained += (m.aa + m.bb) / 2 - std::sqrt(half * half + m.ab * m.ab);
       first_power += m.aa;
       second_power += m.bb;
       noise +=
-          frames *
+          m.frames *
           std::pow(std::max<double>({seen_.noise[first], seen_.noise[second], seen_.typical_noise}),
                    2);
       ++shared;
     }
     const double power = std::min(first_power, second_power);
-    if (shared < kLeastShared || power < 16 * noise) return std::nullopt;
+    if (shared < kLeastShared || power < kLeastPower * noise) return std::nullopt;
     const auto relative = [&](double sum) {
       return std::sqrt(std::max(0.0, sum - noise) / (power - noise));
     };
@@ -94,20 +96,31 @@ class LineSignals {
   }
 
  private:
+  /// Second moments of two sensels, of frames in which one of them is loaded.
   struct PairMoments {
+    float frames = 0;
     float aa = 0;
     float ab = 0;
     float bb = 0;
   };
-  [[nodiscard]] PairMoments moments(std::size_t along, std::size_t a, std::size_t b) const {
+  struct LineThreshold {
+    std::size_t line;
+    double counts;
+  };
+  [[nodiscard]] PairMoments moments(std::size_t along, const LineThreshold& a,
+                                    const LineThreshold& b) const {
     const std::size_t lines = seen_.lines(axis_);
-    const float* const x = &signals_[(along * lines + a) * frames_.size()];
-    const float* const y = &signals_[(along * lines + b) * frames_.size()];
+    const float* const x = &signals_[(along * lines + a.line) * frames_.size()];
+    const float* const y = &signals_[(along * lines + b.line) * frames_.size()];
+    const auto least_x = static_cast<float>(a.counts);
+    const auto least_y = static_cast<float>(b.counts);
     PairMoments sum;
     for (std::size_t i = 0; i < frames_.size(); ++i) {
-      sum.aa += x[i] * x[i];
-      sum.ab += x[i] * y[i];
-      sum.bb += y[i] * y[i];
+      const float weight = x[i] > least_x || y[i] > least_y ? 1 : 0;
+      sum.frames += weight;
+      sum.aa += weight * x[i] * x[i];
+      sum.ab += weight * x[i] * y[i];
+      sum.bb += weight * y[i] * y[i];
     }
     return sum;
   }
@@ -141,7 +154,8 @@ void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
       const auto difference = signals.difference(a, b);
       if (!difference) continue;
       const bool is_equal = difference->unequal < kMostUnequal;
-      const bool is_explained = was_swept && difference->unexplained < kMostUnexplained;
+      const bool is_explained = was_swept && difference->unexplained < kMostUnexplained &&
+                                difference->unequal < kMostGainDifference;
       if (!is_equal && !is_explained) continue;
       const double others = neighbours_difference(signals, lines, a, b);
       if (!std::isfinite(others) || others < kLeastDifference ||

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -13,12 +12,6 @@ namespace {
 constexpr std::size_t kWindows = 24;
 constexpr std::size_t kLeastWindowFrames = 8;
 constexpr std::size_t kLeastDriftWindows = 6;
-/// Multiple of the noise beyond which a reading is not noise.
-constexpr double kBeyondSenselNoise = 6;
-/// Ratio of the changes to one side and to the other from which readings rise or fall.
-constexpr double kOneSided = 3;
-/// Share of readings at 0 or at full scale from which the others can only be load.
-constexpr double kAtRail = 0.3;
 /// Least share of the largest signal of a frame that counts as load.
 constexpr double kLoadShare = 0.1;
 constexpr std::size_t kLeastLoaded = 3;
@@ -31,23 +24,6 @@ struct ReadingWindows {
   std::vector<double> centre;  ///< frame in the middle of the window
   double noise = 0;
 };
-
-/// A sensel's readings, of frames that have one.
-struct SenselReadings {
-  std::vector<float> values;
-  std::vector<std::uint32_t> frames;
-};
-
-void read_sensel(const KeptFrames& kept, std::size_t sensel, SenselReadings& to) {
-  to.values.clear();
-  to.frames.clear();
-  for (std::uint32_t frame = 0; frame < kept.frames(); ++frame) {
-    const float reading = kept.frame(frame)[sensel];
-    if (std::isnan(reading)) continue;
-    to.values.push_back(reading);
-    to.frames.push_back(frame);
-  }
-}
 
 /// Mean of the readings no farther from `about` than noise is; it is finer than whole counts.
 double mean_near(const std::vector<float>& readings, double about, double noise) {
@@ -119,22 +95,6 @@ SenselFigure figure_of(const Examination& seen, const std::vector<float>& values
   return figure;
 }
 
-/// Squares of changes to either side, counts.
-struct Sides {
-  double above = 0;
-  double below = 0;
-
-  void add(double change, double noise) {
-    if (change > kBeyondSenselNoise * noise) above += change * change;
-    if (change < -kBeyondSenselNoise * noise) below += change * change;
-  }
-  [[nodiscard]] Polarity polarity() const {
-    if (above > kOneSided * below) return Polarity::rises;
-    if (below > kOneSided * above) return Polarity::falls;
-    return Polarity::unknown;
-  }
-};
-
 /// The mean of the readings near their lowest tenth: that without load, of a sensel without load a
 /// tenth of the time. SenselReadings rise under load and do not drift.
 double idle_of(std::vector<float> readings, double noise) {
@@ -170,7 +130,7 @@ std::vector<float> find_noise_and_drift(Examination& seen, Diagnosis& found) {
   std::size_t windows_used = 0;
   for (std::size_t i = 0; i < sensels; ++i) {
     if (seen.constant[i] != 0) continue;
-    read_sensel(seen.kept, i, readings);
+    seen.kept.read_sensel(i, readings);
     const ReadingWindows windows = windows_of(readings);
     seen.noise[i] = static_cast<float>(windows.noise);
     slopes[i] = static_cast<float>(slope_of(windows));
@@ -195,68 +155,11 @@ std::vector<float> find_noise_and_drift(Examination& seen, Diagnosis& found) {
   return slopes;
 }
 
-/// By readings at 0 or at full scale: if there are many, the others can only be load.
-Polarity polarity_by_rails(const Examination& seen) {
-  std::size_t at_zero = 0;
-  std::size_t at_top = 0;
-  std::size_t readings = 0;
-  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
-    const auto values = std::as_const(seen.kept).frame(frame);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (seen.constant[i] != 0 || std::isnan(values[i])) continue;
-      ++readings;
-      at_zero += values[i] == 0 ? 1U : 0U;
-      at_top += values[i] >= seen.full_scale ? 1U : 0U;
-    }
-  }
-  const double least = kAtRail * static_cast<double>(readings);
-  if (static_cast<double>(at_zero) > least) return Polarity::rises;
-  return static_cast<double>(at_top) > least ? Polarity::falls : Polarity::unknown;
-}
-
-/// By the readings of sensels that change, against those of the others, if these are many; or by
-/// changes from the median of each sensel, which is without load for most.
-Polarity polarity_by_changes(const Examination& seen, const std::vector<float>& slopes) {
-  Sides from_median;
-  std::vector<float> still_medians;
-  std::vector<float> extremes;
-  SenselReadings readings;
-  for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
-    if (seen.constant[i] != 0) continue;
-    read_sensel(seen.kept, i, readings);
-    const double noise = std::max<double>(seen.noise[i], seen.typical_noise);
-    for (std::size_t n = 0; n < readings.values.size(); ++n) {
-      readings.values[n] -= slopes[i] * static_cast<float>(readings.frames[n]);
-    }
-    const float middle = median(readings.values);
-    for (const float value : readings.values) from_median.add(value - middle, noise);
-    const float low = quantile(readings.values, 0.02);
-    const float high = quantile(readings.values, 0.98);
-    if (high - low < kBeyondSenselNoise * noise) {
-      still_medians.push_back(middle);
-    } else {
-      extremes.push_back(low);
-      extremes.push_back(high);
-    }
-  }
-  if (still_medians.size() < std::max<std::size_t>(8, seen.kept.sensels() / 5)) {
-    return from_median.polarity();
-  }
-  const float lowest = quantile(still_medians, 0.02);
-  const float highest = quantile(still_medians, 0.98);
-  Sides from_others;
-  for (const float value : extremes) {
-    from_others.add(value - std::clamp(value, lowest, highest), seen.typical_noise / 2);
-  }
-  const Polarity by_others = from_others.polarity();
-  return by_others != Polarity::unknown ? by_others : from_median.polarity();
-}
-
 /// Replaces the readings of a sensel by its signals.
 void take_signals(Examination& seen, std::size_t sensel, float slope, float sign) {
   KeptFrames& kept = seen.kept;
   SenselReadings readings;
-  read_sensel(kept, sensel, readings);
+  kept.read_sensel(sensel, readings);
   for (std::size_t frame = 0; frame < kept.frames(); ++frame) kept.frame(frame)[sensel] = 0;
   if (readings.values.empty()) return;
   std::vector<float> still = readings.values;
@@ -300,13 +203,12 @@ void find_contacts(Examination& seen) {
 }  // namespace
 
 double Examination::threshold(std::size_t sensel) const {
-  return kBeyondSenselNoise * std::max<double>(noise[sensel], typical_noise);
+  return kBeyondNoise * std::max<double>(noise[sensel], typical_noise);
 }
 
 void find_signals(Examination& seen, Diagnosis& found) {
   const std::vector<float> slopes = find_noise_and_drift(seen, found);
-  found.polarity = polarity_by_rails(seen);
-  if (found.polarity == Polarity::unknown) found.polarity = polarity_by_changes(seen, slopes);
+  found.polarity = find_polarity(seen, slopes);
   const float sign = found.polarity == Polarity::falls ? -1 : 1;
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) take_signals(seen, i, slopes[i], sign);
   found.idle_counts = figure_of(seen, seen.idle).median;
