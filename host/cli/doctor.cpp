@@ -87,7 +87,7 @@ std::string quoted(const std::string& word) {
 }
 
 /// The options that make other commands read the file as this one did.
-std::string reading_arguments(const ReadOptions& read, const Diagnosis& found) {
+std::string reading_arguments(const ReadOptions& read) {
   std::string text;
   if (!read.dataset.empty()) text += " --dataset " + quoted(read.dataset);
   if (!read.times.empty()) text += " --times " + quoted(read.times);
@@ -103,8 +103,7 @@ std::string reading_arguments(const ReadOptions& read, const Diagnosis& found) {
     }
     text += fmt::format(" --axes {}", fmt::join(words, ","));
   }
-  if (read.rate_hz) text += fmt::format(" --rate {}", *read.rate_hz);
-  return found.timing.rate_hz ? text : text + " --rate HZ";
+  return text;
 }
 
 /// What to type next: an idle file gives a tare, others forces.
@@ -117,15 +116,18 @@ std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
     return fmt::format("pillarfield stream {}{}{} --tare 2 --record recording.h5", source, layout,
                        falling);
   }
-  const std::string reading = reading_arguments(options.read, found);
+  const std::string reading = reading_arguments(options.read);
   if (found.contact_frames == 0) {
     return fmt::format("pillarfield calibrate tare {}{} -o tared.h5", source, reading);
   }
+  const std::string rate = options.read.rate_hz   ? fmt::format(" --rate {}", *options.read.rate_hz)
+                           : found.timing.rate_hz ? ""
+                                                  : " --rate HZ";
   const std::string tare = found.idle_frames >= kLeastTareFrames
                                ? fmt::format(" --tare-frames {}", found.idle_frames)
                                : "";
-  return fmt::format("pillarfield solve {}{}{}{}{} -o forces.h5", source, reading, layout, falling,
-                     tare);
+  return fmt::format("pillarfield solve {}{}{}{}{}{} -o forces.h5", source, reading, rate, layout,
+                     falling, tare);
 }
 
 Json json_of(const SenselFigure& figure) {

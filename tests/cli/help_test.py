@@ -13,7 +13,7 @@ from command import PROGRAM, SOURCE, CommandTest, datasets, on_terminal, run, ru
 
 STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["stream"], ["compare"], ["calibrate"],
-            *(["calibrate", step] for step in STEPS), ["info"], ["completion"]]
+            *(["calibrate", step] for step in STEPS), ["info"], ["doctor"], ["completion"]]
 
 
 def examples_of(command):

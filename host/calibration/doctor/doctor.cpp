@@ -94,11 +94,11 @@ Diagnosis Doctor::result() {
   std::iota(seen.column_order.begin(), seen.column_order.end(), 0U);
   find_signals(seen, found);
   find_odd_readings(seen, found);
+  find_layout(seen, found);
   find_shorts(seen, found);
   find_line_orders(seen, found);
   find_crosstalk(seen, found);
   find_faulty_sensels(seen, found);
-  find_layout(seen, found);
   found.picture = largest_signals(seen);
   for (std::size_t i = 0; i < skin.sensels(); ++i) {
     found.clipped += seen.good[i] != 0 && statistics.sensels()[i].saturated > 0 ? 1U : 0U;

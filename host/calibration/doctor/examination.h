@@ -13,7 +13,7 @@
 namespace pillarfield {
 
 /// Multiple of the noise beyond which a reading is not noise.
-inline constexpr double kBeyondNoise = 6;
+inline constexpr double kBeyondIdleNoise = 6;
 
 /// Rows or columns.
 enum class LineAxis : std::uint8_t { rows, columns };
@@ -71,8 +71,16 @@ struct Examination {
 /// Whether small contacts moved over most lines.
 [[nodiscard]] bool is_swept(const Examination& seen, LineAxis axis);
 
+/// How much each line and the next one differ, relative to their signals, but for gains of single
+/// sensels; unset: too little signal.
+[[nodiscard]] std::vector<std::optional<double>> neighbour_differences(const Examination& seen,
+                                                                       LineAxis axis);
+
 /// Which way readings go under load; `slopes` are the sensels' drifts, counts per kept frame.
 [[nodiscard]] Polarity find_polarity(const Examination& seen, const std::vector<float>& slopes);
+
+/// Whether the layout is pillars, or might be.
+[[nodiscard]] bool may_have_pillars(const Diagnosis& found);
 
 // Each step writes what it finds into the examination and into the diagnosis, in this order.
 
@@ -80,7 +88,9 @@ struct Examination {
 void find_signals(Examination& seen, Diagnosis& found);
 /// Sensels that are constant or saturated: not good for the next steps.
 void find_odd_readings(Examination& seen, Diagnosis& found);
-/// Two lines with the same signals.
+/// Whether groups of 2 x 2 sensels share their loads.
+void find_layout(const Examination& seen, Diagnosis& found);
+/// Two lines with the same signals, of different pillars.
 void find_shorts(Examination& seen, Diagnosis& found);
 /// The order in which a small contact passes lines.
 void find_line_orders(Examination& seen, Diagnosis& found);
@@ -88,7 +98,4 @@ void find_line_orders(Examination& seen, Diagnosis& found);
 void find_crosstalk(Examination& seen, Diagnosis& found);
 /// Sensels that are constant or do not respond, and rows and columns of them.
 void find_faulty_sensels(Examination& seen, Diagnosis& found);
-/// Whether groups of 2 x 2 sensels share their loads.
-void find_layout(const Examination& seen, Diagnosis& found);
-
 }  // namespace pillarfield

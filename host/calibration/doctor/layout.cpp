@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "base/quantile.h"
 #include "calibration/doctor/examination.h"
 
 namespace pillarfield {
@@ -11,9 +13,11 @@ namespace {
 /// Multiple of the noise's power that groups of four must differ by.
 constexpr double kAboveNoise = 4;
 /// Ratios up to which groups share pillars, and from which they do not.
-constexpr double kPillarRatio = 0.3;
+constexpr double kPillarRatio = 0.4;
 constexpr double kSenselRatio = 0.7;
 constexpr double kLeastGroups = 200;
+constexpr std::size_t kLeastPairs = 4;
+constexpr double kLeastDifferent = 0.05;
 
 /// Squares of the parity of groups of four loaded sensels.
 struct GroupParity {
@@ -52,9 +56,8 @@ void add_groups(const Examination& seen, std::uint32_t frame, std::uint32_t row,
   }
 }
 
-}  // namespace
-
-void find_layout(const Examination& seen, Diagnosis& found) {
+/// Parity of groups that may stand under pillars, relative to that of others.
+std::optional<double> parity_ratio(const Examination& seen) {
   GroupParity aligned;
   GroupParity others;
   for (const std::uint32_t frame : seen.contacts) {
@@ -63,9 +66,38 @@ void find_layout(const Examination& seen, Diagnosis& found) {
     add_groups(seen, frame, 1, 0, others);
     add_groups(seen, frame, 1, 1, others);
   }
-  if (aligned.groups < kLeastGroups || others.groups < kLeastGroups) return;
-  if (others.squares < kAboveNoise * others.noise || others.power() == 0) return;
-  found.layout_ratio = std::sqrt(aligned.power() / others.power());
+  if (aligned.groups < kLeastGroups || others.groups < kLeastGroups) return std::nullopt;
+  if (others.squares < kAboveNoise * others.noise || others.power() == 0) return std::nullopt;
+  return std::sqrt(aligned.power() / others.power());
+}
+
+/// Difference of lines that may run under the same pillars, relative to that of others.
+std::optional<double> pair_ratio(const Examination& seen) {
+  std::array<std::vector<double>, 2> differences;  // of the same pillars, of others
+  for (const LineAxis axis : {LineAxis::rows, LineAxis::columns}) {
+    const auto found = neighbour_differences(seen, axis);
+    for (std::size_t line = 0; line < found.size(); ++line) {
+      if (found[line]) differences.at(line % 2).push_back(*found[line]);
+    }
+  }
+  auto& [same, others] = differences;
+  if (same.size() < kLeastPairs || others.size() < kLeastPairs) return std::nullopt;
+  const double usual = median(others);
+  return usual > kLeastDifferent ? std::optional(median(same) / usual) : std::nullopt;
+}
+
+}  // namespace
+
+bool may_have_pillars(const Diagnosis& found) {
+  return found.layout_ratio && found.layout != ArrayLayout::sensels;
+}
+
+void find_layout(const Examination& seen, Diagnosis& found) {
+  const std::optional<double> parity = parity_ratio(seen);
+  const std::optional<double> pairs = pair_ratio(seen);
+  if (!parity && !pairs) return;
+  found.layout_ratio =
+      std::min(parity.value_or(pairs.value_or(1)), pairs.value_or(parity.value_or(1)));
   if (*found.layout_ratio < kPillarRatio) found.layout = ArrayLayout::pillars;
   if (*found.layout_ratio > kSenselRatio) found.layout = ArrayLayout::sensels;
 }

@@ -31,17 +31,16 @@ MarkColour colour_of(ArrayFault fault) {
       return {255, 255, 0};
     case ArrayFault::row_order:
     case ArrayFault::column_order:
-      return {0, 255, 255};
     case ArrayFault::row_crosstalk:
     case ArrayFault::column_crosstalk:
       break;
   }
-  return {60, 220, 60};
+  return {0, 255, 255};
 }
 
 bool is_of_rows(ArrayFault fault) {
   return fault == ArrayFault::dead_row || fault == ArrayFault::shorted_rows ||
-         fault == ArrayFault::row_order || fault == ArrayFault::row_crosstalk;
+         fault == ArrayFault::row_order;
 }
 
 /// A picture of squares, one a sensel, with a margin of one square.

@@ -237,9 +237,12 @@ void find_odd_readings(Examination& seen, Diagnosis& found) {
 void find_faulty_sensels(Examination& seen, Diagnosis& found) {
   SenselVerdicts verdicts(seen, found.idle_counts);
   verdicts.judge_readings();
-  verdicts.judge_by_neighbours((std::max(found.row_crosstalk_percent.value_or(0), 0.0) +
-                                std::max(found.column_crosstalk_percent.value_or(0), 0.0)) /
-                               100);
+  // Shear unloads some sensels of a pillar, so that its neighbours do not tell.
+  if (!may_have_pillars(found)) {
+    verdicts.judge_by_neighbours((std::max(found.row_crosstalk_percent.value_or(0), 0.0) +
+                                  std::max(found.column_crosstalk_percent.value_or(0), 0.0)) /
+                                 100);
+  }
   verdicts.report(found);
 }
 

@@ -145,6 +145,10 @@ double neighbours_difference(const LineSignals& signals, std::size_t lines, std:
   return least;
 }
 
+bool share_pillars(const Diagnosis& found, std::uint32_t a, std::uint32_t b) {
+  return may_have_pillars(found) && a % 2 == 0 && b == a + 1;
+}
+
 void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
   const bool was_swept = is_swept(seen, axis);
   const LineSignals signals(seen, axis);
@@ -152,7 +156,7 @@ void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
   for (std::uint32_t a = 0; a < lines; ++a) {
     for (std::uint32_t b = a + 1; b < lines; ++b) {
       const auto difference = signals.difference(a, b);
-      if (!difference) continue;
+      if (!difference || share_pillars(found, a, b)) continue;
       const bool is_equal = difference->unequal < kMostUnequal;
       const bool is_explained = was_swept && difference->unexplained < kMostUnexplained &&
                                 difference->unequal < kMostGainDifference;
@@ -172,6 +176,16 @@ void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
 }
 
 }  // namespace
+
+std::vector<std::optional<double>> neighbour_differences(const Examination& seen, LineAxis axis) {
+  const LineSignals signals(seen, axis);
+  std::vector<std::optional<double>> differences;
+  for (std::size_t line = 0; line + 1 < seen.lines(axis); ++line) {
+    const auto difference = signals.difference(line, line + 1);
+    differences.push_back(difference ? std::optional(difference->unexplained) : std::nullopt);
+  }
+  return differences;
+}
 
 void find_shorts(Examination& seen, Diagnosis& found) {
   if (seen.contacts.size() < 10) return;

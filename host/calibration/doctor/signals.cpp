@@ -203,7 +203,7 @@ void find_contacts(Examination& seen) {
 }  // namespace
 
 double Examination::threshold(std::size_t sensel) const {
-  return kBeyondNoise * std::max<double>(noise[sensel], typical_noise);
+  return kBeyondIdleNoise * std::max<double>(noise[sensel], typical_noise);
 }
 
 void find_signals(Examination& seen, Diagnosis& found) {

@@ -139,9 +139,9 @@ class Doctor {
   std::unique_ptr<State> state_;
 };
 
-/// Draws the array in squares, the brighter the more a sensel changed under load, with frames in
-/// the colour of their fault: absent blue, dead red, stuck orange, saturated magenta; lines in
-/// colour beside rows and columns: dead red, shorted yellow, out of order cyan, crosstalk green.
+/// Draws the array in squares, the brighter the more a sensel changed under load. Sensels are
+/// framed in the colour of their fault: absent blue, dead red, stuck orange, saturated magenta.
+/// Bars beside rows and columns: dead red, shorted yellow, out of order cyan.
 [[nodiscard]] RgbPicture draw(const Diagnosis& diagnosis);
 
 }  // namespace pillarfield
