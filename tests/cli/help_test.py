@@ -167,7 +167,7 @@ class Numbers(CommandTest):
         scene = SOURCE / "scenes/spin.toml"
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
-        needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording],
+        needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording], "doctor": [recording],
                   "apply": [recording, recording, "-o", output],
                   "compare": [recording, recording],
                   "solve": [recording, "-o", output, "--contacts", output]}

@@ -137,6 +137,7 @@ void add_doctor(CLI::App& parent, Work& work) {
               100'000'000);
   add_trust(command, options->read);
   add_plain_data(command, options->read, true);
+  command->remove_option(command->get_option("--pitch-mm"));  // Nothing here is a length.
   Group(command, "Output")
       .text("--png", options->png, "FILE",
             "Draw the array and what was found (docs/command_line.md)");
