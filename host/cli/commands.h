@@ -111,6 +111,16 @@ struct InfoOptions : PrintOptions {
   bool devices = false;
 };
 
+/// Looks at frames of a file or of a live source.
+struct DoctorOptions : PrintOptions {
+  std::string source;
+  ReadOptions read;
+  double seconds = 10;  ///< of a live source
+  std::uint32_t serial_baud = 2'000'000;
+  std::string png;  ///< file of the picture; empty: none
+  Replace replace = Replace::results;
+};
+
 void simulate(const SimulateOptions& options);
 void solve(const SolveOptions& given);
 void join(const JoinCommand& command);
@@ -120,6 +130,7 @@ void compare(const CompareOptions& options);
 void calibrate(const StepCommand& command);
 void calibrate(const ApplyCommand& command);
 void info(const InfoOptions& options);
+void doctor(const DoctorOptions& options);
 
 /// Prints version, commit, compiler and libraries.
 void print_version(bool json);

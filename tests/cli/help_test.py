@@ -13,7 +13,7 @@ from command import PROGRAM, SOURCE, CommandTest, datasets, on_terminal, run, ru
 
 STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["stream"], ["compare"], ["calibrate"],
-            *(["calibrate", step] for step in STEPS), ["info"], ["completion"]]
+            *(["calibrate", step] for step in STEPS), ["info"], ["doctor"], ["completion"]]
 
 
 def examples_of(command):
@@ -167,7 +167,7 @@ class Numbers(CommandTest):
         scene = SOURCE / "scenes/spin.toml"
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
-        needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording],
+        needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording], "doctor": [recording],
                   "apply": [recording, recording, "-o", output],
                   "compare": [recording, recording],
                   "solve": [recording, "-o", output, "--contacts", output]}

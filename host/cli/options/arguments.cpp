@@ -240,6 +240,7 @@ Work parse_arguments(int argc, char** argv) {
   add_stream(app, work);
   add_control(app, work);
   add_compare(app, work);
+  add_doctor(app, work);
   add_calibrate(app, work);
   add_info(app, work);
   add_completion(app, work);

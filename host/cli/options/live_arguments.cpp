@@ -116,4 +116,33 @@ void add_control(CLI::App& parent, Work& work) {
   add_help(command);
 }
 
+void add_doctor(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<DoctorOptions>(
+      parent, work, doctor, "doctor",
+      "Look at the frames of any pressure array: what is broken, shorted or wired wrongly.",
+      "  pillarfield simulate scenes/new_skin_rolled.toml --uncalibrated -o rolled.h5\n"
+      "  pillarfield doctor rolled.h5 --png rolled.png\n"
+      "  pillarfield doctor rolled.h5 --json\n");
+  Group input(command, "Input");
+  command
+      ->add_option("SOURCE", options->source,
+                   "Frames as of solve, or a live source: - (packets on standard input), shm:NAME, "
+                   "udp:ADDRESS:PORT, serial:DEVICE")
+      ->required()
+      ->type_name("FILE|SOURCE")
+      ->group("Input");
+  input.number("--seconds", options->seconds, "SECONDS", "Time to look at a live source [10]", 0.1,
+               3600);
+  input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
+              100'000'000);
+  add_trust(command, options->read);
+  add_plain_data(command, options->read, true);
+  command->remove_option(command->get_option("--pitch-mm"));  // Nothing here is a length.
+  Group(command, "Output")
+      .text("--png", options->png, "FILE",
+            "Draw the array and what was found (docs/command_line.md)");
+  add_overwrite(command, options->replace);
+  add_general(command, *options, "Print the findings as JSON", kQuietReport);
+}
+
 }  // namespace pillarfield::cli

@@ -53,6 +53,7 @@ std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Wor
 
 void add_stream(CLI::App& parent, Work& work);
 void add_control(CLI::App& parent, Work& work);
+void add_doctor(CLI::App& parent, Work& work);
 
 /// Adds `calibrate` and its steps.
 void add_calibrate(CLI::App& parent, Work& work);

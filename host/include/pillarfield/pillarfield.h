@@ -85,6 +85,7 @@
 // Calibration of a new skin.
 #include "pillarfield/arm_calibration.h"
 #include "pillarfield/bending_calibration.h"
+#include "pillarfield/doctor.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/fault_finder.h"
 #include "pillarfield/leak_calibration.h"

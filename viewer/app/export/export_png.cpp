@@ -1,12 +1,9 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
+#include "io/output/png_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/solver_plan.h"
@@ -26,37 +23,13 @@ std::vector<std::uint8_t> without_alpha(const Pixels& pixels) {
   return rgb;
 }
 
-[[noreturn]] void fail_to_write_png(const std::filesystem::path& path, const char* reason) {
-  throw Error(path.string(), fmt::format("cannot be written: {}", reason),
-              "check the directory and the free disk space");
-}
-
-/// A stream on a duplicate of the file descriptor.
-std::FILE* stream_of(const OutputFile& file) {
-  const int duplicate = fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0);
-  return duplicate < 0 ? nullptr : fdopen(duplicate, "wb");
-}
-
 }  // namespace
 
 void write_png(const std::filesystem::path& path, const Pixels& pixels, Replace replace) {
-  if (pixels.rgba.empty() || pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
+  if (pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
     throw Error(path.string(), "the picture has no pixels", "set a size above 0");
   }
-  OutputFile file(path, OutputKind::png, replace);
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = pixels.width;
-  image.height = pixels.height;
-  image.format = PNG_FORMAT_RGB;
-  const std::vector<std::uint8_t> rgb = without_alpha(pixels);
-  std::FILE* const stream = stream_of(file);
-  if (stream == nullptr) fail_to_write_png(path, "there are too many open files");
-  const bool written = png_image_write_to_stdio(&image, stream, 0, rgb.data(), 0, nullptr) != 0;
-  const bool closed = std::fclose(stream) == 0;
-  if (!written) fail_to_write_png(path, image.message);
-  if (!closed) fail_to_write_png(path, "the disk is full");
-  file.commit();
+  pillarfield::write_png(path, {pixels.width, pixels.height, without_alpha(pixels)}, replace);
 }
 
 std::filesystem::path numbered(const std::filesystem::path& path, std::uint64_t frame,

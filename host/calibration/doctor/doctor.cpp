@@ -1,0 +1,110 @@
+#include "pillarfield/doctor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "calibration/doctor/examination.h"
+#include "calibration/doctor/frame_times.h"
+#include "calibration/doctor/kept_frames.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint32_t kLeastDoctorFrames = 10;
+
+/// The skin with the largest reading that its type can hold as its full scale, unless it states
+/// one.
+Skin with_full_scale(Skin skin, SenselType type) {
+  if (!skin.full_scale_counts && type == SenselType::u8) skin.full_scale_counts = 255;
+  if (!skin.full_scale_counts && type == SenselType::u16) skin.full_scale_counts = 65535;
+  return skin;
+}
+
+std::vector<std::uint8_t> constant_sensels(const FrameStatistics& statistics) {
+  std::vector<std::uint8_t> constant;
+  for (const SenselStatistics& sensel : statistics.sensels()) {
+    constant.push_back(sensel.readings == 0 || sensel.lowest == sensel.highest ? 1 : 0);
+  }
+  return constant;
+}
+
+/// The largest signal of each sensel.
+std::vector<float> largest_signals(const Examination& seen) {
+  std::vector<float> largest(seen.kept.sensels());
+  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
+    const auto signals = std::as_const(seen.kept).frame(frame);
+    for (std::size_t i = 0; i < signals.size(); ++i) largest[i] = std::max(largest[i], signals[i]);
+  }
+  return largest;
+}
+
+}  // namespace
+
+struct Doctor::State {
+  State(std::string name, const Skin& skin, SenselType type)
+      : statistics(std::move(name), with_full_scale(skin, type), type),
+        kept(skin.rows, skin.cols) {}
+
+  FrameStatistics statistics;
+  FrameTimes times;
+  KeptFrames kept;
+};
+
+Doctor::Doctor(std::string name, const Skin& skin, SenselType type)
+    : state_(std::make_unique<State>(std::move(name), skin, type)) {}
+Doctor::~Doctor() = default;
+Doctor::Doctor(Doctor&&) noexcept = default;
+Doctor& Doctor::operator=(Doctor&&) noexcept = default;
+
+void Doctor::add(const FrameView& frame, double time_s) {
+  state_->statistics.add(frame);
+  state_->times.add(time_s);
+  state_->kept.add(frame, time_s);
+}
+
+Diagnosis Doctor::result() {
+  const FrameStatistics& statistics = state_->statistics;
+  require_frames(statistics, kLeastDoctorFrames);
+  const Skin& skin = statistics.skin();
+  Diagnosis found;
+  found.rows = skin.rows;
+  found.cols = skin.cols;
+  found.type = statistics.type();
+  found.frames = statistics.frames();
+  found.kept = state_->kept.frames();
+  found.timing = state_->times.timing();
+  Examination seen = {.statistics = statistics, .kept = state_->kept};
+  seen.rows = skin.rows;
+  seen.cols = skin.cols;
+  seen.full_scale = skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity());
+  seen.idle.resize(skin.sensels());
+  seen.noise.resize(skin.sensels());
+  seen.touched.resize(skin.sensels());
+  seen.good.assign(skin.sensels(), 1);
+  seen.constant = constant_sensels(statistics);
+  seen.doubtful_rows.resize(skin.rows);
+  seen.doubtful_columns.resize(skin.cols);
+  seen.row_order.resize(skin.rows);
+  std::iota(seen.row_order.begin(), seen.row_order.end(), 0U);
+  seen.column_order.resize(skin.cols);
+  std::iota(seen.column_order.begin(), seen.column_order.end(), 0U);
+  find_signals(seen, found);
+  find_odd_readings(seen, found);
+  find_layout(seen, found);
+  find_shorts(seen, found);
+  find_line_orders(seen, found);
+  find_crosstalk(seen, found);
+  find_faulty_sensels(seen, found);
+  found.picture = largest_signals(seen);
+  for (std::size_t i = 0; i < skin.sensels(); ++i) {
+    found.clipped += seen.good[i] != 0 && statistics.sensels()[i].saturated > 0 ? 1U : 0U;
+  }
+  std::ranges::stable_sort(found.findings, {}, &ArrayFinding::fault);
+  return found;
+}
+
+}  // namespace pillarfield

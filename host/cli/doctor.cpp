@@ -1,0 +1,282 @@
+// pillarfield doctor: what is wrong with a pressure array.
+
+#include "pillarfield/doctor.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "base/number_text.h"
+#include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/progress.h"
+#include "cli/warnings.h"
+#include "io/output/png_file.h"
+#include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
+#include "pillarfield/live.h"
+#include "pillarfield/printable.h"
+#include "pillarfield/tare.h"
+
+namespace pillarfield::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Diagnosis look_at_file(const DoctorOptions& options) {
+  ReadOptions read = options.read;
+  read.untimed = !read.rate_hz;
+  // Constants of forces do not matter here, so that none is missing.
+  read.sensel_pitch_mm = 1;
+  read.counts_per_newton = 1;
+  read.threshold_counts = 0;
+  const auto source = open_frames_with_warnings(options.source, read, options.quiet);
+  Doctor doctor(options.source, source->skin(), source->sensel_type());
+  FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
+  Progress progress("Reading", source->frames(), options.quiet);
+  for (std::uint64_t index = 0; index < source->frames() && !is_interrupted(); ++index) {
+    const double time_s = source->read(index, frame);
+    doctor.add(frame.view(), time_s);
+    progress.show(index + 1);
+  }
+  return doctor.result();
+}
+
+Diagnosis look_at_source(const DoctorOptions& options) {
+  using SourceClock = std::chrono::steady_clock;
+  if (const auto say = terminal_line(options.quiet)) {
+    say(fmt::format("Looking at {} for {:g} s; sweep a finger over all of it ...", options.source,
+                    options.seconds));
+  }
+  LiveSourceOptions live;
+  live.stop = is_interrupted;
+  live.serial_baud = options.serial_baud;
+  const auto stream = open_live_source(options.source, live);
+  if (!stream) {
+    throw Error(options.source, "was interrupted before a frame came", "start its sender");
+  }
+  Doctor doctor(options.source, stream->skin(), stream->sensel_type());
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  const auto end = SourceClock::now() + std::chrono::duration_cast<SourceClock::duration>(
+                                            std::chrono::duration<double>(options.seconds));
+  while (SourceClock::now() < end && !is_interrupted()) {
+    const Arrival arrival = stream->next(frame, std::chrono::milliseconds(100));
+    if (arrival == Arrival::ended) break;
+    if (arrival == Arrival::arrived) doctor.add(frame.readings, frame.time_s);
+  }
+  return doctor.result();
+}
+
+std::string place_text(const SenselPlace& place) {
+  return fmt::format("({}, {})", place.first, place.second);
+}
+
+/// A word that a shell reads as it is.
+std::string quoted(const std::string& word) {
+  const bool is_plain = word.find_first_not_of(
+                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                            "0123456789_-./:,=?&@%+") == std::string::npos;
+  if (is_plain && word.find_first_of("?&") == std::string::npos) return word;
+  std::string text = "'";
+  for (const char each : word) text += each == '\'' ? std::string("'\\''") : std::string(1, each);
+  return text + "'";
+}
+
+/// The options that make other commands read the file as this one did.
+std::string reading_arguments(const ReadOptions& read) {
+  std::string text;
+  if (!read.dataset.empty()) text += " --dataset " + quoted(read.dataset);
+  if (!read.times.empty()) text += " --times " + quoted(read.times);
+  if (read.frame_size) {
+    text += fmt::format(" --shape {}x{}", read.frame_size->rows, read.frame_size->cols);
+  }
+  if (!read.axes.empty()) {
+    std::vector<const char*> words;
+    for (const ArrayAxis axis : read.axes) {
+      words.push_back(axis == ArrayAxis::frames ? "frames"
+                      : axis == ArrayAxis::rows ? "rows"
+                                                : "columns");
+    }
+    text += fmt::format(" --axes {}", fmt::join(words, ","));
+  }
+  return text;
+}
+
+/// What to type next: an idle file gives a tare, others forces.
+std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
+  const std::string source = quoted(options.source);
+  const std::string falling = found.polarity == Polarity::falls ? " --falling" : "";
+  const std::string layout = found.layout == ArrayLayout::pillars ? " --layout pillars" : "";
+  if (is_live_source(options.source)) {
+    if (found.contact_frames == 0) return fmt::format("pillarfield doctor {} --seconds 30", source);
+    return fmt::format("pillarfield stream {}{}{} --tare 2 --record recording.h5", source, layout,
+                       falling);
+  }
+  const std::string reading = reading_arguments(options.read);
+  if (found.contact_frames == 0) {
+    return fmt::format("pillarfield calibrate tare {}{} -o tared.h5", source, reading);
+  }
+  const std::string rate = options.read.rate_hz   ? fmt::format(" --rate {}", *options.read.rate_hz)
+                           : found.timing.rate_hz ? ""
+                                                  : " --rate HZ";
+  const std::string tare = found.idle_frames >= kLeastTareFrames
+                               ? fmt::format(" --tare-frames {}", found.idle_frames)
+                               : "";
+  return fmt::format("pillarfield solve {}{}{}{}{}{} -o forces.h5", source, reading, rate, layout,
+                     falling, tare);
+}
+
+Json json_of(const SenselFigure& figure) {
+  return {{"median", figure.median}, {"worst", figure.worst}, {"place", figure.place}};
+}
+
+template <class Number>
+Json json_of(const std::optional<Number>& number) {
+  return number ? Json(*number) : Json(nullptr);
+}
+
+Json json_of(const ArrayFinding& finding) {
+  Json json = {{"fault", name_of(finding.fault)}};
+  if (!finding.sensels.empty()) {
+    json["count"] = finding.sensels.size();
+    json["sensels"] = finding.sensels;
+  }
+  if (!finding.lines.empty()) json["lines"] = finding.lines;
+  if (!finding.in_order.empty()) json["order"] = finding.in_order;
+  json["figure"] = finding.figure;
+  json["text"] = finding.text;
+  return json;
+}
+
+Json json_of(const DoctorOptions& options, const Diagnosis& found) {
+  Json gaps = Json::array();
+  for (const FrameGap& gap : found.timing.gaps) {
+    gaps.push_back({{"frame", gap.frame}, {"time_s", gap.time_s}, {"length_s", gap.length_s}});
+  }
+  Json json = {{"source", options.source},
+               {"frames", found.frames},
+               {"frames_looked_at", found.kept},
+               {"rows", found.rows},
+               {"cols", found.cols},
+               {"sensel_type", name_of(found.type)},
+               {"rate_hz", json_of(found.timing.rate_hz)},
+               {"jitter_ms", found.timing.jitter_ms},
+               {"gaps", gaps},
+               {"gap_count", found.timing.gap_count},
+               {"lost", found.timing.lost},
+               {"polarity", name_of(found.polarity)},
+               {"idle_counts", found.idle_counts},
+               {"noise_counts", json_of(found.noise)},
+               {found.timing.rate_hz ? "drift_counts_per_minute" : "drift_counts",
+                found.drift ? json_of(*found.drift) : Json(nullptr)},
+               {"contact_counts", found.contact_counts},
+               {"contact_frames", found.contact_frames},
+               {"idle_frames", found.idle_frames},
+               {"clipped", found.clipped},
+               {"layout", name_of(found.layout)},
+               {"layout_ratio", json_of(found.layout_ratio)},
+               {"row_order_tested", found.row_order_tested},
+               {"column_order_tested", found.column_order_tested},
+               {"row_crosstalk_percent", json_of(found.row_crosstalk_percent)},
+               {"column_crosstalk_percent", json_of(found.column_crosstalk_percent)},
+               {"untouched", found.untouched},
+               {"findings", Json::array()}};
+  for (const ArrayFinding& finding : found.findings) json["findings"].push_back(json_of(finding));
+  json["next"] = next_command(options, found);
+  return json;
+}
+
+std::string timing_text(const FrameTiming& timing) {
+  if (!timing.rate_hz) return "no times; give --rate HZ";
+  std::string text =
+      fmt::format("{} Hz, jitter {:.2f} ms", rounded(*timing.rate_hz), timing.jitter_ms);
+  if (timing.gap_count == 0) return text + ", no gaps";
+  const FrameGap& first = timing.gaps.front();
+  return text + fmt::format(", {} with room for {}, the first of {} s before frame {}",
+                            counted(timing.gap_count, "gap"), counted(timing.lost, "frame"),
+                            rounded(first.length_s), first.frame);
+}
+
+std::string worst_text(const SenselFigure& figure) {
+  return fmt::format("{:.2f} counts (farthest {:.2f} at {})", figure.median, figure.worst,
+                     place_text(figure.place));
+}
+
+std::string load_text(const Diagnosis& found) {
+  if (found.polarity == Polarity::unknown)
+    return "no contact stands out; sweep a finger over the array";
+  std::string text = fmt::format(
+      "readings {} under load{}, by {} counts, in {} of the {} looked at",
+      found.polarity == Polarity::rises ? "rise" : "fall",
+      found.polarity == Polarity::rises ? "" : " (--falling)", rounded(found.contact_counts),
+      grouped(found.contact_frames), counted(found.kept, "frame"));
+  if (found.clipped > 0) {
+    text += fmt::format("; {} reached full scale", counted(found.clipped, "sensel"));
+  }
+  return text;
+}
+
+std::string layout_text(const Diagnosis& found) {
+  if (!found.layout_ratio) return "undecidable: too little load";
+  const std::string figure =
+      fmt::format("groups of 2 x 2 differ from a shared load by {:.2f} of what other groups do",
+                  *found.layout_ratio);
+  return fmt::format("{} ({})",
+                     found.layout == ArrayLayout::unknown ? "undecidable" : name_of(found.layout),
+                     figure);
+}
+
+std::string tested_text(const Diagnosis& found) {
+  const auto order = [](bool tested) { return tested ? "tested" : "not shown by these frames"; };
+  const auto ghosts = [](const std::optional<double>& percent) {
+    return percent ? fmt::format("{:.1f} %", *percent) : std::string("not shown");
+  };
+  const std::uint64_t sensels = std::uint64_t{found.rows} * found.cols;
+  return fmt::format(
+      "{} of {} sensels ({} not touched: unknown)\n             order of rows {}, of columns {}; "
+      "crosstalk along rows {}, along columns {}",
+      grouped(sensels - found.untouched.size()), grouped(sensels), grouped(found.untouched.size()),
+      order(found.row_order_tested), order(found.column_order_tested),
+      ghosts(found.row_crosstalk_percent), ghosts(found.column_crosstalk_percent));
+}
+
+void print(const DoctorOptions& options, const Diagnosis& found) {
+  fmt::print("{}: {} of {} x {} sensels, {}\n", printable(options.source),
+             counted(found.frames, "frame"), found.rows, found.cols, name_of(found.type));
+  fmt::print("  times      {}\n", timing_text(found.timing));
+  fmt::print("  idle       {} counts, noise {}\n", rounded(found.idle_counts),
+             worst_text(found.noise));
+  if (found.drift) {
+    fmt::print("  drift      {}{}\n", worst_text(*found.drift),
+               found.timing.rate_hz ? " per minute" : " over all frames");
+  }
+  fmt::print("  load       {}\n", load_text(found));
+  fmt::print("  layout     {}\n", layout_text(found));
+  fmt::print("  tested     {}\n", tested_text(found));
+  for (const ArrayFinding& finding : found.findings) fmt::print("  ! {}\n", finding.text);
+  if (found.findings.empty()) fmt::print("  Nothing wrong was found.\n");
+  fmt::print("Next: {}\n", printable(next_command(options, found)));
+}
+
+}  // namespace
+
+void doctor(const DoctorOptions& options) {
+  const bool is_live = is_live_source(options.source);
+  if (!options.png.empty()) {
+    check_outputs({is_live ? "" : options.source}, {{options.png, OutputKind::png}},
+                  options.replace);
+  }
+  const Diagnosis found = is_live ? look_at_source(options) : look_at_file(options);
+  if (!options.png.empty()) write_png(options.png, draw(found), options.replace);
+  if (options.json) {
+    fmt::print("{}\n", json_text(json_of(options, found)));
+  } else {
+    print(options, found);
+  }
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/frame.h"
+#include "pillarfield/rgb_picture.h"
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+/// Which way readings go under load.
+enum class Polarity : std::uint8_t { rises, falls, unknown };
+
+/// What the readings say about what lies on the sensels.
+enum class ArrayLayout : std::uint8_t {
+  pillars,  ///< groups of 2 x 2 sensels share the load of a pillar
+  sensels,  ///< each sensel is loaded by itself
+  unknown,  ///< nothing decides it
+};
+
+/// What is wrong with an array.
+enum class ArrayFault : std::uint8_t {
+  absent,            ///< sensels without a reading, or that always read 0 where all others do not
+  dead,              ///< sensels that do not respond although their neighbours do
+  stuck,             ///< sensels whose reading is constant while those of the others vary
+  saturated,         ///< sensels that are at full scale most of the time
+  dead_row,          ///< a row of dead, absent or stuck sensels
+  dead_column,       ///< the same for a column
+  shorted_rows,      ///< two rows that show the same contacts
+  shorted_columns,   ///< the same for columns
+  row_order,         ///< rows are wired in another order than they lie
+  column_order,      ///< the same for columns
+  row_crosstalk,     ///< a contact shows in all of its rows
+  column_crosstalk,  ///< a contact shows in all of its columns
+};
+
+/// "absent", "dead", "dead row", ...
+[[nodiscard]] const char* name_of(ArrayFault fault);
+[[nodiscard]] const char* name_of(Polarity polarity);
+[[nodiscard]] const char* name_of(ArrayLayout layout);
+
+/// A place, [row, col]; rows and columns count from 0.
+using SenselPlace = std::pair<std::uint32_t, std::uint32_t>;
+
+/// A fault, its places and its figure.
+struct ArrayFinding {
+  ArrayFault fault = ArrayFault::dead;
+  std::vector<SenselPlace> sensels = {};     ///< of faults of sensels
+  std::vector<std::uint32_t> lines = {};     ///< rows or columns of faults of lines
+  std::vector<std::uint32_t> in_order = {};  ///< of row_order: rows in the order in which they lie
+  /// absent, stuck, saturated: median reading, counts. dead and dead lines: largest response in
+  /// per cent of that of the neighbours. Shorted lines: difference of the lines in per cent of
+  /// their signal. Order: number of lines out of place. Crosstalk: per cent of the largest signal
+  /// of the row or column.
+  double figure = 0;
+  /// One sentence for people, with the figure and the place.
+  std::string text = {};
+};
+
+/// A time without frames.
+struct FrameGap {
+  std::uint64_t frame = 0;  ///< the frame after it, from 0
+  double time_s = 0;        ///< of that frame
+  double length_s = 0;      ///< since the frame before it
+};
+
+/// The times of frames.
+struct FrameTiming {
+  std::optional<double> rate_hz = {};  ///< of the median interval; unset: there are no times
+  double jitter_ms = 0;                ///< standard deviation of the intervals, without gaps
+  std::vector<FrameGap> gaps = {};     ///< the first ones, over 1.5 median intervals each
+  std::uint64_t gap_count = 0;
+  std::uint64_t lost = 0;  ///< frames for which there is room in the gaps
+};
+
+/// A figure of the whole array, and its worst sensel.
+struct SenselFigure {
+  double median = 0;
+  double worst = 0;
+  SenselPlace place = {};
+};
+
+/// What Doctor says.
+struct Diagnosis {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  SenselType type = SenselType::u8;
+  std::uint64_t frames = 0;
+  std::uint64_t kept = 0;  ///< frames that were looked at for more than their statistics
+  FrameTiming timing = {};
+  Polarity polarity = Polarity::unknown;
+  double idle_counts = 0;   ///< median reading of sensels without load
+  SenselFigure noise = {};  ///< counts
+  /// Counts per minute, or over all frames if there are no times. Unset: too few frames.
+  std::optional<SenselFigure> drift = {};
+  double contact_counts = 0;         ///< largest change of a frame under load, median of the frames
+  std::uint64_t contact_frames = 0;  ///< kept frames with a contact
+  std::uint64_t idle_frames = 0;     ///< first frames without a contact
+  std::uint64_t clipped = 0;  ///< sensels that were at full scale in some frames, not in most
+  std::vector<SenselPlace> untouched = {};  ///< sensels that nothing tested
+  ArrayLayout layout = ArrayLayout::unknown;
+  /// What four sensels of a pillar do not share, relative to four others; around 1 for bare
+  /// sensels.
+  std::optional<double> layout_ratio = {};
+  bool row_order_tested = false;  ///< a small contact swept over most rows
+  bool column_order_tested = false;
+  std::optional<double> row_crosstalk_percent = {};  ///< unset: no small contact showed it
+  std::optional<double> column_crosstalk_percent = {};
+  std::vector<ArrayFinding> findings = {};
+  std::vector<float> picture = {};  ///< largest change of each sensel under load, counts
+};
+
+/// Looks at the frames of any pressure array and says what is wrong with it (docs/command_line.md).
+///
+/// Keeps at most 4096 frames and 32 million readings, 128 MB; of more frames every second, fourth
+/// ... one.
+class Doctor {
+ public:
+  /// Messages use `name` as the name of the frames.
+  Doctor(std::string name, const Skin& skin, SenselType type);
+  ~Doctor();
+  Doctor(Doctor&&) noexcept;
+  Doctor& operator=(Doctor&&) noexcept;
+
+  /// Adds a frame of the skin's size and type; NaN is a frame without a time.
+  void add(const FrameView& frame, double time_s);
+
+  /// Judges the frames so far, once: takes the kept frames. Throws Error for fewer than 10 frames.
+  [[nodiscard]] Diagnosis result();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Draws the array in squares, the brighter the more a sensel changed under load. Sensels are
+/// framed in the colour of their fault: absent blue, dead red, stuck orange, saturated magenta.
+/// Bars beside rows and columns: dead red, shorted yellow, out of order cyan.
+[[nodiscard]] RgbPicture draw(const Diagnosis& diagnosis);
+
+}  // namespace pillarfield
