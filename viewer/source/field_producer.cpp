@@ -47,8 +47,9 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
   set_sensor(info.contacts, plan);
-  info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
-                            processor.shares_memory() ? "zero copy" : "staged");
+  info.solver =
+      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name) +
+      (processor.shares_memory() ? ", zero copy" : ", staged");
 }
 
 /// Number of frames to simulate of a scene; adds a warning where it is not all.
@@ -187,6 +188,12 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 }
 
 }  // namespace
+
+std::string solver_words(SkinLayout layout, const std::string& estimator,
+                         const std::string& device) {
+  if (layout == SkinLayout::sensels) return device;
+  return device.empty() ? estimator : fmt::format("{} on {}", estimator, device);
+}
 
 void throw_all_fields_in_use() {
   throw Error("FieldProducer", fmt::format("all {} fields are in use", FieldProducer::kMostShown),

@@ -56,7 +56,7 @@ class RecordedFrames final : public FrameProvider {
   void open(const std::filesystem::path& path) {
     std::unique_ptr<FrameSource> source = open_frames(path, options_);
     const Skin& skin = source->skin();
-    if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
+    if (skin.rows != skin_.rows || skin.cols != skin_.cols || skin.layout != skin_.layout ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {
       throw Error(path.string(), "it was replaced by another recording", "open it again");
     }

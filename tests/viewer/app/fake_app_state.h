@@ -27,7 +27,7 @@ class FakeProducer final : public FieldProducer {
 
   [[nodiscard]] ShownField produce(std::uint64_t index) override {
     auto memory = std::make_shared<ForceField>(kRows, kCols);
-    for (std::size_t i = 0; i < memory->pillars(); ++i) {
+    for (std::size_t i = 0; i < memory->elements(); ++i) {
       memory->normal[i] = 0.1f * static_cast<float>(i % kCols);
       memory->shear_x[i] = 0.03f;
       memory->status[i] = 15;
