@@ -352,6 +352,7 @@ SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
     from.calibration = &*calibration;
   }
   from.settings.counts_per_newton = options.counts_per_newton;
+  from.settings.layout = options.producer.read.layout;
   SolverPlan plan = build_plan(plan_of_frames(stream), from, options.calibration.string(),
                                [&] { return SolverPlan{}.frame_interval_s; });
   if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
