@@ -49,7 +49,7 @@ TEST(KeysOfSensels, ThoseOfPillarsOnlySaySo) {
   }
 }
 
-/// All words that ImGui writes in the panels and in the help.
+/// All words of the panels and of the help.
 std::string words_of_panels(FakeAppState& fake) {
   ImGuiContext* const context = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -72,13 +72,16 @@ std::string words_of_panels(FakeAppState& fake) {
     selection_panel(fake.state);
     status_row(fake.state, "gpu");
     ImGui::TextUnformatted(title_of(PanelId::pillar, fake.place.source->skin.layout));
-    help_overlay({0, 0, 1600, 1600}, *fake.place.source);
     words = context->LogBuffer.c_str();
     ImGui::LogFinish();
     ImGui::End();
     ImGui::Render();
   }
   ImGui::DestroyContext(context);
+  for (const Shortcut& shortcut : shortcuts()) {  // as in the help
+    if (applies(shortcut, *fake.place.source)) words += std::string("\n") + shortcut.description;
+  }
+  for (const MouseHelp& help : mouse_help()) words += std::string("\n") + help.description;
   return words;
 }
 
