@@ -102,8 +102,9 @@ std::shared_ptr<const ShownField> PeakHold::field(const ShownField& frame) {
   if (const std::span<float> magnitude = block->plane(PlaneBlock::kMagnitude); !magnitude.empty()) {
     std::ranges::copy(peaks_, magnitude.begin());
   }
+  const std::uint8_t usable = has_pillars(frame.forces) ? status::kUsable : status::kSensel1;
   std::ranges::transform(peaks_, block->status().begin(),
-                         [](float peak) { return peak > 0 ? status::kUsable : 0; });
+                         [usable](float peak) { return peak > 0 ? usable : std::uint8_t{0}; });
   auto field = std::make_shared<ShownField>(frame);
   field->forces = block->view();
   field->raw = {};
