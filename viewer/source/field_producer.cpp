@@ -151,6 +151,9 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   info.name = path.filename().string();
   info.kind = source->format();
   info.warnings = source->warnings();
+  if (const std::string read_as = source->read_as(); !read_as.empty()) {
+    info.warnings.push_back(fmt::format("Read {}.", read_as));
+  }
   SolverPlan plan = plan_of_frames(*source);
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });

@@ -154,8 +154,8 @@ constexpr std::array kShortcuts{
     shows<Quantity::uncertainty>(plain(GLFW_KEY_0, GLFW_KEY_KP_0), "0", "uncertainty"),
     shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
-    shows<Quantity::peak>(plain(GLFW_KEY_E), "E", "peak of the normal force"),
     shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
+    shows<Quantity::peak>(plain(GLFW_KEY_E), "E", "peak of the normal force"),
     Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
              [](const Command& command) { hold_peak(command.state); }},
 

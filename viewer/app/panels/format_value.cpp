@@ -235,11 +235,11 @@ std::vector<ContactColumn> columns_of(SkinLayout layout) {
   if (layout == SkinLayout::pillars) {
     for (const ContactColumn& column : shear_columns()) columns.push_back(column);
   }
-  columns.push_back({"mean", "mean pressure, kPa", "00000", [](const ContactQuantities& contact) {
+  columns.push_back({"mean", "mean pressure, kPa", "0.0000", [](const ContactQuantities& contact) {
                        return three_digits(contact.mean_pressure_kpa);
                      }});
   columns.push_back(
-      {"most", "largest pressure, kPa", "00000",
+      {"most", "largest pressure, kPa", "0.0000",
        [](const ContactQuantities& contact) { return three_digits(contact.peak_pressure_kpa()); }});
   columns.push_back({"area", "mm²", "00000", [](const ContactQuantities& contact) {
                        return three_digits(contact.area_mm2);
