@@ -100,14 +100,14 @@ class Rendering {
   /// Waits for all threads; rethrows the exception of one.
   void wait(const std::function<void(double)>& progress) {
     std::unique_lock lock(mutex_);
-    while (working_ > 0) {
-      ended_.wait_for(lock, std::chrono::milliseconds(50));
+    do {
+      ended_.wait_for(lock, std::chrono::milliseconds(50), [this] { return working_ == 0; });
       if (!progress) continue;
       const double share = static_cast<double>(done_) / static_cast<double>(frames_.size());
       lock.unlock();
       progress(share);
       lock.lock();
-    }
+    } while (working_ > 0);
     if (failed_) std::rethrow_exception(failed_);
   }
 
