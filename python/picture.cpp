@@ -33,10 +33,11 @@ Quantity quantity_of(const std::string& name, const py::dict& planes, SkinLayout
                         : "give normal, pressure, status or uncertainty");
   }
   if (!viewer::is_available(*quantity, source)) {
+    const bool uncertain = *quantity == Quantity::uncertainty;
     throw Error("picture", "the forces have no " + name,
-                pillars || *quantity == Quantity::uncertainty
-                    ? "solve with outputs=['angles', 'uncertainty']"
-                    : "give normal, pressure, status or uncertainty, which sensels have");
+                uncertain ? "solve with outputs=['uncertainty']"
+                : pillars ? "solve with outputs=['angles']"
+                          : "give normal, pressure, status or uncertainty, which sensels have");
   }
   if (*quantity == Quantity::pressure && !has_skin) {
     throw Error("picture", "the skin is unknown, whose pitch pressure needs",
