@@ -18,8 +18,6 @@
 namespace pillarfield::viewer {
 namespace {
 
-using io_test::error_of;
-using io_test::has_all;
 using io_test::TemporaryDirectory;
 
 constexpr std::uint32_t kBareRows = 13;  // Odd sizes have no pillar in their last row and column.

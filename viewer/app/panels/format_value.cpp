@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "viewer/app/panels/plot.h"
 #include "viewer/style/quantity.h"
@@ -255,9 +256,9 @@ std::vector<ContactColumn> columns_of(SkinLayout layout) {
 }  // namespace
 
 const std::vector<ContactColumn>& contact_columns(SkinLayout layout) {
-  static const std::vector<ContactColumn> kOfPillars = columns_of(SkinLayout::pillars);
-  static const std::vector<ContactColumn> kOfSensels = columns_of(SkinLayout::sensels);
-  return layout == SkinLayout::pillars ? kOfPillars : kOfSensels;
+  static const std::vector<ContactColumn> of_pillars = columns_of(SkinLayout::pillars);
+  static const std::vector<ContactColumn> of_sensels = columns_of(SkinLayout::sensels);
+  return layout == SkinLayout::pillars ? of_pillars : of_sensels;
 }
 
 std::vector<std::string> format_contact(const std::string& name, const ContactQuantities& contact,
