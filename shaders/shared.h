@@ -52,6 +52,7 @@ PF_CONSTANT uint kStatus = 8u;
 PF_CONSTANT uint kUncertainty = 9u;
 PF_CONSTANT uint kParity = 10u;
 PF_CONSTANT uint kPeak = 11u;
+PF_CONSTANT uint kPressure = 12u;
 
 // Scales, in the order of Scale in viewer/style/quantity.h.
 PF_CONSTANT uint kSequential = 0u;
@@ -84,9 +85,9 @@ PF_CONSTANT uint kReadingsFloat = 2u;
 // Uniform data of one picture. Planes are offsets in the field's memory, in 4-byte words.
 struct Scene {
   mat4 clip_from_world;
-  vec4 sheet;           // width, height, pillar pitch: mm; none
+  vec4 sheet;           // width, height, pillar or sensel pitch: mm; kPa of a newton on it
   vec4 surface;         // as in surface.glsl
-  uvec4 grid;           // pillar rows, pillar columns; columns and rows of the mesh
+  uvec4 grid;           // rows and columns of pillars or sensels; columns and rows of the mesh
   uvec4 force;          // planes: shear_x, shear_y, normal, status
   uvec4 angles;         // planes: magnitude, theta, phi, none
   uvec4 deviation;      // planes: standard deviations of shear_x, shear_y, normal; none

@@ -41,8 +41,9 @@ float parity_of(uint pillar) {
 }
 
 float uncertainty_of(uint pillar, uint status) {
-  const float x = plane_value(scene.deviation.x, pillar);
-  const float y = plane_value(scene.deviation.y, pillar);
+  const bool sheared = has_plane(scene.deviation.x);  // A sensel has no shear.
+  const float x = sheared ? plane_value(scene.deviation.x, pillar) : 0.0;
+  const float y = sheared ? plane_value(scene.deviation.y, pillar) : 0.0;
   const float z = plane_value(scene.deviation.z, pillar);
   const float deviation = sqrt((x * x + y * y) + z * z);
   if (!is_ambiguous(status)) return deviation;
@@ -61,6 +62,7 @@ float value_of(uint pillar, uint status) {
   switch (kQuantity) {
     case kNormal:
     case kPeak: return plane_value(scene.force.z, pillar);
+    case kPressure: return plane_value(scene.force.z, pillar) * scene.sheet.w;
     case kShear: return shear_of(pillar);
     case kShearX: return plane_value(scene.force.x, pillar);
     case kShearY: return plane_value(scene.force.y, pillar);

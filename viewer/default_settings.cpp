@@ -32,7 +32,7 @@ std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
       for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
         const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
         if (special_of(quantity, status)) continue;
-        const float value = std::abs(value_of(quantity, field, row, col));
+        const float value = std::abs(value_of(quantity, field, producer.info().skin, row, col));
         if (std::isfinite(value)) values.push_back(value);
       }
     }
@@ -55,8 +55,10 @@ double full_arrow(FieldProducer& producer, Quantity quantity) {
 
 void require_available(Quantity quantity, const SourceInfo& source) {
   if (is_available(quantity, source)) return;
+  const bool pillars = source.skin.has_pillars();
   throw Error(source.name, std::string("it has no data for ") + info_of(quantity).name,
-              "choose another --layer; not every file holds readings and noise");
+              pillars ? "choose another --layer; not every file holds readings and noise"
+                      : "choose another --layer; sensels without pillars feel normal force alone");
 }
 
 Surface surface_of(const Options& options, const SourceInfo& source) {
@@ -132,6 +134,7 @@ RenderSettings default_settings(const Options& options, FieldProducer& producer,
   settings.range = options.range ? in_unit_of(*options.range, options.quantity)
                                  : range_that_fits(producer, options.quantity);
   settings.relief_full_n = static_cast<double>(range_that_fits(producer, Quantity::normal).high);
+  if (!producer.info().skin.has_pillars()) return settings;  // No arrows.
   settings.full_force_n = full_arrow(producer, Quantity::magnitude);
   settings.full_shear_n = full_arrow(producer, Quantity::shear);
   return settings;

@@ -310,17 +310,19 @@ class ForceField:
                 theme: str = "dark") -> bytes:
         """A picture of one frame as PNG: heat map in the viewer's colours, arrows of the shear.
 
-        quantity: normal, shear, shear_x, shear_y, magnitude, theta, phi, region, status, uncertainty
-        limits: ends of the colour bar, N or rad; None: fitting ones
+        quantity: normal, pressure, status, uncertainty; of pillars also shear, shear_x, shear_y,
+            magnitude, theta, phi, region
+        limits: ends of the colour bar, N, kPa or rad; None: fitting ones
         theme: 'dark' or 'light'
 
-        Raises Error if the forces are of several frames or lack the quantity.
+        Raises Error if the forces are of several frames or lack the quantity; for the pressure, if
+        the skin is unknown.
         """
         if len(self.shape) != 2:
             raise Error("ForceField.picture", "the forces are of several frames", "index one")
         if theme not in ("dark", "light"):
             raise Error("ForceField.picture", f"'{theme}' is not a theme", "give 'dark' or 'light'")
-        return picture(self._batch(), quantity, limits, theme == "light")
+        return picture(self._batch(), quantity, limits, theme == "light", self._skin)
 
     def _repr_png_(self) -> Optional[bytes]:
         """For notebooks: the picture of the frame, or of the one with the largest normal force."""

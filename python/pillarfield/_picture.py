@@ -22,13 +22,13 @@ _FONT = {
     "4": (5, 5, 7, 1, 1), "5": (7, 4, 7, 1, 7), "6": (7, 4, 7, 5, 7), "7": (7, 1, 2, 2, 2),
     "8": (7, 5, 7, 5, 7), "9": (7, 5, 7, 1, 7), ".": (0, 0, 0, 0, 2), "-": (0, 0, 7, 0, 0),
     "+": (0, 2, 7, 2, 0), "e": (0, 7, 7, 4, 7), "N": (6, 5, 5, 5, 5), "°": (2, 5, 2, 0, 0),
-    " ": (0, 0, 0, 0, 0)}
+    "k": (4, 5, 6, 5, 5), "P": (7, 5, 7, 4, 4), "a": (0, 3, 5, 5, 3), " ": (0, 0, 0, 0, 0)}
 
 
 def picture(planes: dict[str, Any], quantity: str, limits: Optional[tuple[float, float]],
-            light: bool) -> bytes:
+            light: bool, skin: Optional[_core.Skin]) -> bytes:
     """PNG of planes [1, P, Q]: heat map, arrows of the shear, and the colour bar with its ends."""
-    pillars, low, high, unit = _core.paint(planes, quantity, limits, light)
+    pillars, low, high, unit = _core.paint(planes, quantity, limits, light, skin)
     zoom = max(1, math.ceil(_LEAST_PIXELS / max(1, *pillars.shape[:2])))
     skin = pillars.repeat(zoom, 0).repeat(zoom, 1)
     if "shear_x" in planes:

@@ -236,6 +236,28 @@ class Pictures(unittest.TestCase):
         with self.assertRaises(pf.Error):
             forces.picture()
 
+    def test_sensels_without_pillars(self):
+        frame = np.zeros((5, 7), np.uint16)
+        frame[2, 3], frame[4, 6] = 320, 160  # N: 1, 0.5
+        skin = pf.Skin(5, 7, sensel_pitch_mm=2, threshold_counts=2, layout="sensels")
+        forces = pf.solve(frame, skin=skin, noise_counts=1.0, outputs=["uncertainty"])
+        zoom = 69
+        colours = {}
+        for quantity, limits in (("normal", (0, 1)), ("pressure", (0, 250)), ("status", None),
+                                 ("uncertainty", None)):
+            pixels = pixels_of(forces.picture(quantity, limits=limits))
+            colours[quantity] = [tuple(pixels[20 + zoom * row + 34, 20 + zoom * col + 34])
+                                 for row, col in ((2, 3), (4, 6), (0, 0))]
+        self.assertEqual(colours["normal"][0], (254, 232, 56))
+        self.assertEqual(colours["normal"][2], (0x26, 0x2a, 0x30))  # idle
+        self.assertEqual(colours["pressure"], colours["normal"])  # A newton on 4 mm² is 250 kPa.
+        self.assertNotEqual(colours["pressure"][1], colours["pressure"][0])
+        for wrong in ("shear", "magnitude", "phi", "region", "parity"):
+            with self.assertRaises(pf.Error):
+                forces.picture(wrong)
+        with self.assertRaises(pf.Error):  # The area is unknown.
+            pf.ForceField(None, None, forces.normal, status=forces.status).picture("pressure")
+
     def test_odd_shapes(self):
         for shape in ((1, 1), (1, 700), (700, 1)):
             forces = pf.ForceField(*np.ones((3, *shape)), status=15 * np.ones(shape))

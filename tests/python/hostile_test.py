@@ -137,7 +137,7 @@ def templates():
         (processor.set_tare, (zero,), {}), (lambda v: list(processor.stream(v, 1)), (frames,), {}),
         (pf.Contacts(plan).over, (forces,), {}), (core.Tracker(plan).update_planes, (planes, [0, 1, 2]), {}),
         (pf.compare, (forces, forces), {}), (core.compare, (planes, planes), {}),
-        (core.paint, (forces[0]._batch(), "normal", (0.0, 1.0), True), {}),
+        (core.paint, (forces[0]._batch(), "normal", (0.0, 1.0), True, skin), {}),
         (forces[0].picture, ("shear",), {"limits": (0.0, 1.0), "theme": "light"}),
         (forces.where, (pf.Status.AMBIGUOUS,), {}), (forces.__getitem__, (slice(0, 2),), {}),
         (source.read, (0, 1, 3), {}), (source.read_truth, (0, 1, 1), {}), (source.times, (2,), {}),

@@ -122,7 +122,8 @@ void Application::listen() {
 
 /// Ranges of a sensor, by the first frame with a load.
 void Application::fit_first_load() {
-  const float most = largest(Quantity::normal, *state_.field);
+  const Skin& skin = place_.source->skin;
+  const float most = largest(Quantity::normal, *state_.field, skin);
   if (!(most > 0)) return;
   fits_first_load_ = false;
   const Range range = fitting_range(Quantity::normal, 2 * most);
@@ -130,6 +131,9 @@ void Application::fit_first_load() {
   settings.full_force_n = settings.full_shear_n = static_cast<double>(most) / 2;
   settings.relief_full_n = static_cast<double>(range.high);
   if (settings.quantity == Quantity::normal) set_range(state_, range);
+  if (settings.quantity == Quantity::pressure) {
+    set_range(state_, fitting_range(Quantity::pressure, 2 * most * kpa_per_newton(skin)));
+  }
 }
 
 /// A sensor that fails leaves its picture; the failure of a file ends the program.

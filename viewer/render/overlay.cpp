@@ -263,14 +263,13 @@ void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& 
     list.add(Special::region_4, "4: one usable");
     list.add(Special::opposite, "two opposite");
   } else {
-    if (settings.quantity == Quantity::status) list.add(Special::determined, "determined");
-    list.add(Special::ambiguous, "ambiguous",
-             settings.quantity != Quantity::status && settings.hatch);
-    if (settings.quantity == Quantity::status) {
-      list.add(Special::from_contact, "from contact");
-    }
+    const bool pillars = source.skin.has_pillars();
+    const bool status = settings.quantity == Quantity::status;
+    if (status) list.add(Special::determined, pillars ? "determined" : "in contact");
+    if (pillars) list.add(Special::ambiguous, "ambiguous", !status && settings.hatch);
+    if (pillars && status) list.add(Special::from_contact, "from contact");
     list.add(Special::saturated, "saturated");
-    list.add(Special::inconsistent, "inconsistent");
+    if (pillars) list.add(Special::inconsistent, "inconsistent");
   }
   list.add(Special::no_reading, "no reading");
   list.add(Special::idle, "no contact");

@@ -68,7 +68,8 @@ void Renderer::update(const shader::Scene& scene, const RenderSettings& settings
 }
 
 void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField& shown,
-                      const SourceInfo& source, const RenderSettings& settings) {
+                      const SourceInfo& source, const RenderSettings& wanted) {
+  const RenderSettings settings = suited_to(source, wanted);
   const ShownField& field = field_with(settings.quantity, shown);
   const vk::Extent2D size = target_.image().size();
   const Layout layout = layout_of(size.width, size.height, settings);

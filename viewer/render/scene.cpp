@@ -116,7 +116,8 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
 
   shader::Scene scene;
   scene.clip_from_world = clip_from_world(settings.view, surface, size, plot);
-  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch), 0};
+  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch),
+                 kpa_per_newton(source.skin)};
   const auto [along_x, along_y, radius_mm, kind] = shader_surface(surface);
   scene.surface = {along_x, along_y, radius_mm, kind};
   scene.grid = {field.forces.rows, field.forces.cols, tiles(field.forces.cols, mesh),

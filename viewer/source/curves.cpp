@@ -31,6 +31,7 @@ bool is_idle_block(const std::uint8_t* status) {
 
 CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, double pitch_mm) {
   constexpr std::uint32_t kBlock = 8;
+  const bool sheared = has_pillars(forces);
   CurveSums sums;
   const std::uint32_t row_end = std::min(rect.row_end, forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, forces.cols);
@@ -44,8 +45,9 @@ CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, doubl
       }
       const std::size_t at = first + col;
       if ((forces.status[at] & status::kUsable) != 0) {
-        sums.add(forces.shear_x[at], forces.shear_y[at], forces.normal[at],
-                 (col + 0.5 - 0.5 * forces.cols) * pitch_mm, y_mm);
+        const float x_n = sheared ? forces.shear_x[at] : 0;
+        const float y_n = sheared ? forces.shear_y[at] : 0;
+        sums.add(x_n, y_n, forces.normal[at], (col + 0.5 - 0.5 * forces.cols) * pitch_mm, y_mm);
       }
       ++col;
     }

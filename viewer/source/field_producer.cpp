@@ -47,8 +47,9 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
   set_sensor(info.contacts, plan);
-  info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
-                            processor.shares_memory() ? "zero copy" : "staged");
+  info.solver =
+      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name) +
+      (processor.shares_memory() ? ", zero copy" : ", staged");
 }
 
 /// Number of frames to simulate of a scene; adds a warning where it is not all.
@@ -150,6 +151,9 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   info.name = path.filename().string();
   info.kind = source->format();
   info.warnings = source->warnings();
+  if (const std::string read_as = source->read_as(); !read_as.empty()) {
+    info.warnings.push_back(fmt::format("Read {}.", read_as));
+  }
   SolverPlan plan = plan_of_frames(*source);
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
@@ -187,6 +191,12 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 }
 
 }  // namespace
+
+std::string solver_words(SkinLayout layout, const std::string& estimator,
+                         const std::string& device) {
+  if (layout == SkinLayout::sensels) return device;
+  return device.empty() ? estimator : fmt::format("{} on {}", estimator, device);
+}
 
 void throw_all_fields_in_use() {
   throw Error("FieldProducer", fmt::format("all {} fields are in use", FieldProducer::kMostShown),

@@ -27,10 +27,10 @@ struct SourceInfo {
   std::uint64_t frames = 0;   ///< at least one
   double rate_hz = 100;       ///< frames per second, by the times in the source
   bool has_readings = false;  ///< ShownField::raw has data
-  bool has_angles = false;    ///< magnitude, theta and phi; true for all sources
+  bool has_angles = false;    ///< magnitude, theta and phi; of every source with pillars
   bool has_uncertainty = false;
-  std::string solver;            ///< "direct on DEVICE, zero copy"; from a force file its solver
-  ContactOptions contacts = {};  ///< for contacts found here
+  std::string solver;                 ///< solver_words(), "zero copy"; from a force file its solver
+  ContactOptions contacts = {};       ///< for contacts found here
   std::vector<std::string> warnings;  ///< one sentence each
 };
 
@@ -46,9 +46,9 @@ class FieldProducer {
 
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
 
-  /// Reads or solves frame `index`, always with angles. At most kMostShown fields may be alive at a
-  /// time; any thread may destroy them. Throws Error beyond that limit, for a missing frame, and
-  /// where reading or solving fails.
+  /// Reads or solves frame `index`, pillars always with angles. At most kMostShown fields may be
+  /// alive at a time; any thread may destroy them. Throws Error beyond that limit, for a missing
+  /// frame, and where reading or solving fails.
   [[nodiscard]] virtual ShownField produce(std::uint64_t index) = 0;
 
   /// Returns the contacts of the field that was produced last: those stored in the source, else
@@ -72,6 +72,10 @@ class FieldProducer {
  private:
   std::optional<FieldContacts> found_contacts_;
 };
+
+/// "direct on DEVICE"; without pillars, which alone have an estimator, "DEVICE".
+[[nodiscard]] std::string solver_words(SkinLayout layout, const std::string& estimator,
+                                       const std::string& device);
 
 /// Throws Error: kMostShown fields of a producer are alive.
 [[noreturn]] void throw_all_fields_in_use();

@@ -17,8 +17,7 @@ const ReadOptions kProbed = {.trust = true};
 
 std::string solver_of(const ForceFileInfo& info) {
   if (info.estimator.empty()) return "not known";
-  return info.device.empty() ? info.estimator
-                             : fmt::format("{} on {}", info.estimator, info.device);
+  return solver_words(info.layout, info.estimator, info.device);
 }
 
 SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& reader) {
@@ -29,14 +28,17 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   SourceInfo info;
   info.name = path.filename().string();
   info.kind = "force field";
-  info.skin.rows = 2 * file.rows;
-  info.skin.cols = 2 * file.cols;
-  info.skin.sensel_pitch_mm = file.element_pitch_mm / 2;
+  const std::uint32_t side = file.layout == SkinLayout::pillars ? 2 : 1;  // in sensels
+  info.skin.layout = file.layout;
+  info.skin.rows = side * file.rows;
+  info.skin.cols = side * file.cols;
+  info.skin.sensel_pitch_mm = file.element_pitch_mm / side;
   info.skin.surface = file.surface;
+  info.contacts.layout = file.layout;
   info.contacts.surface = file.surface;
   info.contacts.effects = file.effects;
   info.frames = reader.frames();
-  info.has_angles = true;
+  info.has_angles = info.skin.has_pillars();
   info.has_uncertainty = file.uncertainty;
   info.solver = solver_of(file);
   info.warnings = reader.warnings();
@@ -59,8 +61,8 @@ ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
       reader_(std::in_place, path, kProbed),
       info_(info_of(path, *reader_)),
       blocks_(kMostShown, [this] {
-        return std::make_unique<PlaneBlock>(info_.skin.element_rows(), info_.skin.element_cols(),
-                                            info_.has_uncertainty);
+        return std::make_unique<PlaneBlock>(info_.skin.layout, info_.skin.element_rows(),
+                                            info_.skin.element_cols(), info_.has_uncertainty);
       }) {
   info_.rate_hz = frame_rate(info_.frames,
                              [this](std::uint64_t index) { return reader_->read(index, forces_); });
@@ -107,8 +109,9 @@ std::optional<CurvePoint> ForceFileProducer::stored_total(std::uint64_t index) {
 void ForceFileProducer::open(const std::filesystem::path& path) {
   ForceFileReader reader(path, kProbed);
   const ForceFileInfo& found = reader.info();
-  if (found.rows != info_.skin.element_rows() || found.cols != info_.skin.element_cols() ||
-      found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {
+  if (found.layout != info_.skin.layout || found.rows != info_.skin.element_rows() ||
+      found.cols != info_.skin.element_cols() || found.uncertainty != info_.has_uncertainty ||
+      reader.frames() == 0) {
     throw Error(path.string(), "it was replaced by another force file", "open it again");
   }
   reader_ = std::move(reader);

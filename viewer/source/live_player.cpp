@@ -39,7 +39,8 @@ SourceInfo live_info(const std::string& name, const SolverPlan& plan, const Proc
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
   set_sensor(info.contacts, plan);
-  info.solver = fmt::format("{} on {}", name_of(plan.estimator), processor.device().info().name);
+  info.solver =
+      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name);
   return info;
 }
 
@@ -49,8 +50,8 @@ LiveSinkInfo recording_info(const SourceInfo& source, const SolverPlan& plan) {
   return info;
 }
 
-/// The readings of a field on display, and its forces where pillars without readings were taken
-/// out.
+/// The readings of a field on display, and its forces where elements without readings were
+/// taken out.
 struct LiveField {
   explicit LiveField(const SolverPlan& plan)
       : readings(plan.sensel_type, plan.skin.rows, plan.skin.cols) {}
@@ -230,7 +231,8 @@ void LivePlayer::State::publish(const SolvedFrame& frame) {
     field->pages = owner->result->pages();
   } else {
     std::optional<PlaneBlock>& planes = owner->field->planes;
-    if (!planes) planes.emplace(frame.forces.rows, frame.forces.cols, plan.uncertainty);
+    if (!planes)
+      planes.emplace(plan.skin.layout, frame.forces.rows, frame.forces.cols, plan.uncertainty);
     planes->copy(frame.forces);
     field->forces = planes->view();
     field->pages = planes->pages();
@@ -350,10 +352,11 @@ SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
     from.calibration = &*calibration;
   }
   from.settings.counts_per_newton = options.counts_per_newton;
+  from.settings.layout = options.producer.read.layout;
   SolverPlan plan = build_plan(plan_of_frames(stream), from, options.calibration.string(),
                                [&] { return SolverPlan{}.frame_interval_s; });
   if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
-  plan.angles = true;
+  plan.angles = plan.skin.has_pillars();
   plan.uncertainty = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   return plan;
 }

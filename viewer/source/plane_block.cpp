@@ -22,61 +22,47 @@ std::size_t whole_pages(std::size_t bytes) {
 
 void PlaneBlock::Free::operator()(std::byte* memory) const { ::operator delete[](memory, kPage); }
 
-PlaneBlock::PlaneBlock(std::uint32_t rows, std::uint32_t cols, bool uncertainty)
-    : rows_(rows),
-      cols_(cols),
-      planes_(kUncertainty + (uncertainty ? kUncertaintyPlanes : 0)),
-      plane_bytes_(whole_pages(pillars() * sizeof(float))),
-      bytes_(planes_ * plane_bytes_ + whole_pages(pillars())),
-      pages_(static_cast<std::byte*>(::operator new[](bytes_, kPage))) {
+PlaneBlock::PlaneBlock(SkinLayout layout, std::uint32_t rows, std::uint32_t cols, bool uncertainty)
+    : rows_(rows), cols_(cols), plane_bytes_(whole_pages(elements() * sizeof(float))) {
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    places_[i] = has_plane(layout, true, uncertainty, kResultPlanes[i]) ? planes_++ : kAbsentPlane;
+  }
+  bytes_ = planes_ * plane_bytes_ + whole_pages(elements());
+  pages_.reset(static_cast<std::byte*>(::operator new[](bytes_, kPage)));
   std::memset(pages_.get(), 0, bytes_);
 }
 
-float* PlaneBlock::place(std::size_t which) const {
-  return reinterpret_cast<float*>(pages_.get() + which * plane_bytes_);
+std::span<float> PlaneBlock::values(std::size_t which) const {
+  const std::size_t place = places_.at(which);
+  if (place == kAbsentPlane) return {};
+  return {reinterpret_cast<float*>(pages_.get() + place * plane_bytes_), elements()};
 }
 
 std::uint8_t* PlaneBlock::status_place() const {
   return reinterpret_cast<std::uint8_t*>(pages_.get() + planes_ * plane_bytes_);
 }
 
-std::span<float> PlaneBlock::plane(std::size_t which) {
-  if (which >= planes_) return {};
-  return {place(which), pillars()};
-}
+std::span<float> PlaneBlock::plane(std::size_t which) { return values(which); }
+std::span<const float> PlaneBlock::plane(std::size_t which) const { return values(which); }
 
-std::span<const float> PlaneBlock::plane(std::size_t which) const {
-  if (which >= planes_) return {};
-  return {place(which), pillars()};
-}
-
-std::span<std::uint8_t> PlaneBlock::status() { return {status_place(), pillars()}; }
-std::span<const std::uint8_t> PlaneBlock::status() const { return {status_place(), pillars()}; }
+std::span<std::uint8_t> PlaneBlock::status() { return {status_place(), elements()}; }
+std::span<const std::uint8_t> PlaneBlock::status() const { return {status_place(), elements()}; }
 
 void PlaneBlock::copy(const ForceFieldView& forces) {
-  std::ranges::copy(forces.shear_x, plane(kShearX).begin());
-  std::ranges::copy(forces.shear_y, plane(kShearY).begin());
-  std::ranges::copy(forces.normal, plane(kNormal).begin());
-  std::ranges::copy(forces.status, status().begin());
-  std::size_t which = kUncertainty;
-  for (const auto& from : forces.uncertainty) {
-    const std::span<float> to = plane(which++);
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    const std::span<const float> from = plane_of(forces, i);
+    const std::span<float> to = plane(i);
     if (!to.empty()) std::ranges::copy(from, to.begin());
   }
-  if (forces.magnitude.empty()) {
-    set_directions(forces);
-    return;
-  }
-  std::ranges::copy(forces.magnitude, plane(kMagnitude).begin());
-  std::ranges::copy(forces.theta, plane(kTheta).begin());
-  std::ranges::copy(forces.phi, plane(kPhi).begin());
+  std::ranges::copy(forces.status, status().begin());
+  if (forces.magnitude.empty() && !plane(kMagnitude).empty()) set_directions(forces);
 }
 
 void PlaneBlock::set_directions(const ForceFieldView& forces) {
   const std::span<float> magnitude = plane(kMagnitude);
   const std::span<float> theta = plane(kTheta);
   const std::span<float> phi = plane(kPhi);
-  for (std::size_t i = 0; i < pillars(); ++i) {
+  for (std::size_t i = 0; i < elements(); ++i) {
     const Direction direction =
         direction_of(forces.shear_x[i], forces.shear_y[i], forces.normal[i]);
     magnitude[i] = direction.magnitude;
@@ -86,11 +72,11 @@ void PlaneBlock::set_directions(const ForceFieldView& forces) {
 }
 
 ForceFieldView PlaneBlock::view() const {
-  ForceFieldView view = {rows_,          cols_,    plane(kShearX),    plane(kShearY),
-                         plane(kNormal), status(), plane(kMagnitude), plane(kTheta),
-                         plane(kPhi),    {}};
-  std::size_t which = kUncertainty;
-  for (auto& span : view.uncertainty) span = plane(which++);
+  ForceFieldView view;
+  view.rows = rows_;
+  view.cols = cols_;
+  view.status = status();
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) plane_of(view, i) = plane(i);
   return view;
 }
 
@@ -104,17 +90,21 @@ void PeakHold::add(const ForceFieldView& forces) {
 
 std::shared_ptr<const ShownField> PeakHold::field(const ShownField& frame) {
   if (!blocks_) {
+    const SkinLayout layout = has_pillars(frame.forces) ? SkinLayout::pillars : SkinLayout::sensels;
     const std::uint32_t rows = frame.forces.rows;
     const std::uint32_t cols = frame.forces.cols;
     blocks_.emplace(FieldProducer::kMostShown,
-                    [=] { return std::make_unique<PlaneBlock>(rows, cols, false); });
+                    [=] { return std::make_unique<PlaneBlock>(layout, rows, cols, false); });
   }
   const std::shared_ptr<PlaneBlock> block = blocks_->acquire();
   if (block == nullptr) return nullptr;
   std::ranges::copy(peaks_, block->plane(PlaneBlock::kNormal).begin());
-  std::ranges::copy(peaks_, block->plane(PlaneBlock::kMagnitude).begin());
+  if (const std::span<float> magnitude = block->plane(PlaneBlock::kMagnitude); !magnitude.empty()) {
+    std::ranges::copy(peaks_, magnitude.begin());
+  }
+  const std::uint8_t usable = has_pillars(frame.forces) ? status::kUsable : status::kSensel1;
   std::ranges::transform(peaks_, block->status().begin(),
-                         [](float peak) { return peak > 0 ? status::kUsable : 0; });
+                         [usable](float peak) { return peak > 0 ? usable : std::uint8_t{0}; });
   auto field = std::make_shared<ShownField>(frame);
   field->forces = block->view();
   field->raw = {};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,28 +8,30 @@
 #include <span>
 #include <vector>
 
+#include "host/solve/result_planes.h"
 #include "pillarfield/force_field.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/shown_field.h"
 
 namespace pillarfield::viewer {
 
-/// The planes of a field with angles in one zeroed block of whole pages; each plane begins on a
-/// page, as in a Processor.
+/// The planes of a field in one zeroed block of whole pages, of pillars with angles; each plane
+/// begins on a page, as in a Processor.
 class PlaneBlock {
  public:
-  enum Plane : std::size_t { kShearX, kShearY, kNormal, kMagnitude, kTheta, kPhi, kUncertainty };
+  /// In the order of kResultPlanes; those of Uncertainty follow.
+  enum Plane : std::size_t { kShearX, kShearY, kNormal, kMagnitude, kTheta, kPhi };
 
-  PlaneBlock(std::uint32_t rows, std::uint32_t cols, bool uncertainty);
+  PlaneBlock(SkinLayout layout, std::uint32_t rows, std::uint32_t cols, bool uncertainty);
 
-  /// Planes of Uncertainty follow from kUncertainty on, empty for a field without.
+  /// Empty for a plane that fields of this layout do not have.
   [[nodiscard]] std::span<float> plane(std::size_t which);
   [[nodiscard]] std::span<const float> plane(std::size_t which) const;
   [[nodiscard]] std::span<std::uint8_t> status();
   [[nodiscard]] std::span<const std::uint8_t> status() const;
 
-  /// Copies a field of this size; computes magnitude and angles that it lacks. Its uncertainty is
-  /// copied if both have it.
+  /// Copies a field of this size and layout; computes magnitude and angles that it lacks. Its
+  /// uncertainty is copied if both have it.
   void copy(const ForceFieldView& forces);
 
   [[nodiscard]] ForceFieldView view() const;
@@ -41,20 +44,23 @@ class PlaneBlock {
 
   void set_directions(const ForceFieldView& forces);
 
-  /// Begin of plane `which`; the status plane is last.
-  [[nodiscard]] float* place(std::size_t which) const;
+  /// The values of plane `which`; the status plane is last.
+  [[nodiscard]] std::span<float> values(std::size_t which) const;
   [[nodiscard]] std::uint8_t* status_place() const;
-  [[nodiscard]] std::size_t pillars() const { return std::size_t{rows_} * cols_; }
+  [[nodiscard]] std::size_t elements() const { return std::size_t{rows_} * cols_; }
+
+  static constexpr std::size_t kAbsentPlane = ~std::size_t{0};
 
   std::uint32_t rows_;
   std::uint32_t cols_;
-  std::size_t planes_;       ///< number of float planes
-  std::size_t plane_bytes_;  ///< distance between planes
+  std::array<std::size_t, kSolvedPlanes> places_{};  ///< in the block, counted in planes
+  std::size_t planes_ = 0;                           ///< number of float planes
+  std::size_t plane_bytes_;                          ///< distance between planes
   std::size_t bytes_;
   std::unique_ptr<std::byte[], Free> pages_;
 };
 
-/// The largest normal force of each pillar over the frames since it began.
+/// The largest normal force of each element over the frames since it began.
 class PeakHold {
  public:
   /// Forces that are not finite count as zero.

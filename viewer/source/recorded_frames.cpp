@@ -56,7 +56,7 @@ class RecordedFrames final : public FrameProvider {
   void open(const std::filesystem::path& path) {
     std::unique_ptr<FrameSource> source = open_frames(path, options_);
     const Skin& skin = source->skin();
-    if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
+    if (skin.rows != skin_.rows || skin.cols != skin_.cols || skin.layout != skin_.layout ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {
       throw Error(path.string(), "it was replaced by another recording", "open it again");
     }
@@ -100,14 +100,14 @@ class Rendering {
   /// Waits for all threads; rethrows the exception of one.
   void wait(const std::function<void(double)>& progress) {
     std::unique_lock lock(mutex_);
-    while (working_ > 0) {
-      ended_.wait_for(lock, std::chrono::milliseconds(50));
+    do {
+      ended_.wait_for(lock, std::chrono::milliseconds(50), [this] { return working_ == 0; });
       if (!progress) continue;
       const double share = static_cast<double>(done_) / static_cast<double>(frames_.size());
       lock.unlock();
       progress(share);
       lock.lock();
-    }
+    } while (working_ > 0);
     if (failed_) std::rethrow_exception(failed_);
   }
 

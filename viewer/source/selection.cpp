@@ -11,6 +11,8 @@
 namespace pillarfield::viewer {
 namespace {
 
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
 float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
   const std::size_t at = row * raw.row_stride + col;
   switch (raw.type) {
@@ -25,9 +27,12 @@ float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
 }
 
 /// Sensels 1 to 4: upper right, upper left, lower left, lower right.
-std::array<float, 4> readings_of(const FrameView& raw, PillarIndex pillar) {
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+std::array<float, 4> readings_of(const ShownField& field, PillarIndex pillar) {
+  const FrameView& raw = field.raw;
   if (raw.data == nullptr) return {kUnknown, kUnknown, kUnknown, kUnknown};
+  if (!has_pillars(field.forces)) {
+    return {reading_at(raw, pillar.row, pillar.col), kUnknown, kUnknown, kUnknown};
+  }
   const std::size_t row = std::size_t{2} * pillar.row;
   const std::size_t col = std::size_t{2} * pillar.col;
   return {reading_at(raw, row, col + 1), reading_at(raw, row, col), reading_at(raw, row + 1, col),
@@ -48,15 +53,17 @@ void set_direction(PillarValues& values, const ForceFieldView& forces, std::size
 
 void set_uncertainty(PillarValues& values, const ShownField& field, std::size_t at) {
   const ForceFieldView& forces = field.forces;
-  if (forces.uncertainty[Uncertainty::shear_x].empty()) return;
-  std::ranges::transform(forces.uncertainty, values.uncertainty.emplace().begin(),
-                         [at](std::span<const float> plane) { return plane[at]; });
+  if (forces.uncertainty[Uncertainty::normal].empty()) return;
+  std::ranges::transform(
+      forces.uncertainty, values.uncertainty.emplace().begin(),
+      [at](std::span<const float> plane) { return plane.empty() ? kUnknown : plane[at]; });
   values.component_ends = component_ends(forces, at, field.direct_point, field.shear_coefficient);
 }
 
 bool is_finite(const ForceFieldView& forces, std::size_t at) {
-  return std::isfinite(forces.shear_x[at]) && std::isfinite(forces.shear_y[at]) &&
-         std::isfinite(forces.normal[at]);
+  const bool finite = std::isfinite(forces.normal[at]);
+  if (!has_pillars(forces)) return finite;
+  return finite && std::isfinite(forces.shear_x[at]) && std::isfinite(forces.shear_y[at]);
 }
 
 /// Accumulates SelectionSums; moments are about the middle of the skin until finish().
@@ -99,11 +106,12 @@ class SumBuilder {
       sums_.peak = pillar;
     }
     ++sums_.in_contact;
-    sums_.shear_x += forces_.shear_x[at];
-    sums_.shear_y += forces_.shear_y[at];
     sums_.normal += normal;
     first_x_ += normal * x;
     first_y_ += normal * y;
+    if (!has_pillars(forces_)) return;
+    sums_.shear_x += forces_.shear_x[at];
+    sums_.shear_y += forces_.shear_y[at];
     turn_ += x * forces_.shear_y[at] - y * forces_.shear_x[at];
   }
 
@@ -120,17 +128,20 @@ class SumBuilder {
 PillarValues values_at(const ShownField& field, PillarIndex pillar) {
   const ForceFieldView& forces = field.forces;
   if (pillar.row >= forces.rows || pillar.col >= forces.cols) {
-    throw Error("values_at", fmt::format("there is no pillar ({}, {})", pillar.row, pillar.col),
+    throw Error("values_at", fmt::format("there is nothing at ({}, {})", pillar.row, pillar.col),
                 fmt::format("the field has {} x {}", forces.rows, forces.cols));
   }
   const std::size_t at = std::size_t{pillar.row} * forces.cols + pillar.col;
   PillarValues values;
-  values.readings = readings_of(field.raw, pillar);
-  values.shear_x = forces.shear_x[at];
-  values.shear_y = forces.shear_y[at];
+  values.has_pillars = has_pillars(forces);
+  values.readings = readings_of(field, pillar);
   values.normal = forces.normal[at];
   values.status = forces.status[at];
-  set_direction(values, forces, at);
+  if (values.has_pillars) {
+    values.shear_x = forces.shear_x[at];
+    values.shear_y = forces.shear_y[at];
+    set_direction(values, forces, at);
+  }
   set_uncertainty(values, field, at);
   return values;
 }

@@ -12,6 +12,12 @@
 
 namespace pillarfield::viewer {
 
+/// True if the elements of a field are pillars; sensels have no shear.
+[[nodiscard]] inline bool has_pillars(const ForceFieldView& forces) {
+  return !forces.shear_x.empty();
+}
+
+/// A pillar, or a sensel of a field without pillars; likewise below.
 struct PillarIndex {
   std::uint32_t row = 0;
   std::uint32_t col = 0;
@@ -24,8 +30,10 @@ struct PillarRect {
   friend bool operator==(const PillarRect&, const PillarRect&) = default;
 };
 
-/// Readings and results of one pillar in one frame.
+/// Readings and results of one pillar in one frame. A sensel has a single reading, normal force and
+/// its deviation; the others are zero, and the uncertainty that it lacks is NaN.
 struct PillarValues {
+  bool has_pillars = true;
   std::array<float, 4> readings{};             ///< raw counts, sensels 1..4; NaN without readings
   float shear_x = 0, shear_y = 0, normal = 0;  ///< N
   float magnitude = 0, theta = 0, phi = 0;     ///< N, rad, rad; computed for a field without planes

@@ -26,7 +26,7 @@ bool carries_prior(Estimator estimator, const FrictionKnowledge& friction) {
 
 SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
-  plan.angles = true;
+  plan.angles = plan.skin.has_pillars();
   plan.uncertainty = knows_noise && plan.estimator != Estimator::paper;
   plan.baseline_rate.reset();  // It would depend on the frames shown before.
   return plan;
@@ -91,10 +91,11 @@ SourceInfo truth_info(SourceInfo info) {
   return info;
 }
 
-/// Every loaded pillar is determined.
+/// Every loaded element is determined.
 void set_status(ForceField& truth) {
   for (std::size_t i = 0; i < truth.elements(); ++i) {
-    const bool loaded = truth.normal[i] != 0 || truth.shear_x[i] != 0 || truth.shear_y[i] != 0;
+    const bool sheared = !truth.shear_x.empty() && (truth.shear_x[i] != 0 || truth.shear_y[i] != 0);
+    const bool loaded = truth.normal[i] != 0 || sheared;
     truth.status[i] = loaded ? status::kUsable : 0;
   }
 }
@@ -104,10 +105,10 @@ void set_status(ForceField& truth) {
 TruthProducer::TruthProducer(const SourceInfo& solved, Reader read)
     : info_(truth_info(solved)),
       read_(std::move(read)),
-      truth_(info_.skin.element_rows(), info_.skin.element_cols()),
+      truth_(info_.skin),
       blocks_(kMostShown, [this] {
-        return std::make_unique<PlaneBlock>(info_.skin.element_rows(), info_.skin.element_cols(),
-                                            false);
+        return std::make_unique<PlaneBlock>(info_.skin.layout, info_.skin.element_rows(),
+                                            info_.skin.element_cols(), false);
       }) {}
 
 ShownField TruthProducer::produce(std::uint64_t index) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "pillarfield/status.h"
+#include "viewer/source/selection.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -29,6 +30,7 @@ constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
     {"uncertainty", "Uncertainty", "N", 1, Scale::sequential},
     {"parity", "Parity residual", "counts", 1, Scale::diverging},
     {"peak", "Peak normal force", "N", 1, Scale::sequential},
+    {"pressure", "Pressure", "kPa", 1, Scale::sequential},
 }};
 
 float root_of_squares(float x, float y) { return std::sqrt(x * x + y * y); }
@@ -39,8 +41,8 @@ float value_in(std::span<const float> plane, std::size_t pillar) {
 
 float uncertainty_of(const ForceFieldView& forces, std::size_t pillar) {
   const auto at = [&](Uncertainty plane) { return value_in(forces.uncertainty[plane], pillar); };
-  const float x = at(Uncertainty::shear_x);
-  const float y = at(Uncertainty::shear_y);
+  const float x = has_pillars(forces) ? at(Uncertainty::shear_x) : 0;
+  const float y = has_pillars(forces) ? at(Uncertainty::shear_y) : 0;
   const float n = at(Uncertainty::normal);
   const float deviation = std::sqrt((x * x + y * y) + n * n);
   if ((forces.status[pillar] & status::kAmbiguous) == 0) return deviation;
@@ -88,7 +90,7 @@ float status_value(std::uint8_t status) {
 }
 
 /// The value of a pressed pillar; region and status apply to any pillar.
-float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t row,
+float pressed_value(Quantity quantity, const ShownField& field, const Skin& skin, std::uint32_t row,
                     std::uint32_t col) {
   const ForceFieldView& forces = field.forces;
   const std::size_t pillar = std::size_t{row} * forces.cols + col;
@@ -96,6 +98,8 @@ float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t ro
     case Quantity::normal:
     case Quantity::peak:
       return forces.normal[pillar];
+    case Quantity::pressure:
+      return forces.normal[pillar] * kpa_per_newton(skin);
     case Quantity::shear:
       return root_of_squares(forces.shear_x[pillar], forces.shear_y[pillar]);
     case Quantity::shear_x:
@@ -162,14 +166,16 @@ bool is_available(Quantity quantity, const SourceInfo& source) {
     case Quantity::uncertainty:
       return source.has_uncertainty;
     case Quantity::parity:
-      return source.has_readings;
-    case Quantity::normal:
+      return source.has_readings && source.skin.has_pillars();
     case Quantity::shear:
     case Quantity::shear_x:
     case Quantity::shear_y:
     case Quantity::region:
+      return source.skin.has_pillars();
+    case Quantity::normal:
     case Quantity::status:
     case Quantity::peak:
+    case Quantity::pressure:
       break;
   }
   return true;
@@ -179,7 +185,12 @@ const ShownField& field_with(Quantity quantity, const ShownField& field) {
   return quantity == Quantity::peak && field.peak != nullptr ? *field.peak : field;
 }
 
-float largest(Quantity quantity, const ShownField& shown) {
+float kpa_per_newton(const Skin& skin) {
+  constexpr double kKpaOfMpa = 1000;  // N/mm² is MPa.
+  return static_cast<float>(kKpaOfMpa / (skin.element_pitch_mm() * skin.element_pitch_mm()));
+}
+
+float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {
   const ShownField& field = field_with(quantity, shown);
   float largest = 0;
   for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
@@ -187,7 +198,7 @@ float largest(Quantity quantity, const ShownField& shown) {
     for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
       const std::uint8_t status = field.forces.status[first + col];
       if (!is_pressed(status) || is_faulty(status)) continue;
-      const float size = std::abs(pressed_value(quantity, field, row, col));
+      const float size = std::abs(pressed_value(quantity, field, skin, row, col));
       if (std::isfinite(size) && size > largest) largest = size;
     }
   }
@@ -204,12 +215,13 @@ Range fitting_range(Quantity quantity, float largest_value) {
   return {info_of(quantity).scale == Scale::diverging ? -high : 0, high};
 }
 
-float value_of(Quantity quantity, const ShownField& shown, std::uint32_t row, std::uint32_t col) {
+float value_of(Quantity quantity, const ShownField& shown, const Skin& skin, std::uint32_t row,
+               std::uint32_t col) {
   const ShownField& field = field_with(quantity, shown);
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
   const bool has_status_class = quantity == Quantity::region || quantity == Quantity::status;
   if (!has_status_class && !is_pressed(status)) return kNothing;
-  return pressed_value(quantity, field, row, col);
+  return pressed_value(quantity, field, skin, row, col);
 }
 
 }  // namespace pillarfield::viewer

@@ -24,8 +24,9 @@ enum class Quantity : std::uint8_t {
                 ///< least half the interval of the magnitude
   parity,       ///< V1 + V3 - V2 - V4 of the readings, counts
   peak,         ///< largest normal force since it is held, N; the normal force where it is not
+  pressure,     ///< normal force over the area of a pillar or sensel, kPa
 };
-inline constexpr int kQuantities = 12;
+inline constexpr int kQuantities = 13;
 
 enum class Scale : std::uint8_t { sequential, diverging, cyclic, classes };
 
@@ -53,7 +54,7 @@ inline constexpr int kStatusClasses = 5;
 /// True if a sensel is usable or saturated.
 [[nodiscard]] bool is_pressed(std::uint8_t status);
 
-/// True if the source has the data of the quantity.
+/// True if the source has the data of the quantity; sensels without pillars have only normal force.
 [[nodiscard]] bool is_available(Quantity quantity, const SourceInfo& source);
 
 /// Ends of the colour bar in the unit of the value. Default: low = 0 for sequential quantities,
@@ -67,16 +68,19 @@ struct Range {
 /// The field that holds the quantity: the held peaks, or `field` itself.
 [[nodiscard]] const ShownField& field_with(Quantity quantity, const ShownField& field);
 
+/// Pressure of a newton on a pillar or sensel, kPa.
+[[nodiscard]] float kpa_per_newton(const Skin& skin);
+
 /// Largest finite |value| over pillars that are neither idle, saturated nor inconsistent; 0 for
 /// none.
-[[nodiscard]] float largest(Quantity quantity, const ShownField& shown);
+[[nodiscard]] float largest(Quantity quantity, const ShownField& shown, const Skin& skin);
 
 /// Range for a largest value: its round_ceiling(), 1 for a value of 0; always [0, pi/2] for theta,
 /// [-pi, pi] for phi and [0, number of classes] for classes.
 [[nodiscard]] Range fitting_range(Quantity quantity, float largest_value);
 
-/// The value of one pillar, as in the heat map's shader, in single precision without contraction.
-/// `x`, `y`, `n` are the planes shear_x, shear_y and normal.
+/// The value of one pillar or sensel, as in the heat map's shader, in single precision without
+/// contraction. `x`, `y`, `n` are the planes shear_x, shear_y and normal.
 ///
 ///     normal, shear_x, shear_y     n, x, y
 ///     shear                        sqrt(x*x + y*y)
@@ -87,10 +91,13 @@ struct Range {
 ///                                  status is ambiguous h = 0.5*(magnitude_high - magnitude_low),
 ///                                  and h > s ? h : s
 ///     parity                       (V1 + V3) - (V2 + V4) of the readings as floats
+///     pressure                     n*kpa_per_newton()
+///
+/// In the uncertainty of sensels, sx and sy are zero.
 ///
 /// NaN where the source lacks the data or the pillar is idle: not is_pressed(); for region no
 /// usable sensel; for status not pressed and no fault.
-[[nodiscard]] float value_of(Quantity quantity, const ShownField& shown, std::uint32_t row,
-                             std::uint32_t col);
+[[nodiscard]] float value_of(Quantity quantity, const ShownField& shown, const Skin& skin,
+                             std::uint32_t row, std::uint32_t col);
 
 }  // namespace pillarfield::viewer

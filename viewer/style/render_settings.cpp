@@ -4,6 +4,12 @@
 
 namespace pillarfield::viewer {
 
+RenderSettings suited_to(const SourceInfo& source, RenderSettings settings) {
+  if (source.skin.has_pillars()) return settings;
+  settings.arrows = settings.sectors = settings.hatch = false;
+  return settings;
+}
+
 Layout layout_of(double width, double height, const RenderSettings& settings) {
   if (!settings.legend) return {{0, 0, width, height}, {}, {}};
   const double unit = settings.scale;

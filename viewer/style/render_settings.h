@@ -33,6 +33,9 @@ struct RenderSettings {
   friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
 };
 
+/// The settings without the layers that a source lacks: those of shear where there are no pillars.
+[[nodiscard]] RenderSettings suited_to(const SourceInfo& source, RenderSettings settings);
+
 /// Parts of a picture of `width` x `height` pixels.
 struct Layout {
   Viewport plot;    ///< the skin

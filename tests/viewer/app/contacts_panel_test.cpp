@@ -24,9 +24,12 @@ ContactQuantities a_contact() {
 
 TEST(FormatContact, FollowTheHeads) {
   ContactQuantities contact = a_contact();
-  using Words = std::array<std::string, kContactColumns>;
+  using Words = std::vector<std::string>;
+  const auto format_contact = [](const char* name, const ContactQuantities& of) {
+    return viewer::format_contact(name, of, SkinLayout::pillars);
+  };
   EXPECT_EQ(format_contact("7", contact),
-            (Words{"7", "50.1", "5.00", "–", "unknown", "0 %", "157", "320", "0.457"}));
+            (Words{"7", "50.1", "5.00", "–", "unknown", "0 %", "157", "285", "320", "0.457"}));
   contact.ambiguous = 50;
   contact.friction = 0.6;
   contact.slip = SlipState::partial;
@@ -36,6 +39,12 @@ TEST(FormatContact, FollowTheHeads) {
   contact.resolved = 45;
   EXPECT_EQ(format_contact("all", contact)[5], "25 % / 90 %");
   EXPECT_EQ(format_contact("all", {})[5], "–");
+}
+
+TEST(FormatContact, OfSenselsHasNoShear) {
+  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels),
+            (std::vector<std::string>{"7", "50.1", "157", "285", "320", "0.457"}));
+  EXPECT_EQ(contact_columns(SkinLayout::sensels).size(), 6U);
 }
 
 TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {

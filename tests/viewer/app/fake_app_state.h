@@ -9,28 +9,32 @@
 
 namespace pillarfield::viewer {
 
-/// Fields of 20 x 30 pressed pillars, with forces that increase to the right.
+/// Fields of 20 x 30 pressed pillars, or sensels, with forces that increase to the right.
 class FakeProducer final : public FieldProducer {
  public:
   static constexpr std::uint32_t kRows = 20;
   static constexpr std::uint32_t kCols = 30;
   static constexpr std::uint64_t kFrames = 100;
 
-  FakeProducer() {
+  explicit FakeProducer(SkinLayout layout = SkinLayout::pillars) {
+    const std::uint32_t side = layout == SkinLayout::pillars ? 2 : 1;
     info_.name = "fake.h5";
-    info_.skin.rows = 2 * kRows;
-    info_.skin.cols = 2 * kCols;
+    info_.skin.layout = layout;
+    info_.skin.rows = side * kRows;
+    info_.skin.cols = side * kCols;
     info_.frames = kFrames;
-    info_.has_readings = info_.has_angles = info_.has_uncertainty = true;
+    info_.has_readings = info_.has_uncertainty = true;
+    info_.has_angles = layout == SkinLayout::pillars;
+    info_.contacts.layout = layout;
   }
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
 
   [[nodiscard]] ShownField produce(std::uint64_t index) override {
-    auto memory = std::make_shared<ForceField>(kRows, kCols);
+    auto memory = std::make_shared<ForceField>(info_.skin);
     for (std::size_t i = 0; i < memory->elements(); ++i) {
       memory->normal[i] = 0.1f * static_cast<float>(i % kCols);
-      memory->shear_x[i] = 0.03f;
-      memory->status[i] = 15;
+      if (info_.skin.has_pillars()) memory->shear_x[i] = 0.03f;
+      memory->status[i] = info_.skin.has_pillars() ? status::kUsable : status::kSensel1;
     }
     ShownField field;
     field.forces = memory->view();
@@ -46,14 +50,15 @@ class FakeProducer final : public FieldProducer {
 
 /// The state of a window of 1000 x 700 pixels with a picture of 800 x 600.
 struct FakeAppState {
-  FilePlayer player{std::make_unique<FakeProducer>()};
+  FilePlayer player;
   AppState state;
   FieldPlace place{{0, 0, 800, 600}, &player.info()};
   PendingActions pending;
 
-  FakeAppState() {
+  explicit FakeAppState(SkinLayout layout = SkinLayout::pillars)
+      : player(std::make_unique<FakeProducer>(layout)) {
     state.player = &player;
-    take_field(state, FakeProducer().produce(0));
+    take_field(state, FakeProducer(layout).produce(0));
     reset_view(state, place);
   }
   [[nodiscard]] Command command() { return {state, place, pending}; }

@@ -139,7 +139,11 @@ TEST(FormatPlace, CountFromTheMiddleOfTheSkin) {
 }
 
 TEST(FormatReadings, AreInTheOrderOfTheSensels) {
-  EXPECT_EQ(format_readings({12, 34.5f, 0, 250}), "12  34.5  0  250  counts");
+  PillarValues values;
+  values.readings = {12, 34.5f, 0, 250};
+  EXPECT_EQ(format_readings(values), "readings 1–4: 12  34.5  0  250  counts");
+  values.has_pillars = false;
+  EXPECT_EQ(format_readings(values), "reading: 12  counts");
 }
 
 }  // namespace

@@ -42,14 +42,14 @@ TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
   RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
   settings.quantity = quantity;
   settings.map = default_map(info_of(quantity).scale);
-  settings.range = fitting_range(quantity, largest(quantity, field.shown()));
+  settings.range = fitting_range(quantity, largest(quantity, field.shown(), field.source().skin));
   const Pixels pixels = drawing.draw(field, settings, kMapWidth, kMapHeight);
   std::set<std::size_t> seen;
   for (std::uint32_t row = 0; row < 18; ++row) {
     for (std::uint32_t col = 0; col < 24; ++col) {
       const PixelPlace place = middle_of(field, settings, kMapWidth, kMapHeight, row, col);
       const auto entries = entries_with(settings.map, colour_at(pixels, place.x, place.y));
-      const float value = value_of(quantity, field.shown(), row, col);
+      const float value = value_of(quantity, field.shown(), field.source().skin, row, col);
       const std::size_t expected = entry_of(value, settings.range, info_of(quantity).scale);
       EXPECT_TRUE(entries.count(expected) == 1) << row << ", " << col << ": " << value;
       seen.insert(entries.begin(), entries.end());
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Quantities, HeatMap,
                          testing::Values(Quantity::normal, Quantity::shear, Quantity::shear_x,
                                          Quantity::shear_y, Quantity::magnitude, Quantity::theta,
                                          Quantity::phi, Quantity::uncertainty, Quantity::parity,
-                                         Quantity::peak),
+                                         Quantity::peak, Quantity::pressure),
                          [](const auto& test) { return info_of(test.param).name; });
 
 class States : public testing::TestWithParam<Quantity> {};
@@ -83,9 +83,9 @@ TEST_P(States, HaveColoursOfTheirOwn) {
       const PixelPlace place =
           middle_of(field, settings, kMapWidth, kMapHeight, status / 16, status % 16);
       const auto special = special_of(quantity, static_cast<std::uint8_t>(status));
-      const Colour mapped = table_of(
-          settings.map)[entry_of(value_of(quantity, field.shown(), status / 16, status % 16),
-                                 settings.range, info_of(quantity).scale)];
+      const Colour mapped = table_of(settings.map)[entry_of(
+          value_of(quantity, field.shown(), field.source().skin, status / 16, status % 16),
+          settings.range, info_of(quantity).scale)];
       EXPECT_EQ(colour_at(pixels, place.x, place.y), special ? colour_of(*special, theme) : mapped)
           << "status " << status;
     }

@@ -110,4 +110,23 @@ MadeUpField::MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& p
   source_.has_uncertainty = true;
 }
 
+MadeUpField MadeUpField::without_pillars() const {
+  MadeUpField bare = *this;
+  ForceFieldView& forces = bare.shown_.forces;
+  for (auto* const plane :
+       {&forces.shear_x, &forces.shear_y, &forces.magnitude, &forces.theta, &forces.phi}) {
+    *plane = {};
+  }
+  const auto deviation = forces.uncertainty[Uncertainty::normal];
+  forces.uncertainty = {};
+  forces.uncertainty[Uncertainty::normal] = deviation;
+  bare.shown_.raw = {};
+  bare.source_.skin.layout = SkinLayout::sensels;
+  bare.source_.skin.rows = forces.rows;
+  bare.source_.skin.cols = forces.cols;
+  bare.source_.skin.sensel_pitch_mm = source_.skin.element_pitch_mm();
+  bare.source_.has_readings = bare.source_.has_angles = false;
+  return bare;
+}
+
 }  // namespace pillarfield::viewer

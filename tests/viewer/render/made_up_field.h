@@ -20,6 +20,9 @@ class MadeUpField {
   using Pillar = std::function<MadeUpPillar(std::uint32_t row, std::uint32_t col)>;
   MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& pillar);
 
+  /// The same normal forces as those of a skin of bare sensels, without readings.
+  [[nodiscard]] MadeUpField without_pillars() const;
+
   [[nodiscard]] const ShownField& shown() const { return shown_; }
   [[nodiscard]] const SourceInfo& source() const { return source_; }
 

@@ -40,6 +40,10 @@ TEST(CurvePoint, IsTheSumOfTheSelection) {
     expect_equal(curve_point(rising_field(4), rect, kCurvePitch),
                  sums_over(rising_field(4), rect, kCurvePitch));
   }
+  ShownField sensels = rising_field(4);
+  sensels.forces.shear_x = sensels.forces.shear_y = {};
+  expect_equal(curve_point(sensels, kWholeSkin, kCurvePitch),
+               sums_over(sensels, kWholeSkin, kCurvePitch));
   const CurvePoint idle = curve_point(touched_field(3, 20, 30, {}), kWholeSkin, kCurvePitch);
   EXPECT_EQ(idle.normal, 0);
   EXPECT_TRUE(std::isnan(idle.centre_x_mm));

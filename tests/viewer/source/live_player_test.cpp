@@ -83,10 +83,10 @@ class FakeSensor final : public FrameStream {
 };
 
 struct LiveFixture {
-  LiveFixture() {
+  explicit LiveFixture(const LiveOptions& options = {}) {
     auto sensor = std::make_unique<FakeSensor>(wire);
-    const SolverPlan plan = live_plan(*sensor, {});
-    curves = std::make_shared<Curves>(plan.skin.pillar_pitch_mm());
+    const SolverPlan plan = live_plan(*sensor, options);
+    curves = std::make_shared<Curves>(plan.skin.element_pitch_mm());
     player = std::make_unique<LivePlayer>(
         std::move(sensor), "fake", plan,
         Processor(open_device(), plan, {.frames_in_flight = LivePlayer::kFramesInFlight}), curves);
@@ -179,6 +179,33 @@ TEST(LivePlayer, MissingReadingsGiveNoForce) {
   const ShownField field = live.newest();
   EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0);
   EXPECT_NE(field.forces.status[2 * 8 + 2] & status::kInconsistent, 0);
+}
+
+TEST(LivePlayer, OfSenselsShowsNormalForceAlone) {
+  LiveFixture live({.producer = {.read = {.layout = SkinLayout::sensels}}});
+  EXPECT_FALSE(live.player->info().skin.has_pillars());
+  live.send(100);
+  const ShownField whole = live.newest();
+  EXPECT_EQ(whole.forces.rows, kSide);
+  EXPECT_TRUE(whole.forces.shear_x.empty() && whole.forces.phi.empty());
+  EXPECT_EQ(whole.forces.normal[5 * kSide + 6], 1);
+  EXPECT_EQ(live.curves->total(-1, 1e9, 9).back().normal, 16);
+  live.wire->partial = 1;
+  live.send(100);
+  const ShownField partial = live.newest();
+  EXPECT_EQ(partial.forces.normal[5 * kSide + 6], 0);
+  EXPECT_NE(partial.forces.status[5 * kSide + 6] & status::kInconsistent, 0);
+  live.player->set_contacts(true);
+  live.player->set_peak(true);
+  ShownField field;
+  LiveFixture::wait_until([&] {
+    live.send(50);
+    field = live.newest();
+    return field.contacts != nullptr && field.peak != nullptr;
+  });
+  EXPECT_FALSE(field.contacts->found.total.has_shear);
+  EXPECT_FLOAT_EQ(static_cast<float>(field.contacts->found.total.normal_n), 8);
+  EXPECT_EQ(field.peak->forces.normal[5 * kSide + 6], 0.5F);
 }
 
 TEST(LivePlayer, ContactsAndPeaksComeWhenAskedFor) {

@@ -100,6 +100,59 @@ TEST(Selection, SumsAreThoseOfAPlainLoop) {
   }
 }
 
+TEST(Selection, SumsOfSenselsAreThoseOfPillarsWithoutShear) {
+  Sample sample(13, 21);
+  ShownField pillars = sample.shown();
+  ForceField unsheared = sample.forces();
+  unsheared.shear_x.assign(unsheared.elements(), 0);
+  unsheared.shear_y.assign(unsheared.elements(), 0);
+  pillars.forces = unsheared.view();
+  ShownField sensels = pillars;
+  sensels.forces.shear_x = sensels.forces.shear_y = {};
+  for (const PillarRect rect : {PillarRect{0, 13, 0, 21}, {2, 9, 5, 6}, {12, 13, 0, 21}}) {
+    const SelectionSums expected = sums_over(pillars, rect, kPitch);
+    const SelectionSums sums = sums_over(sensels, rect, kPitch);
+    EXPECT_GT(sums.normal, 0);
+    EXPECT_EQ(sums.normal, expected.normal);
+    EXPECT_EQ(sums.in_contact, expected.in_contact);
+    EXPECT_EQ(sums.peak_normal, expected.peak_normal);
+    EXPECT_EQ(sums.centre_x_mm, expected.centre_x_mm);
+    EXPECT_EQ(sums.centre_y_mm, expected.centre_y_mm);
+    EXPECT_EQ(sums.area_mm2, expected.area_mm2);
+    EXPECT_EQ(sums.saturated, expected.saturated);
+    EXPECT_EQ(sums.inconsistent, expected.inconsistent);
+  }
+}
+
+TEST(ValuesAt, ASenselHasTheReadingOfItsPlaceAndNormalForceAlone) {
+  ForceField forces;
+  forces.rows = 5;
+  forces.cols = 7;
+  forces.normal.assign(35, 0);
+  forces.status.assign(35, status::kSensel1);
+  forces.uncertainty[Uncertainty::normal].assign(35, 0.125F);
+  FrameBuffer raw(SenselType::u16, 5, 7);
+  for (std::uint16_t place = 0; place < 35; ++place) {
+    forces.normal[place] = 0.5F * place;
+    raw.readings<std::uint16_t>()[place] = static_cast<std::uint16_t>(1000 + place);
+  }
+  ShownField field;
+  field.forces = forces.view();
+  field.raw = raw.view();
+  const PillarValues values = values_at(field, {4, 6});
+  EXPECT_FALSE(values.has_pillars);
+  EXPECT_EQ(values.readings[0], 1034);
+  EXPECT_TRUE(std::isnan(values.readings[1]));
+  EXPECT_EQ(values.normal, 17);
+  ASSERT_TRUE(values.uncertainty);
+  const auto deviation = [&](Uncertainty plane) {
+    return (*values.uncertainty)[static_cast<std::size_t>(plane)];
+  };
+  EXPECT_EQ(deviation(Uncertainty::normal), 0.125F);
+  EXPECT_TRUE(std::isnan(deviation(Uncertainty::shear_x)));
+  EXPECT_EQ(values_at(field, {0, 1}).readings[0], 1001);
+}
+
 TEST(Selection, CountsEveryPillarOnce) {
   const Sample sample(9, 14);
   const ShownField field = sample.shown();

@@ -44,6 +44,7 @@ void write_csv(const std::filesystem::path& path, const ShownField& field, const
                Replace replace) {
   ForceFieldView forces = field.forces;
   ForceFileInfo info;
+  info.layout = has_pillars(forces) ? SkinLayout::pillars : SkinLayout::sensels;
   info.rows = forces.rows;
   info.cols = forces.cols;
   info.angles = !forces.magnitude.empty();

@@ -55,7 +55,8 @@ void hold_peak(AppState& state) {
 
 void fit_range(AppState& state) {
   RenderSettings& settings = state.settings;
-  const float most = state.field ? largest(settings.quantity, *state.field) : 0;
+  const float most =
+      state.field ? largest(settings.quantity, *state.field, state.player->info().skin) : 0;
   settings.range = fitting_range(settings.quantity, most);
   if (settings.quantity == Quantity::normal) {
     settings.relief_full_n = static_cast<double>(settings.range.high);

@@ -27,9 +27,29 @@ void show(const Command& command) {
   show_quantity(command.state, quantity);
 }
 
+template <Quantity quantity>
+bool has(const SourceInfo& source) {
+  return is_available(quantity, source);
+}
+
+/// The key of a quantity.
+template <Quantity quantity>
+constexpr Shortcut shows(std::array<Chord, 3> chords, const char* keys, const char* description) {
+  return {Group::show, chords, keys, description, show<quantity>, has<quantity>};
+}
+
 template <bool RenderSettings::*layer>
 void toggle(const Command& command) {
   command.state.settings.*layer = !(command.state.settings.*layer);
+}
+
+bool with_pillars(const SourceInfo& source) { return source.skin.has_pillars(); }
+
+/// A layer that shows the shear of pillars.
+template <bool RenderSettings::*layer>
+void toggle_of_pillars(const Command& command) {
+  if (with_pillars(command.state.player->info())) return toggle<layer>(command);
+  command.state.notice = "this source has no pillars";
 }
 
 template <std::int64_t frames>
@@ -122,35 +142,29 @@ constexpr std::array kShortcuts{
     Shortcut{Group::play, plain(GLFW_KEY_L), "L", "loop", toggle_loop},
     Shortcut{Group::play, plain(GLFW_KEY_F), "F", "follow the newest frame", toggle_follow},
 
-    Shortcut{Group::show, plain(GLFW_KEY_1, GLFW_KEY_KP_1, GLFW_KEY_N), "1, N", "normal force",
-             show<Quantity::normal>},
-    Shortcut{Group::show, plain(GLFW_KEY_2, GLFW_KEY_KP_2, GLFW_KEY_S), "2, S", "shear",
-             show<Quantity::shear>},
-    Shortcut{Group::show, plain(GLFW_KEY_3, GLFW_KEY_KP_3), "3", "shear x",
-             show<Quantity::shear_x>},
-    Shortcut{Group::show, plain(GLFW_KEY_4, GLFW_KEY_KP_4), "4", "shear y",
-             show<Quantity::shear_y>},
-    Shortcut{Group::show, plain(GLFW_KEY_5, GLFW_KEY_KP_5, GLFW_KEY_M), "5, M", "magnitude",
-             show<Quantity::magnitude>},
-    Shortcut{Group::show, plain(GLFW_KEY_6, GLFW_KEY_KP_6), "6", "θ, inclination",
-             show<Quantity::theta>},
-    Shortcut{Group::show, plain(GLFW_KEY_7, GLFW_KEY_KP_7), "7", "φ, direction",
-             show<Quantity::phi>},
-    Shortcut{Group::show, plain(GLFW_KEY_8, GLFW_KEY_KP_8), "8", "region", show<Quantity::region>},
-    Shortcut{Group::show, plain(GLFW_KEY_9, GLFW_KEY_KP_9), "9", "status", show<Quantity::status>},
-    Shortcut{Group::show, plain(GLFW_KEY_0, GLFW_KEY_KP_0), "0", "uncertainty",
-             show<Quantity::uncertainty>},
-    Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
+    shows<Quantity::normal>(plain(GLFW_KEY_1, GLFW_KEY_KP_1, GLFW_KEY_N), "1, N", "normal force"),
+    shows<Quantity::shear>(plain(GLFW_KEY_2, GLFW_KEY_KP_2, GLFW_KEY_S), "2, S", "shear"),
+    shows<Quantity::shear_x>(plain(GLFW_KEY_3, GLFW_KEY_KP_3), "3", "shear x"),
+    shows<Quantity::shear_y>(plain(GLFW_KEY_4, GLFW_KEY_KP_4), "4", "shear y"),
+    shows<Quantity::magnitude>(plain(GLFW_KEY_5, GLFW_KEY_KP_5, GLFW_KEY_M), "5, M", "magnitude"),
+    shows<Quantity::theta>(plain(GLFW_KEY_6, GLFW_KEY_KP_6), "6", "θ, inclination"),
+    shows<Quantity::phi>(plain(GLFW_KEY_7, GLFW_KEY_KP_7), "7", "φ, direction"),
+    shows<Quantity::region>(plain(GLFW_KEY_8, GLFW_KEY_KP_8), "8", "region"),
+    shows<Quantity::status>(plain(GLFW_KEY_9, GLFW_KEY_KP_9), "9", "status"),
+    shows<Quantity::uncertainty>(plain(GLFW_KEY_0, GLFW_KEY_KP_0), "0", "uncertainty"),
+    shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
-    Shortcut{Group::show, plain(GLFW_KEY_E), "E", "peak of the normal force", show<Quantity::peak>},
+    shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
+    shows<Quantity::peak>(plain(GLFW_KEY_E), "E", "peak of the normal force"),
     Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
              [](const Command& command) { hold_peak(command.state); }},
 
-    Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows", toggle<&RenderSettings::arrows>},
+    Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows",
+             toggle_of_pillars<&RenderSettings::arrows>, with_pillars},
     Shortcut{Group::view, plain(GLFW_KEY_U), "U", "uncertainty sectors",
-             toggle<&RenderSettings::sectors>},
+             toggle_of_pillars<&RenderSettings::sectors>, with_pillars},
     Shortcut{Group::view, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars",
-             toggle<&RenderSettings::hatch>},
+             toggle_of_pillars<&RenderSettings::hatch>, with_pillars},
     Shortcut{Group::view, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
     Shortcut{Group::view, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
     Shortcut{Group::view, plain(GLFW_KEY_B), "B", "height relief in 3-D",
@@ -181,7 +195,7 @@ constexpr std::array kShortcuts{
     Shortcut{Group::write, with(kControl, GLFW_KEY_R), "Ctrl+R", "record a sensor, or stop",
              ask<&PendingActions::record>},
     Shortcut{Group::play, plain(GLFW_KEY_Z), "Z", "tare of a sensor", take_tare},
-    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write visible pillars (CSV)",
+    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write the visible forces (CSV)",
              ask<&PendingActions::table>},
     Shortcut{Group::write,
              {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
@@ -193,8 +207,8 @@ constexpr std::array kShortcuts{
 
 constexpr std::array kMouseHelp{
     MouseHelp{"hover", "values under the cursor"},
-    MouseHelp{"click", "pin or unpin a pillar"},
-    MouseHelp{"drag", "select pillars; in 3-D turn the view"},
+    MouseHelp{"click", "pin or unpin a place"},
+    MouseHelp{"drag", "select a part; in 3-D turn the view"},
     MouseHelp{"right drag, Shift+drag", "move the view"},
     MouseHelp{"wheel", "zoom about the cursor"},
     MouseHelp{"double click", "the whole skin"},
@@ -205,6 +219,10 @@ constexpr std::array kMouseHelp{
 const char* title_of(ShortcutGroup group) {
   constexpr std::array kTitles{"Play", "Show", "View", "Marks", "Write"};
   return kTitles.at(static_cast<std::size_t>(group));
+}
+
+bool applies(const Shortcut& shortcut, const SourceInfo& source) {
+  return shortcut.suits == nullptr || shortcut.suits(source);
 }
 
 std::span<const Shortcut> shortcuts() { return kShortcuts; }

@@ -47,7 +47,11 @@ struct Shortcut {
   const char* keys = "";         ///< for the reader: "Ctrl+P"
   const char* description = "";  ///< for the reader: "write all frames (PNG)"
   void (*act)(const Command& command) = nullptr;
+  bool (*suits)(const SourceInfo& source) = nullptr;  ///< null: all
 };
+
+/// False for a key of something that the source lacks.
+[[nodiscard]] bool applies(const Shortcut& shortcut, const SourceInfo& source);
 
 /// All shortcuts, in the order of the help.
 [[nodiscard]] std::span<const Shortcut> shortcuts();

@@ -20,8 +20,8 @@ constexpr int kTableFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
 constexpr std::size_t kMostRows = 9;  ///< visible at a time
 
 /// Columns of fixed width.
-void set_columns() {
-  for (const ContactColumn& column : contact_columns()) {
+void set_columns(SkinLayout layout) {
+  for (const ContactColumn& column : contact_columns(layout)) {
     const double width = std::max(width_of(column.head), width_of(column.widest));
     ImGui::TableSetupColumn(column.head, ImGuiTableColumnFlags_WidthFixed,
                             static_cast<float>(std::ceil(width)));
@@ -29,9 +29,9 @@ void set_columns() {
 }
 
 /// Fixed head row above the scrolled contacts.
-void write_head() {
+void write_head(SkinLayout layout) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ContactColumn& column : contact_columns()) {
+  for (const ContactColumn& column : contact_columns(layout)) {
     ImGui::TableNextColumn();
     ImGui::TableHeader(column.head);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column.help);
@@ -45,9 +45,9 @@ void write_right(const std::string& words) {
 }
 
 /// Returns true if clicked.
-bool write_row(const std::string& name, const ContactQuantities& contact) {
+bool write_row(const std::string& name, const ContactQuantities& contact, SkinLayout layout) {
   bool clicked = false;
-  const auto words = format_contact(name, contact);
+  const auto words = format_contact(name, contact, layout);
   ImGui::TableNextRow();
   for (std::size_t i = 0; i < words.size(); ++i) {
     ImGui::TableNextColumn();
@@ -61,7 +61,7 @@ bool write_row(const std::string& name, const ContactQuantities& contact) {
 }
 
 /// Index of the clicked contact in the frame's contacts.
-std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
+std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayout layout) {
   std::optional<std::size_t> clicked;
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(contacts.above_noise));
@@ -69,26 +69,27 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const std::size_t place = contacts.heaviest[static_cast<std::size_t>(row)];
       const TrackedContact& contact = contacts.found.contacts[place];
-      if (write_row(std::to_string(contact.track_id), contact.quantities)) clicked = place;
+      if (write_row(std::to_string(contact.track_id), contact.quantities, layout)) clicked = place;
     }
   }
   return clicked;
 }
 
-std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts) {
+std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts,
+                                         SkinLayout layout) {
   const std::size_t rows = std::min(contacts.above_noise, kMostRows) + 2;
   const ImGuiStyle& imgui_style = ImGui::GetStyle();
   const float row = static_cast<float>(style.line) + 2 * imgui_style.CellPadding.y;
   const float height = row * static_cast<float>(rows) + imgui_style.ScrollbarSize + 2;
-  if (!ImGui::BeginTable("contacts", static_cast<int>(kContactColumns), kTableFlags,
+  if (!ImGui::BeginTable("contacts", static_cast<int>(contact_columns(layout).size()), kTableFlags,
                          ImVec2(0, height))) {
     return std::nullopt;
   }
   ImGui::TableSetupScrollFreeze(1, 2);
-  set_columns();
-  write_head();
-  write_row("all", contacts.found.total);
-  const auto clicked = contact_rows(contacts);
+  set_columns(layout);
+  write_head(layout);
+  write_row("all", contacts.found.total, layout);
+  const auto clicked = contact_rows(contacts, layout);
   ImGui::EndTable();
   return clicked;
 }
@@ -102,12 +103,15 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
     return;
   }
   const ShownContacts& contacts = *state.field->contacts;
-  if (const auto clicked = contact_table(style, contacts)) {
+  const SkinLayout layout = state.player->info().skin.layout;
+  if (const auto clicked = contact_table(style, contacts, layout)) {
     mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
   }
   if (const std::size_t noise = contacts.heaviest.size() - contacts.above_noise; noise > 0) {
-    faint_text(style, fmt::format("{} single pillars at the noise are not listed", noise).c_str());
+    faint_text(
+        style,
+        fmt::format("{} single {} at the noise are not listed", noise, name_of(layout)).c_str());
   }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     faint_text(style, warning.c_str());

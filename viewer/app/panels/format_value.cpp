@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "viewer/app/panels/plot.h"
+#include "viewer/style/quantity.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -75,6 +77,8 @@ DirectionDeviation direction_deviation(const PillarValues& values) {
   return {magnitude, std::hypot(n * along, shear * sn) / (force * force), across / shear};
 }
 
+const char* element_name(const Skin& skin) { return skin.has_pillars() ? "pillar" : "sensel"; }
+
 std::string format_pillar(PillarIndex pillar) {
   return fmt::format("row {}, column {}", pillar.row, pillar.col);
 }
@@ -90,9 +94,12 @@ std::string format_count(double counts) {
   return fixed(counts, 0);
 }
 
-std::string format_readings(const std::array<float, 4>& readings) {
-  std::string words;
-  for (const float reading : readings) words += format_count(static_cast<double>(reading)) + "  ";
+std::string format_readings(const PillarValues& values) {
+  std::string words = values.has_pillars ? "readings 1–4: " : "reading: ";
+  const std::span<const float> readings = values.readings;
+  for (const float reading : readings.first(values.has_pillars ? 4 : 1)) {
+    words += format_count(static_cast<double>(reading)) + "  ";
+  }
   return words + "counts";
 }
 
@@ -114,6 +121,12 @@ std::string format_status(std::uint8_t status) {
   if ((status & status::kSaturated) != 0) words += ", saturated";
   if ((status & status::kInconsistent) != 0) words += ", inconsistent";
   return words;
+}
+
+std::string format_sensel_status(std::uint8_t status) {
+  if ((status & status::kSaturated) != 0) return "saturated";
+  if ((status & status::kInconsistent) != 0) return "no reading";
+  return (status & status::kUsable) != 0 ? "in contact" : "no contact";
 }
 
 std::string format_value(double value, double deviation) {
@@ -174,6 +187,14 @@ std::array<ShownValue, 3> shown_components(const PillarValues& values) {
                          plane(values, Uncertainty::shear_y), "N")};
 }
 
+std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin) {
+  const auto components = shown_components(values);
+  if (values.has_pillars) return {components.begin(), components.end()};
+  const auto kpa = static_cast<double>(kpa_per_newton(skin));
+  return {components.front(), with_deviation("pressure", kpa * static_cast<double>(values.normal),
+                                             kpa * plane(values, Uncertainty::normal), "kPa")};
+}
+
 namespace {
 
 std::string format_percent(std::uint64_t part, std::uint64_t all) {
@@ -194,35 +215,59 @@ std::string format_friction(const ContactQuantities& contact) {
   return fmt::format("{:.2f} ± {:.2f}", *contact.friction, *contact.friction_deviation);
 }
 
-}  // namespace
-
-const std::array<ContactColumn, kContactColumns>& contact_columns() {
-  static constexpr std::array<ContactColumn, kContactColumns> kColumns{{
-      {"id", "constant while the contact is tracked", "0000"},
-      {"normal", "normal force, N", "00000"},
-      {"shear", "shear force, N", "00000"},
-      {"µ", "friction and its standard deviation, if observed", "0.00 ± 0.00"},
-      {"slip", "sticking, partial, sliding or unknown", "unknown"},
-      {"ambiguous", "fraction of pillars / fraction of these resolved from the contact",
-       "00 % / 00 %"},
-      {"mean", "mean pressure, kPa", "00000"},
-      {"area", "mm²", "00000"},
-      {"peak", "largest normal force of a pillar, N", "0.000"},
-  }};
-  return kColumns;
+/// Columns of pillars alone.
+std::vector<ContactColumn> shear_columns() {
+  return {{"shear", "shear force, N", "00000",
+           [](const ContactQuantities& contact) {
+             return three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n));
+           }},
+          {"µ", "friction and its standard deviation, if observed", "0.00 ± 0.00", format_friction},
+          {"slip", "sticking, partial, sliding or unknown", "unknown",
+           [](const ContactQuantities& contact) -> std::string { return name_of(contact.slip); }},
+          {"ambiguous", "fraction of pillars / fraction of these resolved from the contact",
+           "00 % / 00 %", format_ambiguous}};
 }
 
-std::array<std::string, kContactColumns> format_contact(const std::string& name,
-                                                        const ContactQuantities& contact) {
-  return {name,
-          three_digits(contact.normal_n),
-          three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n)),
-          format_friction(contact),
-          name_of(contact.slip),
-          format_ambiguous(contact),
-          three_digits(contact.mean_pressure_kpa),
-          three_digits(contact.area_mm2),
-          three_digits(contact.peak_n)};
+std::vector<ContactColumn> columns_of(SkinLayout layout) {
+  std::vector<ContactColumn> columns{
+      {"id", "constant while the contact is tracked", "0000", nullptr},
+      {"normal", "normal force, N", "00000",
+       [](const ContactQuantities& contact) { return three_digits(contact.normal_n); }}};
+  if (layout == SkinLayout::pillars) {
+    for (const ContactColumn& column : shear_columns()) columns.push_back(column);
+  }
+  columns.push_back({"mean", "mean pressure, kPa", "0.0000", [](const ContactQuantities& contact) {
+                       return three_digits(contact.mean_pressure_kpa);
+                     }});
+  columns.push_back(
+      {"most", "largest pressure, kPa", "0.0000",
+       [](const ContactQuantities& contact) { return three_digits(contact.peak_pressure_kpa()); }});
+  columns.push_back({"area", "mm²", "00000", [](const ContactQuantities& contact) {
+                       return three_digits(contact.area_mm2);
+                     }});
+  columns.push_back(
+      {"peak",
+       layout == SkinLayout::pillars ? "largest normal force of a pillar, N"
+                                     : "largest normal force of a sensel, N",
+       "0.000", [](const ContactQuantities& contact) { return three_digits(contact.peak_n); }});
+  return columns;
+}
+
+}  // namespace
+
+const std::vector<ContactColumn>& contact_columns(SkinLayout layout) {
+  static const std::vector<ContactColumn> of_pillars = columns_of(SkinLayout::pillars);
+  static const std::vector<ContactColumn> of_sensels = columns_of(SkinLayout::sensels);
+  return layout == SkinLayout::pillars ? of_pillars : of_sensels;
+}
+
+std::vector<std::string> format_contact(const std::string& name, const ContactQuantities& contact,
+                                        SkinLayout layout) {
+  std::vector<std::string> words;
+  for (const ContactColumn& column : contact_columns(layout)) {
+    words.push_back(column.words == nullptr ? name : column.words(contact));
+  }
+  return words;
 }
 
 }  // namespace pillarfield::viewer

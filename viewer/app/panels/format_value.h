@@ -3,8 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "pillarfield/contact_quantities.h"
+#include "pillarfield/skin.h"
 #include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
@@ -16,21 +18,28 @@ struct DirectionDeviation {
 };
 [[nodiscard]] DirectionDeviation direction_deviation(const PillarValues& values);
 
+/// "pillar" or "sensel": what an element of the field is.
+[[nodiscard]] const char* element_name(const Skin& skin);
+
 /// "row 12, column 34".
 [[nodiscard]] std::string format_pillar(PillarIndex pillar);
 
-/// "x 12.65, y −3.79 mm": the centre of a pillar from the middle of the skin.
+/// "x 12.65, y −3.79 mm": the centre of a pillar or sensel from the middle of the skin.
 [[nodiscard]] std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
                                        double pillar_pitch_mm);
 
 /// "12", or "12.3" for a number that is not whole.
 [[nodiscard]] std::string format_count(double counts);
 
-/// "12  34  0  7  counts", in the order of the sensels.
-[[nodiscard]] std::string format_readings(const std::array<float, 4>& readings);
+/// "readings 1–4: 12  34  0  7  counts", in the order of the sensels; "reading: 12  counts" of a
+/// sensel without a pillar.
+[[nodiscard]] std::string format_readings(const PillarValues& values);
 
 /// "region 3, ambiguous", "no contact", "region 1, saturated".
 [[nodiscard]] std::string format_status(std::uint8_t status);
+
+/// Of a sensel without a pillar: "in contact", "no contact", "saturated", "no reading".
+[[nodiscard]] std::string format_sensel_status(std::uint8_t status);
 
 /// The value with the decimals of two digits of its deviation ("0.1234" for 0.0056); three_digits()
 /// where the deviation is NaN or 0.
@@ -56,19 +65,23 @@ struct ShownValue {
 /// Normal, shear x and shear y, with deviations.
 [[nodiscard]] std::array<ShownValue, 3> shown_components(const PillarValues& values);
 
-inline constexpr std::size_t kContactColumns = 9;
+/// Normal force with its deviation, of a pillar with the other components, of a sensel with the
+/// pressure.
+[[nodiscard]] std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin);
 
 /// A column of the table of contacts.
 struct ContactColumn {
-  const char* head;    ///< "normal"
-  const char* help;    ///< "normal force, N"
-  const char* widest;  ///< sample text that sets the width
+  const char* head;                                        ///< "normal"
+  const char* help;                                        ///< "normal force, N"
+  const char* widest;                                      ///< sample text that sets the width
+  std::string (*words)(const ContactQuantities& contact);  ///< null: its name
 };
-[[nodiscard]] const std::array<ContactColumn, kContactColumns>& contact_columns();
+[[nodiscard]] const std::vector<ContactColumn>& contact_columns(SkinLayout layout);
 
 /// A row of the table: `name`, then contact_columns(), numbers with three digits; "–" for missing
 /// values.
-[[nodiscard]] std::array<std::string, kContactColumns> format_contact(
-    const std::string& name, const ContactQuantities& contact);
+[[nodiscard]] std::vector<std::string> format_contact(const std::string& name,
+                                                      const ContactQuantities& contact,
+                                                      SkinLayout layout);
 
 }  // namespace pillarfield::viewer

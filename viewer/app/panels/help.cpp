@@ -24,10 +24,11 @@ void title(const char* words) {
   ImGui::PopStyleColor();
 }
 
-void group(ShortcutGroup shown) {
+void group(ShortcutGroup shown, const SourceInfo& source) {
   title(title_of(shown));
   for (const Shortcut& shortcut : shortcuts()) {
-    if (shortcut.group == shown) line(shortcut.keys, shortcut.description);
+    if (shortcut.group == shown && applies(shortcut, source))
+      line(shortcut.keys, shortcut.description);
   }
   ImGui::Spacing();
   ImGui::Spacing();
@@ -46,7 +47,7 @@ void mouse() {
 
 }  // namespace
 
-void help_overlay(const Viewport& area) {
+void help_overlay(const Viewport& area, const SourceInfo& source) {
   constexpr int kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
   const ImVec2 middle(static_cast<float>(area.x + area.width / 2),
@@ -61,14 +62,14 @@ void help_overlay(const Viewport& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(1.6f * em, 1.3f * em));
   if (ImGui::Begin("help", nullptr, kFlags | ImGuiWindowFlags_HorizontalScrollbar)) {
     ImGui::BeginGroup();
-    group(ShortcutGroup::play);
-    group(ShortcutGroup::view);
+    group(ShortcutGroup::play, source);
+    group(ShortcutGroup::view, source);
     ImGui::EndGroup();
     ImGui::SameLine(kBlock * em);
     ImGui::BeginGroup();
-    group(ShortcutGroup::show);
-    group(ShortcutGroup::write);
-    group(ShortcutGroup::mark);
+    group(ShortcutGroup::show, source);
+    group(ShortcutGroup::write, source);
+    group(ShortcutGroup::mark, source);
     ImGui::EndGroup();
     ImGui::SameLine(2 * kBlock * em);
     ImGui::BeginGroup();

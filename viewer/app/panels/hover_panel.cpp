@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "viewer/app/panels/panel_style.h"
@@ -12,28 +14,35 @@ namespace {
 /// Adds the quantity of the heat map unless another line shows it.
 void add_mapped(std::vector<ShownValue>& lines, const AppState& state) {
   const Quantity quantity = state.settings.quantity;
-  if (quantity != Quantity::uncertainty && quantity != Quantity::parity) return;
+  const Skin& skin = state.player->info().skin;
+  const bool elsewhere = quantity == Quantity::pressure && !skin.has_pillars();
+  const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
+                    quantity == Quantity::pressure;
+  if (!adds || elsewhere) return;
   const QuantityInfo& info = info_of(quantity);
-  const double value = value_of(quantity, *state.field, state.hovered->row, state.hovered->col);
+  const double value =
+      value_of(quantity, *state.field, skin, state.hovered->row, state.hovered->col);
   lines.push_back({info.title, three_digits(value * info.factor), {}, info.unit});
 }
 
 std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& values) {
-  std::vector<ShownValue> lines;
-  for (const ShownValue& value : shown_components(values)) lines.push_back(value);
-  for (const ShownValue& value : shown_direction(values)) lines.push_back(value);
+  std::vector<ShownValue> lines = shown_forces(values, state.player->info().skin);
+  if (values.has_pillars) {
+    for (const ShownValue& value : shown_direction(values)) lines.push_back(value);
+  }
   add_mapped(lines, state);
   return lines;
 }
 
-/// The same pillar of the second source, if it has one.
+/// The same place in the second source, if it has one.
 void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pillar) {
   if (!state.beside_field) return;
   const ForceFieldView& forces = state.beside_field->forces;
   if (pillar.row >= forces.rows || pillar.col >= forces.cols) return;
   leave_gap(style, 4);
   heading(style, state.beside_is_truth ? "truth" : state.beside->info().name);
-  value_table(style, shown_components(values_at(*state.beside_field, pillar)));
+  value_table(style,
+              shown_forces(values_at(*state.beside_field, pillar), state.beside->info().skin));
 }
 
 }  // namespace
@@ -41,7 +50,8 @@ void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pil
 void hover_panel(const AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   if (!state.field || !state.hovered) {
-    faint_text(style, "No pillar under the cursor.");
+    const char* const name = element_name(state.player->info().skin);
+    faint_text(style, fmt::format("No {} under the cursor.", name).c_str());
     return;
   }
   const PillarIndex pillar = *state.hovered;
@@ -50,7 +60,7 @@ void hover_panel(const AppState& state) {
   heading(style, format_pillar(pillar), format_place(state.field->forces, pillar, pitch_mm));
   status_line(style, state, pillar, values.status);
   if (state.field->raw.data != nullptr) {
-    faint_text(style, ("readings 1–4: " + format_readings(values.readings)).c_str());
+    faint_text(style, format_readings(values).c_str());
   }
   if (values.status == 0) return show_beside(style, state, pillar);
   leave_gap(style, 2);

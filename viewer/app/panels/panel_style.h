@@ -56,8 +56,8 @@ void heading(const PanelStyle& style, const std::string& words, const std::strin
 
 [[nodiscard]] Colour region_colour(Region region, Theme theme);
 
-/// A pillar's status after a swatch in the colour of its region or fault; "no sensel" for one that
-/// has none.
+/// The status of a pillar or sensel after a swatch in the colour of its region or fault; "no
+/// sensel" where there is none.
 void status_line(const PanelStyle& style, const AppState& state, PillarIndex pillar,
                  std::uint8_t status);
 

@@ -16,23 +16,25 @@ namespace pillarfield::viewer {
 // The panels of the window, drawn into the current ImGui window at its width. Sizes follow
 // RenderSettings::scale and the font.
 
-/// Values of the pillar under the cursor.
+/// Values of the pillar or sensel under the cursor.
 void hover_panel(const AppState& state);
 
 /// The inspected pillar, after the paper's testbed interface (Figure 7): readings as bars; theta,
 /// phi and magnitude with uncertainty; the region diagram (Figure 3) with the current point, its
-/// uncertainty and, in region 3, the contour of Figure 4. Selects and removes pins.
+/// uncertainty and, in region 3, the contour of Figure 4. Of a sensel reading, force and pressure.
+/// Selects and removes pins.
 void pillar_panel(AppState& state);
 
-/// The selection: total force, centre of pressure, area, peak, mean, shares of the regions.
+/// The selection: total force, centre of pressure, area, peak, mean; of pillars the shares of the
+/// regions, of sensels the pressure.
 void selection_panel(AppState& state);
 
 /// The contacts of the field on display, heaviest first, and their total. A click selects the
 /// extent of a contact.
 void contacts_panel(AppState& state, const FieldPlace& place);
 
-/// Total force, torque and centre of pressure of the whole skin over time, and the force on pinned
-/// pillars and the selection. The wheel zooms, a drag pans, a click seeks.
+/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins
+/// and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
@@ -44,8 +46,8 @@ inline constexpr double kSilentSeconds = 1;
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
 
-/// Draws the help on keys and mouse over the field.
-void help_overlay(const Viewport& area);
+/// Draws the help on mouse and keys, as far as they apply to the source, over the field.
+void help_overlay(const Viewport& area, const SourceInfo& source);
 
 /// Settings of the picture: quantity, range, colours, layers, view, surface, theme.
 void view_panel(const Command& command);

@@ -131,7 +131,8 @@ void pillar_panel(AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   number_pins(state);
   if (state.pins.empty()) {
-    faint_text(style, "Click a pillar to pin it.");
+    const char* const name = element_name(state.player->info().skin);
+    faint_text(style, fmt::format("Click a {} to pin it.", name).c_str());
     return;
   }
   choose_pin(style, state);
@@ -144,6 +145,11 @@ void pillar_panel(AppState& state) {
   heading(style, format_pillar(pin.pillar),
           format_place(state.field->forces, pin.pillar, pitch_mm));
   status_line(style, state, pin.pillar, values.status);
+  if (!values.has_pillars) {
+    if (state.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
+    leave_gap(style, 2);
+    return value_table(style, shown_forces(values, state.player->info().skin));
+  }
   leave_gap(style, 4);
   draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);

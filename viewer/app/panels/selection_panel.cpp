@@ -8,6 +8,7 @@
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
 #include "viewer/app/panels/widgets.h"
+#include "viewer/style/quantity.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -26,8 +27,14 @@ ShownValue shown(const char* label, double value, const char* unit, std::string 
   return {label, three_digits(value), std::move(further), unit};
 }
 
-/// Total force of the selection.
-std::vector<ShownValue> force_lines(const SelectionSums& sums) {
+/// Total force of the selection, without pillars with the pressure.
+std::vector<ShownValue> force_lines(const SelectionSums& sums, const Skin& skin) {
+  if (!skin.has_pillars()) {
+    const auto kpa = static_cast<double>(kpa_per_newton(skin));
+    return {shown("normal", sums.normal, "N"),
+            shown("mean pressure", kpa * sums.mean_normal, "kPa"),
+            shown("peak pressure", kpa * sums.peak_normal, "kPa")};
+  }
   return {shown("normal", sums.normal, "N"),
           shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"),
           shown("shear x", sums.shear_x, "N"), shown("shear y", sums.shear_y, "N"),
@@ -47,9 +54,9 @@ std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
 }
 
 /// Two tables, side by side if they fit.
-void draw_tables(const PanelStyle& style, const SelectionSums& sums) {
+void draw_tables(const PanelStyle& style, const SelectionSums& sums, const Skin& skin) {
   const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  value_table(style, force_lines(sums));
+  value_table(style, force_lines(sums, skin));
   const double second = value_table_width(style) - 60 * style.unit;
   if (second + value_table_width(style) <= available) {
     ImGui::SameLine(0, 0);
@@ -126,14 +133,20 @@ void selection_panel(AppState& state) {
     return;
   }
   const PillarRect& rect = state.selection->rect;
-  const double pitch_mm = state.player->info().skin.element_pitch_mm();
+  const Skin& skin = state.player->info().skin;
   const SelectionSums& sums = selection_sums(state);
-  heading(style, rect_words(rect), size_words(rect, pitch_mm));
+  heading(style, rect_words(rect), size_words(rect, skin.element_pitch_mm()));
   leave_gap(style, 2);
-  draw_tables(style, sums);
+  draw_tables(style, sums, skin);
   leave_gap(style, 4);
-  heading(style, "Regions of usable sensels",
-          fmt::format("{} of {} in contact", sums.in_contact, sums.pillars));
+  const std::string touched = fmt::format("{} of {} in contact", sums.in_contact, sums.pillars);
+  if (!skin.has_pillars()) {
+    heading(style, touched);
+    return faint_text(
+        style, fmt::format("{} saturated, {} without a reading", sums.saturated, sums.inconsistent)
+                   .c_str());
+  }
+  heading(style, "Regions of usable sensels", touched);
   if (sums.in_contact == 0) return;
   draw_shares(style, sums, state.settings.theme);
   draw_legend(style, sums, state.settings.theme);

@@ -85,7 +85,8 @@ std::string sensor_words(const LiveStatus& status) {
 std::string source_words(const AppState& state) {
   Player& player = *state.player;
   const Skin& skin = player.info().skin;
-  const std::string size = fmt::format("{} × {} pillars", skin.element_rows(), skin.element_cols());
+  const std::string size =
+      fmt::format("{} × {} {}", skin.element_rows(), skin.element_cols(), name_of(skin.layout));
   if (const LiveControl* const live = player.live()) {
     return fmt::format("{}   {}", sensor_words(live->status()), size);
   }

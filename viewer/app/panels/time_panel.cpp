@@ -54,21 +54,28 @@ Colours colours_of(const PanelStyle& style, Theme theme) {
           packed(colour_from(dark ? 0xe69f00 : 0xb06000)), style.text};
 }
 
+/// Components of a force; without pillars only the normal one exists.
+Chart force_chart(const char* title, const Points& points, const Colours& colours, bool pillars) {
+  Chart chart{title, "N", {}};
+  if (pillars) {
+    chart.curves = {{"x", points, shear_x_of, colours.x}, {"y", points, shear_y_of, colours.y}};
+  }
+  chart.curves.push_back({"normal", points, normal_of, colours.normal});
+  return chart;
+}
+
 /// Total force, torque and centre of pressure of the whole skin.
-void add_total(std::vector<Chart>& charts, const Points& points, const Colours& colours) {
-  charts.push_back({"Force",
-                    "N",
-                    {{"x", points, shear_x_of, colours.x},
-                     {"y", points, shear_y_of, colours.y},
-                     {"normal", points, normal_of, colours.normal}}});
-  charts.push_back({"Torque", "N mm", {{"", points, torque_of, colours.normal}}});
+void add_total(std::vector<Chart>& charts, const Points& points, const Colours& colours,
+               bool pillars) {
+  charts.push_back(force_chart("Force", points, colours, pillars));
+  if (pillars) charts.push_back({"Torque", "N mm", {{"", points, torque_of, colours.normal}}});
   charts.push_back(
       {"Centre of pressure",
        "mm",
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
-void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time) {
+void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time, bool pillars) {
   if (state.pins.empty()) return;
   Chart normal{"Pins, normal", "N", {}};
   Chart shear{"Pins, |shear|", "N", {}};
@@ -79,27 +86,24 @@ void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& tim
     shear.curves.push_back({std::to_string(pin.number), points, shear_of, colour});
   }
   charts.push_back(std::move(normal));
-  charts.push_back(std::move(shear));
+  if (pillars) charts.push_back(std::move(shear));
 }
 
 void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
-                   const Colours& colours) {
+                   const Colours& colours, bool pillars) {
   if (!state.selection) return;
   const Points points =
       state.curves->of(state.selection->rect, time.from, time.to, kMostShownPoints);
-  charts.push_back({"Selection",
-                    "N",
-                    {{"x", points, shear_x_of, colours.x},
-                     {"y", points, shear_y_of, colours.y},
-                     {"normal", points, normal_of, colours.normal}}});
+  charts.push_back(force_chart("Selection", points, colours, pillars));
 }
 
 std::vector<Chart> charts_of(const AppState& state, const Span& time, const PanelStyle& style) {
   const Colours colours = colours_of(style, state.settings.theme);
+  const bool pillars = state.player->info().skin.has_pillars();
   std::vector<Chart> charts;
-  add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours);
-  add_pins(charts, state, time);
-  add_selection(charts, state, time, colours);
+  add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours, pillars);
+  add_pins(charts, state, time, pillars);
+  add_selection(charts, state, time, colours, pillars);
   return charts;
 }
 

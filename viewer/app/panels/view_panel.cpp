@@ -26,9 +26,8 @@ void choose_quantity(AppState& state) {
   }
   for (int i = 0; i < kQuantities; ++i) {
     const auto quantity = static_cast<Quantity>(i);
-    const bool possible = is_available(quantity, state.player->info());
-    if (ImGui::Selectable(words_of(quantity).c_str(), quantity == state.settings.quantity,
-                          possible ? 0 : ImGuiSelectableFlags_Disabled)) {
+    if (!is_available(quantity, state.player->info())) continue;
+    if (ImGui::Selectable(words_of(quantity).c_str(), quantity == state.settings.quantity)) {
       show_quantity(state, quantity);
     }
   }
@@ -115,9 +114,12 @@ void choose_map(RenderSettings& settings) {
 
 void choose_layers(AppState& state) {
   RenderSettings& settings = state.settings;
+  const bool pillars = state.player->info().skin.has_pillars();
   labelled("Layers");
-  ImGui::Checkbox("arrows", &settings.arrows);
-  ImGui::SameLine();
+  if (pillars) {
+    ImGui::Checkbox("arrows", &settings.arrows);
+    ImGui::SameLine();
+  }
   bool contacts = settings.contacts;
   if (ImGui::Checkbox("contacts", &contacts)) show_contacts(state, contacts);
   ImGui::SameLine();
@@ -126,6 +128,7 @@ void choose_layers(AppState& state) {
   labelled("");
   ImGui::Checkbox("relief", &settings.relief);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("in 3-D, the normal force raises the skin (B)");
+  if (!pillars) return;
   ImGui::SameLine();
   ImGui::Checkbox("hatch", &settings.hatch);
   ImGui::SameLine();
@@ -218,7 +221,7 @@ void write_panel(const Command& command) {
   ImGui::SameLine();
   button("Video", "Write a video of all frames, by ffmpeg (Ctrl+M)", pending.video);
   ImGui::SameLine();
-  button("Table", "Write the visible pillars as CSV (C)", pending.table);
+  button("Table", "Write the visible forces as CSV (C)", pending.table);
 }
 
 }  // namespace pillarfield::viewer

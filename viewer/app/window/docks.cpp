@@ -44,6 +44,10 @@ bool is_shown(const PanelPlace& place, const AppState& state) {
   return place.id != PanelId::sensor || state.player->live() != nullptr;
 }
 
+const char* title_in(const AppState& state, PanelId id) {
+  return title_of(id, state.player->info().skin.layout);
+}
+
 /// Where a panel goes, chosen from a list.
 void choose_dock(PanelLayout& layout, PanelId id) {
   for (std::size_t i = 0; i < kDocks; ++i) {
@@ -55,9 +59,9 @@ void choose_dock(PanelLayout& layout, PanelId id) {
 }
 
 /// A heading that folds its panel, and that can be dragged to another dock; true while open.
-bool panel_heading(PanelLayout& layout, PanelId id) {
+bool panel_heading(PanelLayout& layout, PanelId id, const char* title) {
   ImGui::SetNextItemOpen(place_of(layout, id).open);
-  const Section heading = section(title_of(id));
+  const Section heading = section(title);
   place_of(layout, id).open = heading.open;
   if (heading.dragged) layout.dragged = id;
   if (heading.menu) ImGui::OpenPopup("dock");
@@ -71,7 +75,7 @@ bool panel_heading(PanelLayout& layout, PanelId id) {
 void docked_panel(const Command& command, PanelId id) {
   PanelLayout& layout = command.state.panels;
   ImGui::PushID(static_cast<int>(id));
-  if (panel_heading(layout, id)) draw_panel(id, command);
+  if (panel_heading(layout, id, title_in(command.state, id))) draw_panel(id, command);
   ImGui::PopID();
 }
 
@@ -102,7 +106,7 @@ void draw_row(const Command& command, const Viewport& box) {
   const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
   for (const PanelId id : ids) {
     if (id != ids.front()) ImGui::SameLine();
-    ImGui::BeginChild(title_of(id), ImVec2(width, 0), false,
+    ImGui::BeginChild(title_in(command.state, id), ImVec2(width, 0), false,
                       id == PanelId::curves ? ImGuiWindowFlags_NoScrollWithMouse : 0);
     docked_panel(command, id);
     ImGui::EndChild();
@@ -118,7 +122,7 @@ void draw_window(const Command& command, PanelId id, double scale) {
   bool stays = true;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4);
-  if (ImGui::Begin(title_of(id), &stays, ImGuiWindowFlags_NoSavedSettings)) {
+  if (ImGui::Begin(title_in(command.state, id), &stays, ImGuiWindowFlags_NoSavedSettings)) {
     draw_panel(id, command);
   }
   const ImVec2 corner = ImGui::GetWindowPos();
@@ -217,7 +221,7 @@ void drop_panel(AppState& state, const Screen& screen) {
   list.AddRectFilled(corner, end, (accent & 0x00ffffffu) | 0x40000000u);
   list.AddRect(corner, end, accent, 0, 0, 2);
   list.AddText(ImVec2(at.x + 14, at.y), palette_of(state.settings.theme).text,
-               title_of(*layout.dragged));
+               title_in(state, *layout.dragged));
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
   const double scale = state.settings.scale;
   Viewport& box = place_of(layout, *layout.dragged).window;
@@ -291,7 +295,7 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 
-  if (state.show_help) help_overlay(screen.field);
+  if (state.show_help) help_overlay(screen.field, state.player->info());
 }
 
 }  // namespace pillarfield::viewer

@@ -54,7 +54,10 @@ void take_size(PanelLayout& layout, const std::string& name, double size) {
 
 }  // namespace
 
-const char* title_of(PanelId id) { return kPanelTitles.at(static_cast<std::size_t>(id)); }
+const char* title_of(PanelId id, SkinLayout layout) {
+  if (id == PanelId::pillar && layout == SkinLayout::sensels) return "Sensel";
+  return kPanelTitles.at(static_cast<std::size_t>(id));
+}
 const char* title_of(Dock dock) { return kDockTitles.at(static_cast<std::size_t>(dock)); }
 
 PanelLayout default_layout() {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pillarfield/skin.h"
 #include "viewer/style/view.h"
 
 namespace pillarfield::viewer {
@@ -22,7 +23,7 @@ enum class PanelId : std::uint8_t {
   curves
 };
 inline constexpr std::size_t kPanels = 8;
-[[nodiscard]] const char* title_of(PanelId id);
+[[nodiscard]] const char* title_of(PanelId id, SkinLayout layout);
 
 /// Where a panel is: in a column, in the row below the field, or a window of its own.
 enum class Dock : std::uint8_t { left, right, bottom, floating };
