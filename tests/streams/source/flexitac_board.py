@@ -2,8 +2,8 @@
 
     flexitac_board.py ROWS COLS RATE FRAMES LOSES SENT.npy
 
-Sends idle frames until a line comes on standard input, then FRAMES random ones, which are saved, prints "sent", and
-goes on with idle ones. Every LOSES-th random frame loses a byte; 0: none does."""
+Sends idle frames until a line comes on standard input, then FRAMES random ones, which are saved, prints how many
+frames it has sent in all, and goes on with idle ones. Every LOSES-th random frame loses a byte; 0: none does."""
 
 import os
 import select
@@ -26,10 +26,12 @@ line, board = os.openpty()
 tty.setraw(board)
 print(os.ttyname(board), flush=True)
 due = time.monotonic()
+sent = 0
 
 
 def send(readings):
-    global due
+    global due, sent
+    sent += 1
     due += 1 / RATE
     time.sleep(max(0, due - time.monotonic()))
     readings = MARKS + readings
@@ -49,5 +51,5 @@ for number, frame in enumerate(frames, 1):
     if LOSES and number % LOSES == 0:
         del readings[random.integers(0, len(readings))]
     send(bytes(readings))
-print("sent", flush=True)
+print(sent, flush=True)
 idle_until_told()

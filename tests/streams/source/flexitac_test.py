@@ -39,23 +39,17 @@ class FlexitacTest(unittest.TestCase):
                             "--record", recording, "--health-interval", 0.1, "--json", stderr=subprocess.DEVNULL)
 
         def wait_for(frames):
-            """Reads reports until so many further frames came."""
-            first = None
-            for report in map(json.loads, stream.stdout):
-                count = report["health"]["frames"]
-                first = count if first is None else first
-                if count >= first + frames:
-                    return
+            while json.loads(stream.stdout.readline())["health"]["frames"] < frames:
+                pass
 
         wait_for(1)
         print("go", file=board.stdin, flush=True)
-        self.assertEqual(board.stdout.readline(), "sent\n")
-        wait_for(50)  # more than may be under way
+        wait_for(int(board.stdout.readline()))  # Then those that were discarded before have been made up for.
         stream.send_signal(signal.SIGINT)
         summary = json.loads(stream.communicate(timeout=600)[0].splitlines()[-1])["summary"]
         self.assertEqual(stream.returncode, 0)
         with h5py.File(recording) as file:
-            frames = file["raw"][()]
+            frames = file["frames/raw"][()]
         self.assertEqual(len(frames), summary["frames"])
         self.assertEqual(frames.dtype, numpy.uint8)
         return numpy.load(sent), frames[frames.any(axis=(1, 2))], summary
