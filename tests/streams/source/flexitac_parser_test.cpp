@@ -191,6 +191,18 @@ TEST(FlexitacParser, GuessesNothingWhileStillReadingsCanBeReadInTwoWays) {
   }
 }
 
+TEST(FlexitacParser, LeavesReadingsThatItTookForMarks) {
+  std::vector<std::string> frames(30, kMarks + quiet_readings(1).replace(27, 2, kMarks));
+  frames[1][0] ^= 1;  // So the only marks two of which lie one frame apart are readings.
+  std::mt19937 random(1);
+  FlexitacParser parser(kBoard);
+  Parsed parsed;
+  feed(parser, joined(frames), random, parsed);
+  EXPECT_LE(parsed.frames.size(), 1);
+  feed(parser, joined(quiet_frames(2, 5)) + kMarks, random, parsed);
+  EXPECT_EQ(parsed.frames.back(), quiet_readings(4));
+}
+
 TEST(FlexitacParser, TakesNoFrameThatLostManyBytes) {
   std::mt19937 random(1);
   std::vector<std::string> sent;
