@@ -574,18 +574,27 @@ def packet(readings, content=0, shape=(5, 7), kind=1, sequence=0, part=0, parts=
     return head + readings + (struct.pack("<I", zlib.crc32(head + readings)) if checked else b"")
 
 
+def flexitac(frames):
+    """Frames of 5 x 7 readings as a FlexiTac board sends them."""
+    return b"".join(b"\xaa\x55" + frame for frame in frames)
+
+
 def packets():
     """Streams of packets by name."""
     frame = bytes(range(35))
     rows = [packet(bytes(28), 1, kind=3, sequence=n, part=part, parts=5, first=part, count=1)
             for n in range(3) for part in (0, 2, 1, 4, 3)]
     block = struct.pack("<II", 0, 0) + bytes(128)
+    marked = b"\0\xaa\x55".ljust(35)
     return {
         "seed_frames": b"".join(packet(frame, sequence=n) for n in range(4)),
         "seed_rows": b"".join(rows),
         "seed_late_rows": b"".join(rows[5:9] + rows[10:] + rows[9:11]),
         "seed_blocks": b"".join([packet(block, 2, kind=2, sequence=n, count=1, checked=True) for n in range(3)]
                                 + [packet(b"", 2, kind=2, sequence=3), packet(b"", 3, kind=2, sequence=4)]),
+        "seed_flexitac": flexitac([frame] * 10 + [marked] * 12 + [frame] * 2),
+        "hostile_flexitac_loss": flexitac([frame] * 12 + [marked] * 3)[:-80] + flexitac([marked] * 12 + [frame] * 4),
+        "hostile_flexitac_marks": b"\xaa\x55" * 400,
         "hostile_huge": packet(frame, rows=65534, cols=65534, bytes=65534**2 % 2**32),
         "hostile_claims_bytes": packet(frame, rows=4096, cols=4096, bytes=2**24),
         "hostile_no_parts": packet(frame, parts=0) + packet(frame),

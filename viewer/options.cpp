@@ -21,7 +21,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr const char* kFooter = R"(
 SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solved while you watch;
 a file of force fields from `pillarfield solve`; or a sensor: udp:ADDRESS:PORT, shm:NAME,
-serial:DEVICE, or - for standard input. Keys and mouse: press ? in the window.
+serial:DEVICE (of a FlexiTac board 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'), or - for
+standard input. Keys and mouse: press ? in the window.
 
 Try:  pillarfield-viewer scenes/demo.toml
       pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png

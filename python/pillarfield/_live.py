@@ -62,7 +62,8 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
          serial_baud: int = 2_000_000) -> LiveSource:
     """Opens a live source and waits for its first frame; Ctrl+C gives up.
 
-    source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', or '-' for standard input
+    source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'
+        of a FlexiTac board, or '-' for standard input
     skin: constants of the skin; rows and columns come from the frames
     serial_baud: of 'serial:'
 
@@ -72,7 +73,7 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
     >>> import pillarfield as pf
     >>> pf.live("press.h5")
     Traceback (most recent call last):
-    pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE
+    pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]
     """
     return LiveSource(source, skin=skin, serial_baud=serial_baud)
 

@@ -66,9 +66,11 @@ void add_stream(CLI::App& parent, Work& work) {
       "  pillarfield stream scenes/demo.toml --repeat --seconds 2 --rate 500 --summary\n");
   Group input(command, "Input");
   command
-      ->add_option("SOURCE", options->source,
-                   "- (packets on standard input), shm:NAME, udp:ADDRESS:PORT, serial:DEVICE, or a "
-                   "scene or file of frames, replayed at its own pace")
+      ->add_option(
+          "SOURCE", options->source,
+          "- (packets on standard input), shm:NAME, udp:ADDRESS:PORT, serial:DEVICE (of a FlexiTac "
+          "board 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'), or a scene or file "
+          "of frames, replayed at its own pace")
       ->required()
       ->type_name("SOURCE")
       ->group("Input");

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <span>
 
-#include "streams/source/packet_parser.h"
 #include "streams/source/packet_source.h"
 
 namespace pillarfield {

@@ -82,6 +82,11 @@ std::size_t FrameShape::most_packet_bytes() const {
   return std::max(bytes(), blocks() * block_bytes()) + kChecksumBytes;
 }
 
+bool is_size_allowed(const FrameShape& shape) {
+  return std::min(shape.rows, shape.cols) >= 2 && std::max(shape.rows, shape.cols) <= kMaxSensels &&
+         std::size_t{shape.rows} * shape.cols <= PILLARFIELD_MAX_SENSELS;
+}
+
 SenselBlock sensels_of_block(const FrameShape& shape, std::uint32_t block) {
   const std::uint32_t row = block / shape.block_cols() * kSide;
   const std::uint32_t col = block % shape.block_cols() * kSide;
@@ -97,10 +102,7 @@ std::optional<FrameShape> shape_of(const PillarfieldPacket& header) {
   if (header.magic != PILLARFIELD_PACKET_MAGIC || !type || header.patch != 0) return std::nullopt;
   if ((header.content & ~PILLARFIELD_CHECKED) > PILLARFIELD_END) return std::nullopt;
   const FrameShape shape = {*type, header.rows, header.cols};
-  if (std::min(shape.rows, shape.cols) < 2 || std::max(shape.rows, shape.cols) > kMaxSensels ||
-      std::size_t{shape.rows} * shape.cols > PILLARFIELD_MAX_SENSELS) {
-    return std::nullopt;
-  }
+  if (!is_size_allowed(shape)) return std::nullopt;
   if (header.parts < 1 || header.parts > PILLARFIELD_MAX_PARTS || header.part >= header.parts) {
     return std::nullopt;
   }

@@ -29,6 +29,9 @@ struct FrameShape {
   bool operator==(const FrameShape&) const = default;
 };
 
+/// Whether rows and columns are those of a skin, and no more than PILLARFIELD_MAX_SENSELS in all.
+[[nodiscard]] bool is_size_allowed(const FrameShape& shape);
+
 /// Bytes before the readings of a block: its number, and zeros.
 inline constexpr std::size_t kBlockHead = 8;
 

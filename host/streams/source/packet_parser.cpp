@@ -39,8 +39,9 @@ std::span<std::byte> PacketParser::space() {
   return std::span(buffer_).subspan(end_);
 }
 
-void PacketParser::commit(std::size_t bytes) {
+void PacketParser::commit(std::size_t bytes, std::chrono::nanoseconds arrived) {
   end_ += bytes;
+  arrived_ = arrived;
   finished_ = false;
 }
 
@@ -123,6 +124,7 @@ bool PacketParser::next(Packet& packet) {
   while (!is_busy() && find_magic()) {
     switch (find_packet(packet)) {
       case Found::packet:
+        packet.arrived = arrived_;
         return true;
       case Found::more_needed:
         return false;

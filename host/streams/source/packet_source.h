@@ -36,6 +36,9 @@ class PacketSource {
   /// Whether anyone may send to it: then frames of another size need not be the sensor's.
   [[nodiscard]] virtual bool is_open_to_all() const { return false; }
 
+  /// Why no packet came although bytes did, for the user who waits; empty: unknown.
+  [[nodiscard]] virtual std::string complaint() const { return {}; }
+
   /// What was received since clear_counts().
   struct Counts {
     std::uint64_t invalid = 0;             ///< no packets

@@ -189,9 +189,10 @@ bool receive_first(const std::string& name, PacketSource& source, const LiveSour
       throw Error(name, "ended before its first frame", "docs/streams.md describes the packets");
     }
     if (arrival == Arrival::arrived && first.add(packet)) return true;
-    if (options.say && !said && !first.mismatch().empty()) {
+    const std::string words = first.mismatch().empty() ? source.complaint() : first.mismatch();
+    if (options.say && !said && !words.empty()) {
       said = true;
-      options.say(first.mismatch());
+      options.say(words);
     }
     if (steady_now() - polled < kPoll) continue;
     polled = steady_now();

@@ -14,6 +14,8 @@
 #include "pillarfield/printable.h"
 #include "streams/live_source.h"
 #include "streams/source/byte_source.h"
+#include "streams/source/packet_source.h"
+#include "streams/source/serial_address.h"
 
 namespace pillarfield {
 namespace {
@@ -48,25 +50,28 @@ int open_serial_device(const std::string& device, std::uint32_t baud) {
 /// Packets on a serial line. It is opened again when the device disappears and returns.
 class SerialSource final : public PacketSource {
  public:
-  SerialSource(std::string device, std::uint32_t baud, int opened)
-      : device_(std::move(device)), baud_(baud), descriptor_(opened) {}
+  SerialSource(SerialAddress address, std::uint32_t baud, int opened)
+      : device_(std::move(address.device)),
+        parser_(std::move(address.parser)),
+        baud_(baud),
+        descriptor_(opened) {}
   ~SerialSource() override { leave(); }
   SerialSource(const SerialSource&) = delete;
   SerialSource& operator=(const SerialSource&) = delete;
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
-  void prepare(const FrameShape& shape) override { parser_.prepare(shape); }
-  [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0, parser_.other()}; }
-  void clear_counts() override { parser_.clear_counts(); }
+  void prepare(const FrameShape& shape) override { parser_->prepare(shape); }
+  [[nodiscard]] std::string complaint() const override { return parser_->complaint(); }
+  [[nodiscard]] Counts counts() const override { return {parser_->invalid(), 0, parser_->other()}; }
+  void clear_counts() override { parser_->clear_counts(); }
 
  private:
   void leave();
 
   std::string device_;
+  std::unique_ptr<ByteParser> parser_;
   std::uint32_t baud_;
   int descriptor_;
-  PacketParser parser_;
-  std::chrono::nanoseconds arrived_{0};
 };
 
 void SerialSource::leave() {
@@ -75,45 +80,47 @@ void SerialSource::leave() {
 }
 
 Arrival SerialSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
-  for (int reads = 0; !parser_.next(packet); ++reads) {
-    if (reads == kMostReads || parser_.is_busy()) return Arrival::timed_out;
+  for (int reads = 0; !parser_->next(packet); ++reads) {
+    if (reads == kMostReads || parser_->is_busy()) return Arrival::timed_out;
     if (descriptor_ < 0) descriptor_ = open_serial_device(device_, baud_);
     if (descriptor_ < 0) {
       std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(timeout, 50ms));
       return Arrival::timed_out;
     }
-    const BytesRead read = read_bytes(descriptor_, parser_.space(), timeout);
+    const BytesRead read = read_bytes(descriptor_, parser_->space(), timeout);
     if (read.ended) {
       leave();
-      parser_.finish();
-      if (parser_.next(packet)) break;
+      parser_->finish();
+      if (parser_->next(packet)) break;
       std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(timeout, 50ms));
     }
     if (read.bytes == 0) return Arrival::timed_out;
-    arrived_ = steady_now();
-    parser_.commit(read.bytes);
+    parser_->commit(read.bytes, steady_now());
     timeout = 0ns;
   }
-  packet.arrived = arrived_;
   return Arrival::arrived;
 }
 
 std::unique_ptr<FrameStream> open_serial(const std::string& rest,
                                          const LiveSourceOptions& options) {
   const std::string name = printable("serial:" + rest);
-  const int opened = open_serial_device(rest, options.serial_baud);
+  SerialAddress address = serial_address(rest);
+  const int opened = open_serial_device(address.device, options.serial_baud);
   if (opened < 0) {
     throw Error(
         name,
         fmt::format("cannot be opened at {} baud: {}", options.serial_baud, std::strerror(errno)),
         "give a serial device that you may read, for instance serial:/dev/ttyACM0");
   }
-  return open_packet_stream(name, std::make_unique<SerialSource>(rest, options.serial_baud, opened),
-                            PacketOrder::kept, options);
+  return open_packet_stream(
+      name, std::make_unique<SerialSource>(std::move(address), options.serial_baud, opened),
+      PacketOrder::kept, options);
 }
 
 }  // namespace
 
-LiveSourceKind serial_kind() { return {"serial:", "serial:DEVICE", open_serial}; }
+LiveSourceKind serial_kind() {
+  return {"serial:", "serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]", open_serial};
+}
 
 }  // namespace pillarfield

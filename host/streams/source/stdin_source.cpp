@@ -3,6 +3,8 @@
 #include "pillarfield/error.h"
 #include "streams/live_source.h"
 #include "streams/source/byte_source.h"
+#include "streams/source/packet_parser.h"
+#include "streams/source/packet_source.h"
 
 namespace pillarfield {
 namespace {
@@ -18,7 +20,6 @@ class StdinSource final : public PacketSource {
 
  private:
   PacketParser parser_;
-  std::chrono::nanoseconds arrived_{0};
   bool ended_ = false;
 };
 
@@ -28,13 +29,11 @@ Arrival StdinSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
     if (reads == kMostReads || parser_.is_busy()) return Arrival::timed_out;
     const BytesRead read = read_bytes(STDIN_FILENO, parser_.space(), timeout);
     if (read.bytes == 0 && !read.ended) return Arrival::timed_out;
-    arrived_ = steady_now();
-    parser_.commit(read.bytes);
+    parser_.commit(read.bytes, steady_now());
     ended_ = read.ended;
     if (ended_) parser_.finish();
     timeout = std::chrono::nanoseconds(0);
   }
-  packet.arrived = arrived_;
   return Arrival::arrived;
 }
 

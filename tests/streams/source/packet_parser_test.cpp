@@ -9,6 +9,8 @@
 namespace pillarfield::streams_test {
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr FrameShape kParsed = {SenselType::u8, 18, 14};
 
 /// Feeds bytes in pieces of random length, and calls `found` for each packet.
@@ -29,7 +31,7 @@ std::uint64_t parse(const std::string& bytes, std::mt19937& random, Found found)
     const auto space = parser.space();
     const auto size = std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
     std::memcpy(space.data(), &bytes[fed], size);
-    parser.commit(size);
+    parser.commit(size, 0s);
     fed += size;
     take();
   }
@@ -137,7 +139,7 @@ TEST(PacketParser, ReturnsBetweenChecksums) {
     const auto space = parser.space();
     const auto size = std::min(bytes.size() - fed, space.size());
     std::memcpy(space.data(), &bytes[fed], size);
-    parser.commit(size);
+    parser.commit(size, 0s);
     fed += size;
     EXPECT_FALSE(parser.next(packet));
     for (; parser.is_busy(); ++busy) EXPECT_FALSE(parser.next(packet));
