@@ -254,11 +254,6 @@ void check_part_options(const SolveOptions& options) {
 /// The files that this process writes.
 std::vector<PlannedOutput> outputs_of(const SolveOptions& options,
                                       const std::optional<PlannedOutput>& table) {
-  if (options.output.empty() && !table) {
-    throw Error("solve", "no output is named",
-                "give -o FILE for the forces of all elements, --contacts FILE for the totals of "
-                "patch and contacts, or both");
-  }
   std::vector<PlannedOutput> outputs;
   if (!options.output.empty()) outputs.push_back(planned_force_file(options.output));
   if (table) outputs.push_back(*table);

@@ -81,10 +81,10 @@ std::vector<std::string> ReadingCheck::warnings() const {
   }
   if (share >= kNearlyAll && plan_.calibration.tare.empty()) {
     sentences.push_back(fmt::format(
-        "{:.1f} % of all pillars are in contact and there is no tare; measure one with "
+        "{:.1f} % of all {} are in contact and there is no tare; measure one with "
         "'pillarfield calibrate tare', or in frames without load with --tare-frames (in Python "
         "tare_frames=).",
-        100 * share));
+        100 * share, name_of(plan_.skin.layout)));
   }
   if (share <= kHardlyAny && blank_frames_ < frames_) warn_of_no_contact(sentences);
   return sentences;
@@ -96,16 +96,17 @@ void ReadingCheck::warn_of_no_contact(std::vector<std::string>& sentences) const
     sentences.push_back(fmt::format(
         "Readings fall: {} sensels of a frame read less than their tare by more than the "
         "threshold, "
-        "down to {:.4g} counts below it, and at most {} read more. Pillarfield takes readings that "
-        "rise under load; give full scale minus reading.",
+        "down to {:.4g} counts below it, and at most {} read more. Give --falling (in Python the full "
+        "scale minus the reading) if they fall under load.",
         most_.below, -most_.lowest, most_.above));
   } else if (in_contact_ == 0) {
     sentences.push_back(fmt::format(
-        "No pillar is in contact in any of {} frames: readings rise to at most {:.4g} counts{}, "
+        "No {} is in contact in any of {} frames: readings rise to at most {:.4g} counts{}, "
         "and those "
         "above the threshold of {:.4g} are usable; give a lower --threshold (in Python "
         "threshold_counts=), or a tare of the unloaded skin.",
-        frames_, most_.highest, plan_.calibration.tare.empty() ? "" : " above their tare",
+        plan_.skin.has_pillars() ? "pillar" : "sensel", frames_, most_.highest,
+        plan_.calibration.tare.empty() ? "" : " above their tare",
         plan_.skin.threshold_counts));
   }
 }

@@ -311,9 +311,12 @@ class RealFrames(CommandTest):
         if not FINGER.exists():
             self.skipTest("the real Tekscan frames are not beside this project")
         facts = run_json("info", FINGER)
+        self.assertEqual((facts["frames"], facts["layout"], facts["sensel_rows"]), (309, "sensels", 28))
+        self.assertNotIn("regions", run_json("solve", FINGER, "-o", self.folder / "sensels.h5"))
+        facts = run_json("info", FINGER, "--layout", "pillars")
         self.assertEqual((facts["frames"], facts["pillar_rows"], facts["pillar_cols"]),
                          (309, 14, 14))
-        solved = run_json("solve", FINGER, "-o", self.folder / "forces.h5")
+        solved = run_json("solve", FINGER, "-o", self.folder / "forces.h5", "--layout", "pillars")
         self.assertEqual((solved["frames"], solved["pillar_rows"]), (309, 14))
         self.assertGreater(solved["regions"]["1"], 0)
 

@@ -63,7 +63,7 @@ class Versions(CommandTest):
 
     def test_absent_chunks_of_version_1_and_later_versions_are_refused(self):
         for path in (self.recording, self.forces):
-            for version, words in ((1, "are stored"), (3, "its version is 3; this program reads version 1 to 2")):
+            for version, words in ((1, "are stored"), (4, "its version is 4; this program reads version 1 to 3")):
                 with h5py.File(path, "r+") as file:
                     file.attrs["version"] = version
                 self.assert_fails("compare", self.forces, self.recording, names=[path.name, words])

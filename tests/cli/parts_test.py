@@ -226,7 +226,7 @@ class PartsTest(PartsFolder):
             raw[1] = 0
             raw[2, :200], raw[3, 7:9, 5:] = 0, 0
             numpy.save(self.folder / "raw.npy", raw)
-            plain = (self.folder / "raw.npy", "--rate", 100, "--threshold", 2)
+            plain = (self.folder / "raw.npy", "--rate", 100, "--threshold", 2, "--layout", "pillars")
             run("solve", *plain, "-o", self.output)
             run("solve", *plain, "-o", self.folder / "forces.npy")
             forces = numpy.load(self.folder / "forces.npy", mmap_mode="r")

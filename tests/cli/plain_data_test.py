@@ -10,7 +10,7 @@ import numpy as np
 
 from command import CommandTest, run, run_json
 
-CONSTANTS = ("--counts-per-newton", 200, "--threshold", 2, "--pitch-mm", 0.5)
+CONSTANTS = ("--counts-per-newton", 200, "--threshold", 2, "--pitch-mm", 0.5, "--layout", "pillars")
 
 
 def readings(dtype="u2"):
@@ -116,6 +116,34 @@ class PlainData(CommandTest):
         status = self.solve(self.path("a.npy"), "--rate", 1, *CONSTANTS)[1]
         self.assertTrue(status[1, 1, 1] & 64)
 
+    def test_without_a_word_sensels_are_by_themselves(self):
+        frames = np.random.default_rng(2).integers(0, 200, (4, 7, 5)).astype("u1")
+        for falling, stored in ((False, frames), (True, 255 - frames)):
+            np.save(self.path("a.npy"), stored)
+            options = ("--rate", 1, "--counts-per-newton", 50, *["--falling"] * falling)
+            printed = run("solve", self.path("a.npy"), "-o", self.path("f.npy"), "--overwrite", *options)
+            self.assertIn("--layout pillars", printed.stderr)
+            solved = np.load(self.path("f.npy"))
+            self.assertEqual(solved.dtype.names, ("normal", "status"))
+            np.testing.assert_allclose(solved["normal"], frames / 50, rtol=1e-6)
+            np.testing.assert_array_equal(solved["status"], frames > 0)
+
+    def test_totals_without_a_file_of_forces(self):
+        frames = np.zeros((2, 6, 9), "u1")
+        frames[1, 2:4, 3:6] = [[10, 20, 30], [20, 40, 60]]
+        np.save(self.path("a.npy"), frames)
+        run("solve", self.path("a.npy"), "--contacts", self.path("c.csv"), "--rate", 10,
+            "--counts-per-newton", 10, "--pitch-mm", 5)
+        lines = [line.split(",") for line in self.path("c.csv").read_text().splitlines()]
+        total = dict(zip(lines[0], lines[2]))
+        self.assertEqual((total["row"], total["frame"], total["sensels"]), ("patch", "1", "6"))
+        self.assertNotIn("shear_x_n", total)
+        self.assertAlmostEqual(float(total["normal_n"]), 18, places=5)
+        self.assertAlmostEqual(float(total["area_mm2"]), 150)
+        self.assertAlmostEqual(float(total["peak_pressure_kpa"]), 240, places=4)
+        self.assertAlmostEqual(float(total["centre_of_pressure_x_mm"]), 5 * (4 + 5 / 18 - 4), places=4)
+        self.assertAlmostEqual(float(total["centre_of_pressure_y_mm"]), 5 * (2.5 - 2 - 2 / 3), places=4)
+
     def test_archives(self):
         other = np.ones((5, 6, 8))
         for save in (np.savez, np.savez_compressed):
@@ -219,7 +247,7 @@ class PlainData(CommandTest):
         frames = np.concatenate([np.zeros((20, 6, 8)), readings("f8")])
         tared = frames + 40 + np.arange(48).reshape(6, 8) + random.normal(0, 0.5, frames.shape)
         np.save(self.path("a.npy"), tared.round().astype("i2"))
-        options = (self.path("a.npy"), "--rate", 1, "--counts-per-newton", 200)
+        options = (self.path("a.npy"), "--rate", 1, "--counts-per-newton", 200, "--layout", "pillars")
         warned = run("solve", *options, "-o", self.path("f.h5"), "-q").stderr
         self.assertIn("no tare", warned)
         self.assertIn("--tare-frames", warned)
@@ -239,7 +267,7 @@ class PlainData(CommandTest):
         solve = ("solve", self.path("a.npy"), "-o", self.path("f.h5"), "--rate", 100, "-q",
                  "--overwrite", "--tare-frames", 30)
         for added, words in ((press, ()), (-press, ("Readings fall", "84 sensels")),
-                             (press / 25, ("No pillar is in contact", "--threshold"))):
+                             (press / 25, ("No sensel is in contact", "--threshold"))):
             np.save(self.path("a.npy"), frames + added)
             warned = run(*solve).stderr
             self.assertEqual([word in warned for word in words], [True] * len(words), warned)

@@ -255,7 +255,7 @@ TEST(ForceSink, RefusesWhatItCannotWrite) {
   EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"extension"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(0, 3)), {"0 x 3"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(2, 32768)), {"2 x 32768"}));
-  EXPECT_TRUE(has_all(refused(directory / "f.h5", no_pitch), {"pillar_pitch_mm is nan"}));
+  EXPECT_TRUE(has_all(refused(directory / "f.h5", no_pitch), {"element_pitch_mm is nan"}));
   for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
     const auto path = directory / "none" / name;
     EXPECT_TRUE(has_all(refused(path, info_of(2, 3)), {name, "No such file"}));

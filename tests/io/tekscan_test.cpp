@@ -69,9 +69,10 @@ struct Export {
 
 class Tekscan : public testing::Test {
  protected:
-  std::unique_ptr<FrameSource> open(const std::string& text) {
+  std::unique_ptr<FrameSource> open(const std::string& text,
+                                    std::optional<SkinLayout> layout = {}) {
     write_bytes(path_, text);
-    return open_frames(path_);
+    return open_frames(path_, {.layout = layout});
   }
   std::string refused(const std::string& text) {
     return error_of([&] { (void)open(text); });
@@ -125,7 +126,9 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_EQ(source->skin().full_scale_counts, 255);
   EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
   EXPECT_TRUE(warnings(*source, "counts per newton"));
-  EXPECT_TRUE(warnings(*source, "last of the 3 sensel rows"));
+  EXPECT_EQ(source->skin().layout, SkinLayout::sensels);
+  EXPECT_TRUE(warnings(*source, "--layout pillars"));
+  EXPECT_FALSE(warnings(*source, "last of the 3 sensel rows"));
   EXPECT_FALSE(source->has_truth());
   EXPECT_TRUE(source->calibration().empty());
 }
@@ -294,9 +297,10 @@ TEST_F(Tekscan, GivesForcesInAnyUnits) {
     SCOPED_TRACE(unit);
     Export written;
     written.set("UNITS", "UNITS " + unit);
+    EXPECT_EQ(open(written.text(), SkinLayout::pillars)->skin().counts_per_newton, 0.25);
     const auto source = open(written.text());
     EXPECT_EQ(source->sensel_type(), SenselType::f32);
-    EXPECT_EQ(source->skin().counts_per_newton, 0.25);
+    EXPECT_EQ(source->skin().counts_per_newton, 1);
     EXPECT_EQ(source->skin().threshold_counts, 0);
     const std::vector<float> read = newtons_in(*source, 1);
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -309,7 +313,7 @@ TEST_F(Tekscan, GivesForcesInAnyUnits) {
 }
 
 /// An F-Scan insole in kPa: a long header, 60 x 21 sensels, an outline. The normal forces of its
-/// pillars are pressure times area, and all it lacks is quiet.
+/// sensels, or pillars, are pressure times area, and all it lacks is quiet.
 TEST_F(Tekscan, ForcesOfAnInsoleArePressureTimesArea) {
   Export written;
   written.header.insert(written.header.begin() + 2, 200, "NOTE frames of a left foot, walking");
@@ -330,22 +334,27 @@ TEST_F(Tekscan, ForcesOfAnInsoleArePressureTimesArea) {
       newtons += inside ? kpa * 1e3 * 0.258064e-4 : 0;
     }
   }
-  const auto source = open(written.text());
-  EXPECT_TRUE(warnings(*source, "pillars stand partly outside"));
-  SolverPlan plan;
-  plan.skin = source->skin();
-  plan.sensel_type = source->sensel_type();
-  plan.calibration = source->calibration();
-  FrameBuffer frame(plan.sensel_type, 60, 21);
-  source->read(0, frame);
-  const ForceField field = solve_on_host(plan, frame.view());
-  EXPECT_NEAR(std::accumulate(field.normal.begin(), field.normal.end(), 0.0), newtons,
-              1e-5 * newtons);
-  const auto quiet = static_cast<std::size_t>(std::ranges::count(field.status, 0));
-  EXPECT_EQ(quiet, count_absent_elements(plan.calibration, plan.skin));
-  EXPECT_GT(quiet, 50U);
-  EXPECT_EQ(quiet + static_cast<std::size_t>(std::ranges::count(field.status, status::kUsable)),
-            field.elements());
+  for (const SkinLayout layout : {SkinLayout::sensels, SkinLayout::pillars}) {
+    SCOPED_TRACE(name_of(layout));
+    const auto source = open(written.text(), layout);
+    const bool has_pillars = layout == SkinLayout::pillars;
+    EXPECT_EQ(warnings(*source, "pillars stand partly outside"), has_pillars);
+    SolverPlan plan;
+    plan.skin = source->skin();
+    plan.sensel_type = source->sensel_type();
+    plan.calibration = source->calibration();
+    FrameBuffer frame(plan.sensel_type, 60, 21);
+    source->read(0, frame);
+    const ForceField field = solve_on_host(plan, frame.view());
+    EXPECT_NEAR(std::accumulate(field.normal.begin(), field.normal.end(), 0.0), newtons,
+                1e-5 * newtons);
+    const auto quiet = static_cast<std::size_t>(std::ranges::count(field.status, 0));
+    EXPECT_EQ(quiet, count_absent_elements(plan.calibration, plan.skin));
+    EXPECT_GT(quiet, 50U);
+    const std::uint8_t pressed = has_pillars ? status::kUsable : status::kSensel1;
+    EXPECT_EQ(quiet + static_cast<std::size_t>(std::ranges::count(field.status, pressed)),
+              field.elements());
+  }
 }
 
 struct Mistake {

@@ -309,7 +309,7 @@ void expect_no_saturation(const FrameBuffer& raw, double full_scale) {
 void expect_frame(const Simulator& simulator, std::uint64_t index) {
   const Skin& skin = simulator.scene().skin;
   FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
-  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  ForceField truth(skin);
   simulator.render(index, raw, truth);
   expect_whole_load(simulator.scene(), simulator.time_of(index), truth);
   if (simulator.sensel_type() == SenselType::u8) {
@@ -363,7 +363,7 @@ TEST(ShippedScenes, TheSquareMetreIsTouchedOnFiveToTenPercent) {
   const Skin& skin = simulator.scene().skin;
   EXPECT_NEAR(skin.pillar_cols() * skin.pillar_pitch_mm(), 1000, skin.pillar_pitch_mm());
   FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
-  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  ForceField truth(skin);
   for (const std::uint64_t index : {0U, 50U, 99U}) {
     simulator.render(index, raw, truth);
     const auto touched = std::ranges::count_if(truth.normal, [](float n) { return n > 0; });
@@ -377,7 +377,7 @@ TEST(ShippedScenes, TheDemoUsesTheScaleAndShowsEveryKindOfContact) {
   const Simulator simulator(load_scene(kScenes / "demo.toml"));
   const Skin& skin = simulator.scene().skin;
   FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
-  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  ForceField truth(skin);
   simulator.render(30, raw, truth);
   EXPECT_GT(std::ranges::max(raw.readings<std::uint8_t>()), 150);
   std::set<std::pair<ContactShape, ContactMotion>> kinds;

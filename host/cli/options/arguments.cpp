@@ -87,6 +87,10 @@ void add_solve(CLI::App& parent, Work& work) {
       .text("-o,--output", options->output, "FILE",
             "Force fields; the ending sets the format: " + endings_of(OutputKind::forces) +
                 " [none, with --contacts]");
+  command->parse_complete_callback([chosen = options] {
+    if (!chosen->output.empty() || !chosen->contacts_file.empty()) return;
+    throw CLI::RequiredError("--output, the forces of all elements, or --contacts, their totals,");
+  });
   add_overwrite(command, options->replace);
   add_sensor(command, options->plan);
   add_solver(command, options->plan);

@@ -98,22 +98,6 @@ void heading(const PanelStyle& style, const std::string& words, const std::strin
 
 namespace {
 
-/// True if the sensor has no sensel there.
-bool lacks_sensels(const SourceInfo& source, PillarIndex pillar) {
-  const std::vector<std::uint8_t>& mask = source.calibration.mask;
-  if (mask.empty()) return false;
-  const std::size_t side = source.skin.has_pillars() ? 2 : 1;
-  for (std::size_t row = side * pillar.row; row < side * (pillar.row + std::size_t{1}); ++row) {
-    const auto first =
-        mask.begin() + static_cast<std::ptrdiff_t>(row * source.skin.cols + side * pillar.col);
-    if (!std::all_of(first, first + static_cast<std::ptrdiff_t>(side),
-                     [](std::uint8_t each) { return each == kAbsent; })) {
-      return false;
-    }
-  }
-  return true;
-}
-
 Colour status_colour(std::uint8_t status, bool pillars, Theme theme) {
   if ((status & status::kSaturated) != 0) return colour_of(Special::saturated, theme);
   if ((status & status::kInconsistent) != 0) {
@@ -146,7 +130,7 @@ void swatch(const PanelStyle& style, ImU32 colour) {
 void status_line(const PanelStyle& style, const AppState& state, PillarIndex pillar,
                  std::uint8_t status) {
   const SourceInfo& source = state.player->info();
-  const bool absent = lacks_sensels(source, pillar);
+  const bool absent = lacks_sensels(source.calibration, source.skin, pillar.row, pillar.col);
   const bool pillars = source.skin.has_pillars();
   const std::string words = pillars ? format_status(status) : format_sensel_status(status);
   swatch(style, packed(status_colour(status, pillars, state.settings.theme)));
