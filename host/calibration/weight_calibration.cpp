@@ -205,18 +205,18 @@ WeightFit fit_weight(const std::vector<WeighedFrame>& frames, const WeighedArray
                      const WeightResponse& before, WeightResult& result) {
   WeightFit fit(frames, array, before);
   if (!before.curve.empty()) {
-    fit.fit(false);
-    fit.keep_exponent(1, 0);
+    fit.fit(WeightFit::Exponent{1, 0});
     return fit;
   }
-  fit.fit(true);
+  fit.fit(std::nullopt);
   result.exponent = fit.response().exponent;
   result.exponent_deviation = fit.exponent_deviation();
   result.finds_exponent = result.exponent_deviation < kMostExponentDeviation * result.exponent &&
                           result.exponent > kMinExponent && result.exponent < kMaxExponent;
   if (!result.finds_exponent) {
-    fit.keep_exponent(before.exponent,
-                      std::hypot(result.exponent_deviation, result.exponent - before.exponent));
+    const double unknown = std::hypot(result.exponent_deviation, result.exponent - before.exponent);
+    fit = WeightFit(frames, array, before);
+    fit.fit(WeightFit::Exponent{before.exponent, unknown});
   }
   return fit;
 }
@@ -245,7 +245,7 @@ WeightResult WeightFinder::result() const {
   require_selection(selection, result, name);
   const std::vector<WeighedFrame>& frames = selection.frames;
 
-  WeighedArray array{skin_.rows, skin_.cols, {}, copies};
+  WeighedArray array{skin_.rows, skin_.cols, threshold_, {}, copies};
   for (std::size_t i = 0; i < skin_.sensels(); ++i) {
     const double gain = after.planes.gain.empty() ? 1 : after.planes.gain[i];
     array.noise.push_back(std::max(gain * after.planes.noise[i], 1e-3 * threshold_ + 1e-9));
@@ -273,7 +273,7 @@ WeightResult WeightFinder::result() const {
   set_threshold(after, calibration_.threshold_factor.value_or(4));
   after.counts_per_newton = counts_per_newton(frames, fit, copies, *after.threshold_counts) /
                             sensel_leak_sum(after.planes.effects);
-  const WeightFit::Deviations deviations = fit.deviations(kWeightSamples);
+  const WeightDeviations deviations = deviations_of(fit, kWeightSamples);
   summarise_gains(fit, deviations.gains, result);
   result.total_deviation = deviations.total;
   ResidualError residual = after.planes.effects.residual.value_or(ResidualError{});

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 #include <utility>
 
 #include "base/quantile.h"
-#include "calibration/golden_section.h"
 
 namespace pillarfield {
 namespace {
@@ -18,28 +15,30 @@ constexpr double kGainSpread = 0.25;
 constexpr double kLeastGainSpread = 0.01;
 constexpr double kMostGainSpread = 0.5;
 constexpr double kExponentSpread = 0.3;
-/// Range of the exponent relative to the one before.
-constexpr double kMostExponentChange = 2.5;
-constexpr double kExponentStep = 1e-3;
+/// Largest change of a step, and of the exponent's logarithm in all.
+constexpr double kMostExponentStep = 0.15;
+constexpr double kMostExponentChange = 0.9;
+constexpr double kMostLogGain = 1.5;
 /// Least relative misfit, common to the frames at a place: sensels are no exact squares.
 constexpr double kLeastMisfit = 1e-3;
+/// Part of the sums' error that may follow the exponent's slopes, relative: noise that bends at
+/// the rim of a contact, errors of tares. Simulated pads show 1e-4.
+constexpr double kAlongExponent = 1.5e-4;
 /// Relative error of the load on missing sensels, taken from those beside them.
 constexpr double kGuessError = 0.3;
 /// Tukey's biweight leaves out residuals beyond this many deviations.
 constexpr double kBiweight = 4.685;
 constexpr double kMedianToDeviation = 1.4826;
-/// Loads of which deviations are stated, relative to the weight.
-constexpr double kLeastLoad = 0.3;
-constexpr double kMostLoad = 2;
-constexpr int kPlacesPerSample = 32;
 
 double squared(double value) { return value * value; }
 
-double product(std::span<const double> a, std::span<const double> b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+double product_of(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
-double spread_of(std::vector<double> values) {
+double robust_spread(std::vector<double> values) {
   const double middle = median(values);
   for (double& value : values) value = std::abs(value - middle);
   return kMedianToDeviation * median(values);
@@ -72,9 +71,19 @@ WeightFit::WeightFit(std::span<const WeighedFrame> frames, WeighedArray array,
       noise_squares_(frames.size()),
       exponent_slopes_(frames.size()),
       weights_(frames.size()) {
-  for (const WeighedFrame& frame : frames)
+  for (const WeighedFrame& frame : frames) {
     begins_.push_back(begins_.back() + frame.readings.size());
+    const auto [first, last] = std::ranges::minmax(
+        frame.readings, {}, [&](const WeighedReading& each) { return place(each.sensel); });
+    reach_ = std::max(reach_, place(last.sensel) - place(first.sensel));
+  }
   slopes_.resize(begins_.back());
+}
+
+/// The place of a sensel in the equations: along the shorter side, so that contacts are narrow.
+std::size_t WeightFit::place(std::uint32_t sensel) const {
+  if (array_.cols <= array_.rows) return sensel;
+  return std::size_t{sensel % array_.cols} * array_.rows + sensel / array_.cols;
 }
 
 /// Residuals of log(sum of V / weight), and their slopes in x and in the exponent.
@@ -95,8 +104,7 @@ void WeightFit::linearise() {
       const double sigma = gains[i] * array_.noise[i];
       // The slope of a reading within the noise is that at the noise.
       const bool quiet = std::abs(reading) < sigma;
-      const double steep = quiet ? response_.at(sigma).slope / sigma : rise / reading;
-      noise += squared(copies * steep * sigma);
+      noise += squared(copies * (quiet ? response_.at(sigma).slope : rise / reading * sigma));
       if (load != 0) {
         exponent_slope += copies * load * std::log(std::abs(reading) / response_.reference);
       }
@@ -109,32 +117,29 @@ void WeightFit::linearise() {
   }
 }
 
+/// Of a residual: by noise, guesses and misfit.
 double WeightFit::variance(std::size_t frame) const {
-  return noise_squares_[frame] + squared(kGuessError * frames_[frame].guessed) +
-         frames_[frame].frames_at_place * squared(misfit_);
+  return noise_squares_[frame] + squared(kGuessError * frames_[frame].guessed) + squared(misfit_);
 }
 
 void WeightFit::estimate_misfit() {
   std::vector<double> noise = noise_squares_;
-  misfit_ =
-      std::sqrt(std::max(squared(kLeastMisfit), squared(spread_of(residuals_)) - median(noise)));
+  misfit_ = std::sqrt(std::max(0.0, squared(robust_spread(residuals_)) - median(noise)));
 }
 
-/// Weights of the frames, and the counts per newton.
-void WeightFit::weigh(bool first) {
-  if (first) {
-    std::vector<double> residuals = residuals_;
-    log_k_ = median(residuals);
-  }
+/// Weights of the frames, and the counts per newton. The misfit is common to the frames at a place,
+/// which share what one of them tells.
+void WeightFit::weigh() {
+  const double common = squared(std::max(misfit_, kLeastMisfit));
+  std::vector<double> residuals = residuals_;
+  log_k_ = median(residuals);
   for (int round = 0; round < 3; ++round) {
     double sum = 0;
     double weights = 0;
     for (std::size_t t = 0; t < frames_.size(); ++t) {
-      const double spread = variance(t);
-      // Residuals are compared with the deviation of their frame, information with that of places.
-      const double deviation = spread - (frames_[t].frames_at_place - 1) * squared(misfit_);
-      const double u = squared(residuals_[t] - log_k_) / (squared(kBiweight) * deviation);
-      weights_[t] = u < 1 ? squared(1 - u) / spread : 0;
+      const double own = variance(t) + squared(kLeastMisfit);
+      const double u = squared((residuals_[t] - log_k_) / kBiweight) / own;
+      weights_[t] = u < 1 ? squared(1 - u) / (own + frames_[t].frames_at_place * common) : 0;
       sum += weights_[t] * residuals_[t];
       weights += weights_[t];
     }
@@ -142,242 +147,157 @@ void WeightFit::weigh(bool first) {
   }
 }
 
-double WeightFit::objective() const {
-  double sum = product(x_, x_) / squared(spread_) +
-               squared(std::log(response_.exponent / first_exponent_) / kExponentSpread);
-  for (std::size_t t = 0; t < frames_.size(); ++t) {
-    const double spread = variance(t);
-    const double deviation = spread - (frames_[t].frames_at_place - 1) * squared(misfit_);
-    const double u = squared(residuals_[t] - log_k_) / (squared(kBiweight) * deviation);
-    const double loss = u < 1 ? 1 - (1 - u) * (1 - u) * (1 - u) : 1;
-    sum += squared(kBiweight) / 3 * loss * deviation / spread;
-  }
-  return sum;
-}
-
-double WeightFit::weighted_mean(std::span<const double> of_frames) const {
-  return product(weights_, of_frames) / std::accumulate(weights_.begin(), weights_.end(), 0.0);
-}
-
-/// Weighted values less their mean, which the counts per newton take.
-std::vector<double> WeightFit::centred(std::span<const double> of_frames) const {
-  const double mean = weighted_mean(of_frames);
-  std::vector<double> values(of_frames.size());
-  for (std::size_t t = 0; t < values.size(); ++t) values[t] = weights_[t] * (of_frames[t] - mean);
-  return values;
-}
-
-std::vector<double> WeightFit::gradient(std::span<const double> of_frames) const {
-  std::vector<double> sums(x_.size(), 0);
-  for (std::size_t t = 0; t < frames_.size(); ++t) {
-    const double* slope = &slopes_[begins_[t]];
-    for (const WeighedReading& each : frames_[t].readings) {
-      sums[each.sensel] += *slope++ * of_frames[t];
-    }
-  }
-  return sums;
-}
-
-std::vector<double> WeightFit::along(std::span<const double> x) const {
-  std::vector<double> changes(frames_.size(), 0);
-  for (std::size_t t = 0; t < frames_.size(); ++t) {
-    const double* slope = &slopes_[begins_[t]];
-    for (const WeighedReading& each : frames_[t].readings) changes[t] += *slope++ * x[each.sensel];
-  }
-  return changes;
-}
-
-/// Conjugate gradients of the normal equations of x, with the prior.
-std::vector<double> WeightFit::solve(const std::vector<double>& right) const {
-  constexpr int kMostSteps = 300;
-  constexpr double kAccuracy = 1e-5;
+WeightFit::Equations WeightFit::equations() const {
+  const std::size_t count = x_.size();
+  Equations all{BandedFactor(count, reach_),
+                std::vector<double>(count),
+                {std::vector<double>(count, 0), std::vector<double>(count, 0)},
+                {},
+                {}};
   const double prior = 1 / squared(spread_);
-  std::vector<double> diagonal(x_.size(), prior);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    all.factor.add(place(i), place(i), prior);
+    all.right[place(i)] = -prior * x_[i];
+  }
+  const double exponent_prior = 1 / squared(response_.exponent * kExponentSpread);
+  all.shared[0] = exponent_prior;
+  all.shared_right[0] =
+      -exponent_prior * response_.exponent * std::log(response_.exponent / first_exponent_);
   for (std::size_t t = 0; t < frames_.size(); ++t) {
+    const double weight = weights_[t];
+    if (weight == 0) continue;
+    const double residual = residuals_[t] - log_k_;
+    const std::array<double, 2> shared = {exponent_slopes_[t], -1};
+    for (std::size_t s = 0; s < 2; ++s) all.shared_right.at(s) -= weight * shared.at(s) * residual;
+    all.shared[0] += weight * squared(shared[0]);
+    all.shared[1] += weight * shared[0] * shared[1];
+    all.shared[2] += weight;
+    const auto& readings = frames_[t].readings;
     const double* slope = &slopes_[begins_[t]];
-    for (const WeighedReading& each : frames_[t].readings) {
-      diagonal[each.sensel] += weights_[t] * squared(*slope++);
+    for (std::size_t a = 0; a < readings.size(); ++a) {
+      const std::size_t at = place(readings[a].sensel);
+      const double weighed = weight * slope[a];
+      all.right[at] -= weighed * residual;
+      for (std::size_t s = 0; s < 2; ++s) all.beside.at(s)[at] += weighed * shared.at(s);
+      for (std::size_t b = 0; b <= a; ++b) {
+        const std::size_t other = place(readings[b].sensel);
+        all.factor.add(std::max(at, other), std::min(at, other), weighed * slope[b]);
+      }
     }
   }
-  std::vector<double> x(x_.size(), 0);
-  std::vector<double> rest = right;
-  std::vector<double> direction(x_.size(), 0);
-  std::vector<double> scaled(x_.size());
-  double before = 0;
-  double first = 0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    for (std::size_t i = 0; i < x.size(); ++i) scaled[i] = rest[i] / diagonal[i];
-    const double now = product(rest, scaled);
-    if (step == 0) first = now;
-    if (!(now > squared(kAccuracy) * first)) break;
-    const double keep = step == 0 ? 0 : now / before;
-    for (std::size_t i = 0; i < x.size(); ++i) direction[i] = scaled[i] + keep * direction[i];
-    std::vector<double> image = gradient(centred(along(direction)));
-    for (std::size_t i = 0; i < x.size(); ++i) image[i] += prior * direction[i];
-    const double length = now / product(direction, image);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] += length * direction[i];
-      rest[i] -= length * image[i];
-    }
-    before = now;
-  }
-  return x;
+  all.factor.factorise();
+  return all;
 }
 
-/// Fits x at an exponent, from where x is.
-double WeightFit::at_exponent(double exponent, int rounds) {
-  constexpr double kMostLogGain = 1.5;
-  response_.exponent = exponent;
-  linearise();
-  weigh(true);
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<double> right = gradient(centred(residuals_));
-    for (std::size_t i = 0; i < x_.size(); ++i) right[i] = -right[i] - x_[i] / squared(spread_);
-    const std::vector<double> change = solve(right);
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      x_[i] = std::clamp(x_[i] + change[i], -kMostLogGain, kMostLogGain);
-    }
+/// A Gauss-Newton step; a known exponent stays.
+void WeightFit::step() {
+  const Equations all = equations();
+  const std::vector<double> alone = all.factor.solve(all.right);
+  const std::vector<double> by_exponent = all.factor.solve(all.beside[0]);
+  const std::vector<double> by_k = all.factor.solve(all.beside[1]);
+  const double ee = all.shared[0] - product_of(all.beside[0], by_exponent);
+  const double ek = all.shared[1] - product_of(all.beside[0], by_k);
+  const double kk = all.shared[2] - product_of(all.beside[1], by_k);
+  const double e = all.shared_right[0] - product_of(all.beside[0], alone);
+  const double k = all.shared_right[1] - product_of(all.beside[1], alone);
+  double exponent = known_ ? 0 : (e * kk - k * ek) / (ee * kk - ek * ek);
+  const double most = kMostExponentStep * response_.exponent;
+  exponent = std::clamp(exponent, -most, most);
+  const double log_k = (k - ek * exponent) / kk;
+  for (std::uint32_t i = 0; i < x_.size(); ++i) {
+    const std::size_t at = place(i);
+    const double change = alone[at] - by_exponent[at] * exponent - by_k[at] * log_k;
+    x_[i] = std::clamp(x_[i] + change, -kMostLogGain, kMostLogGain);
+  }
+  response_.exponent =
+      std::clamp(response_.exponent + exponent, first_exponent_ * std::exp(-kMostExponentChange),
+                 first_exponent_ * std::exp(kMostExponentChange));
+}
+
+void WeightFit::settle(int steps) {
+  for (int i = 0; i < steps; ++i) {
     linearise();
-    weigh(false);
-  }
-  return objective();
-}
-
-void WeightFit::search_exponent(double low, double high) {
-  const auto at = [&](double log_exponent) { return at_exponent(std::exp(log_exponent), 2); };
-  const double best = least_of(at, std::log(low), std::log(high), kExponentStep);
-  (void)at_exponent(std::exp(best), 3);
-}
-
-void WeightFit::fit_once(bool exponent) {
-  (void)at_exponent(response_.exponent, 3);
-  for (const double reach : {kMostExponentChange, 1.3, 1.1}) {
     estimate_misfit();
-    if (exponent) {
-      const double low =
-          std::max(response_.exponent / reach, first_exponent_ / kMostExponentChange);
-      const double high =
-          std::min(response_.exponent * reach, first_exponent_ * kMostExponentChange);
-      search_exponent(low, high);
-    } else {
-      (void)at_exponent(response_.exponent, 3);
-    }
+    weigh();
+    step();
   }
+  linearise();
   estimate_misfit();
-  (void)at_exponent(response_.exponent, 2);
+  weigh();
 }
 
-void WeightFit::fit(bool exponent) {
+/// The spread from sensel to sensel, of which the gains that the frames determine are samples.
+void WeightFit::estimate_spread() {
+  const Equations all = equations();
+  std::vector<double> unit(x_.size(), 0);
+  double squares = 0;
+  double count = 0;
+  for (std::uint32_t i = 0; i < x_.size(); ++i) {
+    unit[place(i)] = 1;
+    const double variance = all.factor.solve(unit)[place(i)];
+    unit[place(i)] = 0;
+    if (variance > squared(0.9 * spread_)) continue;
+    squares += squared(x_[i]) + variance;
+    ++count;
+  }
+  if (count == 0) return;
+  spread_ = std::clamp(std::sqrt(squares / count), kLeastGainSpread, kMostGainSpread);
+}
+
+/// The posterior at the fit.
+void WeightFit::state_deviations() {
+  posterior_.emplace(equations());
+  const Equations& all = *posterior_;
+  for (std::size_t s = 0; s < 2; ++s) responses_.at(s) = all.factor.solve(all.beside.at(s));
+  const double ee = all.shared[0] - product_of(all.beside[0], responses_[0]);
+  const double ek = all.shared[1] - product_of(all.beside[0], responses_[1]);
+  const double kk = all.shared[2] - product_of(all.beside[1], responses_[1]);
+  const double information = ee - squared(ek) / kk;
+  double variance = 1 / information;
+  if (known_) {
+    variance = squared(known_->deviation);
+  } else {
+    variance += std::min(squared(kAlongExponent) * all.shared[2] / information,
+                         squared(kExponentSpread * response_.exponent));
+  }
+  // log k follows the exponent by -ek/kk.
+  covariance_ = {variance, -ek / kk * variance, squared(ek / kk) * variance + 1 / kk};
+  exponent_deviation_ = std::sqrt(variance);
+}
+
+void WeightFit::fit(std::optional<Exponent> known) {
+  constexpr int kSteps = 8;
   linearise();
-  weigh(true);
   estimate_misfit();
   first_misfit_ = misfit_;
-  fit_once(exponent);
-  // The spread between sensels that the visited ones show.
-  constexpr int kSpreadSamples = 12;
+  known_ = Exponent{response_.exponent, 0};
+  settle(2);
+  known_ = known;
+  if (known) response_.exponent = known->value;
+  settle(kSteps);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<double> deviation = deviations(kSpreadSamples).gains;
-    double squares = 0;
-    double count = 0;
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      if (deviation[i] > 0.9 * spread_) continue;
-      squares += squared(x_[i]) + squared(deviation[i]);
-      ++count;
-    }
-    if (count < 1) break;
-    spread_ = std::clamp(std::sqrt(squares / count), kLeastGainSpread, kMostGainSpread);
-    (void)at_exponent(response_.exponent, 2);
+    estimate_spread();
+    settle(2);
   }
-  if (exponent) search_exponent(response_.exponent / 1.1, response_.exponent * 1.1);
+  state_deviations();
 }
 
-void WeightFit::keep_exponent(double exponent, double deviation) {
-  kept_deviation_ = deviation;
-  response_.exponent = exponent;
-  estimate_misfit();
-  for (int round = 0; round < 3; ++round) {
-    (void)at_exponent(exponent, 3);
-    estimate_misfit();
+WeightFit::Errors WeightFit::draw(std::span<const double> independent) const {
+  const std::size_t count = x_.size();
+  const std::vector<double> alone = posterior_->factor.spread(
+      {independent.begin(), independent.begin() + static_cast<std::ptrdiff_t>(count)});
+  Errors errors{std::vector<double>(count), 0, 0};
+  errors.exponent = exponent_deviation_ * independent[count];
+  const double slope = covariance_[0] > 0 ? covariance_[1] / covariance_[0] : 0;
+  const double own = covariance_[2] - slope * covariance_[1];
+  errors.log_counts_per_newton =
+      slope * errors.exponent + std::sqrt(std::max(0.0, own)) * independent[count + 1];
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t at = place(i);
+    errors.log_gains[i] = alone[at] - responses_[0][at] * errors.exponent -
+                          responses_[1][at] * errors.log_counts_per_newton;
   }
-}
-
-double WeightFit::exponent_deviation() const {
-  if (kept_deviation_ >= 0) return kept_deviation_;
-  const std::vector<double> weighed = centred(exponent_slopes_);
-  const std::vector<double> along_x = gradient(weighed);
-  const double information = product(weighed, exponent_slopes_) - product(along_x, solve(along_x)) +
-                             1 / squared(response_.exponent * kExponentSpread);
-  return 1 / std::sqrt(std::max(information, 1e-12));
-}
-
-WeightFit::Deviations WeightFit::deviations(int samples) const {
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform;
-  const double exponent_deviation = this->exponent_deviation();
-  const std::vector<double> bend = solve(gradient(centred(exponent_slopes_)));
-  const auto below = [&](std::size_t count) {
-    return std::min(count - 1,
-                    static_cast<std::size_t>(uniform(random) * static_cast<double>(count)));
-  };
-  Deviations result;
-  result.gains.assign(x_.size(), 0);
-  double totals = 0;
-  double elements = 0;
-  double slopes = 0;
-  std::vector<double> errors(frames_.size());
-  for (int sample = 0; sample < samples; ++sample) {
-    for (std::size_t t = 0; t < errors.size(); ++t) {
-      errors[t] = weights_[t] > 0 ? normal(random) / std::sqrt(weights_[t]) : 0;
-    }
-    std::vector<double> right = gradient(centred(errors));
-    for (double& value : right) value += normal(random) / spread_;
-    std::vector<double> x = solve(right);
-    const double exponent = exponent_deviation * normal(random);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] -= bend[i] * exponent;
-      result.gains[i] += squared(x[i]) / samples;
-    }
-    const double log_k = weighted_mean(along(x)) + weighted_mean(exponent_slopes_) * exponent;
-    for (int place = 0; place < kPlacesPerSample; ++place) {
-      const std::size_t t = below(frames_.size());
-      const auto& readings = frames_[t].readings;
-      std::uint32_t top = array_.rows;
-      std::uint32_t left = array_.cols;
-      std::uint32_t bottom = 0;
-      std::uint32_t right_most = 0;
-      for (const WeighedReading& each : readings) {
-        top = std::min(top, each.sensel / array_.cols);
-        bottom = std::max(bottom, each.sensel / array_.cols);
-        left = std::min(left, each.sensel % array_.cols);
-        right_most = std::max(right_most, each.sensel % array_.cols);
-      }
-      const std::size_t row = below(array_.rows - (bottom - top));
-      const std::size_t col = below(array_.cols - (right_most - left));
-      const double log_load =
-          std::log(kLeastLoad) + uniform(random) * std::log(kMostLoad / kLeastLoad);
-      const double shift = log_load / response_.exponent;
-      double total = 0;
-      for (std::size_t n = 0; n < readings.size(); ++n) {
-        const std::uint32_t i = readings[n].sensel;
-        const std::size_t at =
-            (i / array_.cols - top + row) * array_.cols + i % array_.cols - left + col;
-        const double slope = slopes_[begins_[t] + n];
-        total += slope * x[at];
-        const double size = std::abs(std::exp(x_[i]) * readings[n].reading) + 1e-9;
-        const double element = response_.exponent * x[at] - log_k +
-                               exponent * (std::log(size / response_.reference) + shift);
-        elements += std::abs(slope) * squared(element);
-        slopes += std::abs(slope);
-      }
-      totals += squared(total + exponent * (exponent_slopes_[t] + shift) - log_k) /
-                (samples * kPlacesPerSample);
-    }
-  }
-  for (double& gain : result.gains) gain = std::sqrt(gain);
-  result.total = std::sqrt(totals + squared(misfit_));
-  result.element = std::sqrt(elements / slopes + squared(misfit_));
-  return result;
+  return errors;
 }
 
 }  // namespace pillarfield
