@@ -24,9 +24,10 @@ constexpr std::size_t kFewestPlaces = 5;
 /// Frames of which a visited sensel reads above the threshold.
 constexpr std::size_t kFewestVisits = 5;
 /// Largest misfit of the sums, relative.
-constexpr double kMostWeightMisfit = 0.2;
-/// Largest deviation of an exponent that is stored, relative: half of what is known before.
-constexpr double kMostExponentDeviation = 0.15;
+constexpr double kMostWeightMisfit = 0.15;
+/// Largest deviation of an exponent that is stored, relative: loads that differ by a factor of three
+/// are then wrong by a tenth.
+constexpr double kMostExponentDeviation = 0.1;
 constexpr int kWeightSamples = 48;
 
 /// The threshold of readings after the gain, without curve and power law.

@@ -12,7 +12,7 @@ namespace {
 /// Other bodies: their load and the length of their base, relative to those of the weight.
 constexpr double kLeastLoad = 0.3;
 constexpr double kMostLoad = 2;
-constexpr double kLeastBase = 0.5;
+constexpr double kLeastBase = 0.7;
 constexpr double kMostBase = 1.2;
 constexpr int kBodiesPerDraw = 64;
 
@@ -31,9 +31,8 @@ class OtherBodies {
   [[nodiscard]] double uniform() { return distribution_(random_); }
   [[nodiscard]] double normal() { return normal_(random_); }
 
-  /// Fills the parts of a body; returns the logarithm of the share of its load that reads above
-  /// the threshold.
-  double draw(std::vector<LoadPart>& parts) {
+  /// Fills the parts of a body.
+  void draw(std::vector<LoadPart>& parts) {
     const WeighedFrame& frame = frame_at(uniform());
     std::uint32_t top = array_.rows;
     std::uint32_t left = array_.cols;
@@ -57,7 +56,6 @@ class OtherBodies {
     const double log_pressure = std::log(load / (base * base)) / fit_.response().exponent;
     parts.clear();
     double sum = 0;
-    double above = 0;
     for (const auto& [i, reading] : frame.readings) {
       if (!(reading > array_.threshold)) continue;
       const auto at_row =
@@ -69,10 +67,8 @@ class OtherBodies {
       const double log_reading = std::log(corrected / fit_.response().reference) + log_pressure;
       parts.push_back({at_row * array_.cols + at_col, share, log_reading});
       sum += share;
-      if (corrected * std::exp(log_pressure) > array_.threshold) above += share;
     }
     for (LoadPart& part : parts) part.share /= sum;
-    return std::log(std::max(above, 1e-3 * sum) / sum);
   }
 
  private:
@@ -107,7 +103,8 @@ WeightDeviations deviations_of(const WeightFit& fit, int samples) {
       result.gains[i] += errors.log_gains[i] * errors.log_gains[i] / samples;
     }
     for (int body = 0; body < kBodiesPerDraw; ++body) {
-      double total = bodies.draw(parts) - errors.log_counts_per_newton;
+      bodies.draw(parts);
+      double total = -errors.log_counts_per_newton;
       for (const LoadPart& part : parts) {
         const double error = fit.response().exponent * errors.log_gains[part.sensel] +
                              errors.exponent * part.log_reading;
