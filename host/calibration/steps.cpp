@@ -123,8 +123,8 @@ std::vector<FrameStatistics> StepWork::statistics(WireUse use) const {
 
 const std::vector<StepKind>& calibration_steps() {
   static const std::vector<StepKind> steps = {
-      wires_step(), tare_step(), equilibrate_step(), load_step(),    shear_step(),
-      arm_step(),   leak_step(), memory_step(),      bending_step(), faults_step()};
+      wires_step(), tare_step(),   equilibrate_step(), load_step(),   shear_step(), arm_step(),
+      leak_step(),  memory_step(), bending_step(),     faults_step(), weight_step()};
   return steps;
 }
 

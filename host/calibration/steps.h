@@ -181,5 +181,6 @@ inline constexpr const char* kEquilibratePressed =
 [[nodiscard]] StepKind bending_step();
 [[nodiscard]] StepKind wires_step();
 [[nodiscard]] StepKind faults_step();
+[[nodiscard]] StepKind weight_step();
 
 }  // namespace pillarfield
