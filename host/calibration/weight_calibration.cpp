@@ -375,9 +375,12 @@ StepKind weight_step() {
                    "Gains, a power law and newtons from a known weight that is placed or rolled "
                    "anywhere.",
                    "FRAMES", "Frames under a weight that moves, one file per weight", run_weight};
+  step.only = SkinLayout::sensels;
   step.arguments = {
       StepArgument::per_file("load-n", "L1,L2,...", "Weight of each file, in order", {1e-6, 1e6})};
-  step.examples = {};
+  step.examples = {"simulate scenes/pad.toml --uncalibrated --frames 10 -o idle.h5", kTareIdle,
+                   "simulate scenes/pad.toml --uncalibrated -o rolled.h5",
+                   "calibrate weight rolled.h5 --load-n 20 --calibration tared.h5 -o pad.h5"};
   return step;
 }
 
