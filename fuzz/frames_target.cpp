@@ -48,8 +48,8 @@ void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadO
   const SolverPlan plan = plan_of_source(*source);
   check(plan, path.native());
   FrameBuffer frame(plan.sensel_type, skin.rows, skin.cols);
-  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
-  ContactTracker tracker(skin.pillar_pitch_mm(), {.threads = 1});
+  ForceField truth(skin);
+  ContactTracker tracker(skin.element_pitch_mm(), {.layout = skin.layout, .threads = 1});
   for (const std::uint64_t index : some_frames(source->frames())) {
     const double time_s = source->read(index, frame);
     if (source->has_truth()) source->read_truth(index, truth);

@@ -29,7 +29,8 @@ def cushion(pressure_kpa: float) -> dict[str, Any]:
             "contact_radius_mm": radius_mm, "load_n": pressure_kpa * 1e-3 * 2 * math.pi * radius_mm**2}
 
 
-step = pf.calibrate.tare(record().frames)
+unloaded = record()
+step = pf.calibrate.tare(unloaded.frames, skin=unloaded.skin)  # a skin with pillars
 print(f"tare {step.facts['tare_counts']:.1f} counts, noise {step.facts['noise_counts']:.2f} counts")
 
 presses = [(record(cushion(kpa)).frames, kpa) for kpa in (200, 400, 800)]

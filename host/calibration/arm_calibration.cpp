@@ -225,7 +225,7 @@ StepKind arm_step() {
   StepKind step = {
       "arm", "Arm of off-centre pressure, from bodies pressed straight down.", "PRESSED",
       "Frames of bodies at rest that press straight down, one file per placement", run_arm};
-  step.needs_pillars = true;
+  step.only = SkinLayout::pillars;
   step.examples = {
       kSimulateIdle,       kSimulatePressed,
       kTareIdle,           "simulate scenes/leaning_skin_pressed.toml --uncalibrated -o balls.h5",

@@ -227,7 +227,7 @@ SkinCalibration run_faults(StepWork& work) {
 StepKind faults_step() {
   StepKind step = {"faults", "Find dead, stuck and saturated sensels by parity, and mask them.",
                    "FRAMES", "Frames in which all of the skin is pressed", run_faults};
-  step.needs_pillars = true;
+  step.only = SkinLayout::pillars;
   step.arguments = {
       StepArgument::whole("min-frames",
                           "Smallest number of frames in which parity predicts a sensel [30]",

@@ -428,7 +428,7 @@ StepKind leak_step() {
   StepKind step = {"leak",
                    "Leaks between sensels and between pillars, from a fine tip on single pillars.",
                    "TIP", "Frames in which a fine tip presses one pillar after another", run_leak};
-  step.needs_pillars = true;
+  step.only = SkinLayout::pillars;
   step.examples = {kSimulateIdle,
                    kTareIdle,
                    "simulate scenes/leaking_skin_pressed.toml --uncalibrated -o pressed.h5",

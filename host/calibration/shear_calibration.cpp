@@ -239,7 +239,7 @@ StepKind shear_step() {
       {1e-6, 1e6});
   loads.required = false;
   step.arguments = {shears, loads};
-  step.needs_pillars = true;
+  step.only = SkinLayout::pillars;
   step.examples = {kSimulateIdle,
                    kSimulatePressed,
                    kTareIdle,

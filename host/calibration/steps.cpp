@@ -123,8 +123,8 @@ std::vector<FrameStatistics> StepWork::statistics(WireUse use) const {
 
 const std::vector<StepKind>& calibration_steps() {
   static const std::vector<StepKind> steps = {
-      wires_step(), tare_step(), equilibrate_step(), load_step(),    shear_step(),
-      arm_step(),   leak_step(), memory_step(),      bending_step(), faults_step()};
+      wires_step(), tare_step(),   equilibrate_step(), load_step(),   shear_step(), arm_step(),
+      leak_step(),  memory_step(), bending_step(),     faults_step(), weight_step()};
   return steps;
 }
 
@@ -150,9 +150,13 @@ void take_layout(const StepKind& step, StepWork& work) {
   for (StepFrames& each : work.files) {
     if (each.layout) layout = each.layout;
     each.skin.layout = layout.value_or(each.skin.layout);
-    if (!step.needs_pillars || each.skin.has_pillars()) continue;
-    throw Error(each.name(), fmt::format("the step {} needs pillars, and the skin has none", step.name),
-                "leave the step out, or give the layout pillars");
+    if (!step.only || *step.only == each.skin.layout) continue;
+    const bool needs_pillars = *step.only == SkinLayout::pillars;
+    throw Error(each.name(),
+                fmt::format("the step {} needs {}, and the skin has {}", step.name,
+                            needs_pillars ? "pillars" : "sensels without pillars",
+                            needs_pillars ? "none" : "pillars"),
+                fmt::format("leave the step out, or give the layout {}", name_of(*step.only)));
   }
 }
 

@@ -138,7 +138,7 @@ struct StepKind {
   SkinCalibration (*run)(StepWork&);
   bool is_single = false;   ///< takes one file
   bool uses_times = false;  ///< of the frames
-  bool needs_pillars = false;
+  std::optional<SkinLayout> only = {};  ///< the layout of the skins that it is for; unset: any
   Before before = Before::required;
   const char* before_help = "Calibration to extend";
   std::vector<StepArgument> arguments = {};
@@ -181,5 +181,6 @@ inline constexpr const char* kEquilibratePressed =
 [[nodiscard]] StepKind bending_step();
 [[nodiscard]] StepKind wires_step();
 [[nodiscard]] StepKind faults_step();
+[[nodiscard]] StepKind weight_step();
 
 }  // namespace pillarfield

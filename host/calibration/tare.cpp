@@ -199,7 +199,7 @@ SkinCalibration run_tare(StepWork& work) {
   report.measure("noise_counts", result.noise_counts, "noise",
                  "counts, median of the valid sensels");
   report.measure("untouched_share", untouched_share(calibration), "untouched",
-                 "% of the untouched pillars would have a status");
+                 "% of the untouched skin would have a status");
   report.measure(
       "threshold_counts", *calibration.threshold_counts, "threshold",
       fmt::format("counts, {:g} times the 99th percentile of the noise", options.threshold_factor));

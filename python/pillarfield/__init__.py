@@ -1,10 +1,12 @@
-"""Fields of three-axis force from frames of a tactile skin.
+"""Fields of force from frames of a tactile skin: three axes of pillars, pressure of bare sensels.
 
 >>> import numpy as np, pillarfield as pf
 >>> frames = np.zeros((3, 8, 12), np.uint8)     # counts [frames, sensel rows, columns]
 >>> frames[:, 2:4, 4:6] = 80                    # one pillar is pressed
->>> forces = pf.solve(frames, counts_per_newton=320)
->>> float(forces.normal[0, 1, 2])               # N
+>>> pf.solve(frames, counts_per_newton=320).normal.shape        # each sensel by itself, N
+(3, 8, 12)
+>>> forces = pf.solve(frames, counts_per_newton=320, layout="pillars")
+>>> float(forces.normal[0, 1, 2])               # 2 x 2 sensels are a pillar, N
 0.25
 
 docs/python.md is the manual.

@@ -115,6 +115,8 @@ def _is_iterator(frames: Any) -> TypeGuard[Iterable[Any]]:
 def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any, contacts: bool,
                   device: str, options: dict[str, Any]) -> ForceField:
     plan = _core.plan_of(source, skin, calibration=calibration, **options)
+    if plan.skin.layout == "pillars" != source.skin.layout:
+        warn(_core.size_warnings(source.skin.rows, source.skin.cols))
     planes = _core.solve_source(source, plan, contacts, device)
     return _field_of(planes, plan, source.has_truth or "scene" in options)
 

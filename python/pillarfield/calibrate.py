@@ -28,7 +28,7 @@ Before = Union[_core.Calibration, str, "os.PathLike[str]", None]
 Skin = Optional[_core.Skin]
 
 __all__ = ["SenselFinding", "Step", "arm", "bending", "equilibrate", "faults", "leak", "load", "memory",
-           "shear", "tare", "wires"]
+           "shear", "tare", "weight", "wires"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -107,6 +107,17 @@ def load(loads: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = Non
     frames, loads_n = _pairs(loads)
     return _run("load", frames, before, skin, axes, load_n=loads_n,
                 model="power" if power else "linear")
+
+
+def weight(loads: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = None,
+           axes: Axes = "") -> Step:
+    """Gains, a power law and newtons of sensels without pillars, from known weights that move.
+
+    loads: (frames, N) of each weight, placed or rolled anywhere. Raises Error with pillars, or if the
+    frames show no contact or too few places.
+    """
+    frames, loads_n = _pairs(loads)
+    return _run("weight", frames, before, skin, axes, load_n=loads_n)
 
 
 def shear(loads: Sequence[tuple[Any, tuple[float, float]]], before: Before, *, skin: Skin = None,

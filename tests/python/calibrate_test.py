@@ -26,7 +26,7 @@ class Steps(unittest.TestCase):
         cls.gain = 1 + RANDOM.normal(0, 0.05, (32, 40))
         cls.gain /= cls.gain.mean()
         cls.unloaded = noisy(cls.tare)
-        cls.tared = pf.calibrate.tare(cls.unloaded)
+        cls.tared = pf.calibrate.tare(cls.unloaded, skin=pf.Skin(32, 40))
 
     def pressed(self, normal_n):
         return noisy(self.tare + K * np.asarray(normal_n) * self.gain)

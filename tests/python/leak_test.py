@@ -35,7 +35,7 @@ def stream(frames, plan, count):
 def solve(simulation, rounds):
     frames = np.tile(simulation.frames, (8, 1, 1))  # A plane of the result has 230 kB.
     for _ in range(rounds):
-        pf.solve(frames, contacts=True, outputs=["angles"])
+        pf.solve(frames, contacts=True, outputs=["angles"], layout="pillars")
         pf.solve(iter(simulation.frames[:3]))
         try:
             pf.solve(simulation.frames, estimator="none")

@@ -143,7 +143,7 @@ class Live(unittest.TestCase):
                 sink.send(wrong)
         sink.close(finish=False)
         with self.assertRaisesRegex(pf.Error, "closed"):
-            sink.send(pf.solve(np.zeros((8, 12))))
+            sink.send(pf.solve(np.zeros((8, 12)), layout="pillars"))
 
 
 if __name__ == "__main__":

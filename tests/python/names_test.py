@@ -156,10 +156,35 @@ class Values(unittest.TestCase):
                 file[f"truth/{name}"] = getattr(simulation.truth, name)
         self.assertTrue(pf.open(WORK / "true.h5").has_truth)
 
+    def test_sensels_without_pillars(self):
+        skin = pf.Skin(7, 5, layout="sensels", sensel_pitch_mm=2, counts_per_newton=10)
+        self.assertEqual((skin.layout, skin.element_rows, skin.element_cols, skin.element_pitch_mm),
+                         ("sensels", 7, 5, 2))
+        self.assertEqual(pf.Skin(8, 6).element_rows, 4)
+        frames = np.random.default_rng(3).integers(0, 200, (2, 7, 5)).astype("u1")
+        forces = pf.solve(frames, skin=skin, contacts=True, outputs=["uncertainty"], noise_counts=1)
+        self.assertFalse(forces.has_pillars)
+        np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
+        np.testing.assert_allclose(forces.pressure_kpa, frames / 10 / 4 * 1000, rtol=1e-6)
+        for name in ("shear_x", "theta", "region"):
+            with self.assertRaisesRegex(pf.Error, "without pillars"):
+                getattr(forces, name)
+        self.assertIsNone(forces.uncertainty.shear_x)
+        self.assertIsNone(forces.intervals.shear_x_low)
+        self.assertTrue((forces.intervals.normal_high >= forces.normal).all())
+        contact = forces.contacts[0][0]
+        self.assertIsNone(contact.shear_x_n)
+        self.assertAlmostEqual(contact.peak_pressure_kpa, float(forces.pressure_kpa[0].max()), 3)
+        forces.save(WORK / "sensels.h5", overwrite=True)
+        read = pf.open(WORK / "sensels.h5")[:]
+        np.testing.assert_array_equal(read.normal, forces.normal)
+        self.assertFalse(read.has_pillars)
+        self.assertEqual(pf.ForceField(None, None, np.ones((2, 3))).has_pillars, False)
+
     def test_findings_of_faults(self):
         frames = np.random.default_rng(2).integers(40, 60, (200, 8, 12)).astype("u1")
         frames[:, 3, 5] = 50
-        step = pf.calibrate.faults([frames], pf.calibrate.tare(frames // 10).calibration)
+        step = pf.calibrate.faults([frames], pf.calibrate.tare(frames // 10, skin=pf.Skin(8, 12)).calibration)
         found = {(each.row, each.col): each for each in step.facts["findings"]}
         self.assertEqual((found[3, 5].mean_counts, found[3, 5].masked), (50, True))
         self.assertEqual(found[3, 5].fault, "stuck")

@@ -95,6 +95,7 @@
 #include "pillarfield/skin_calibration.h"
 #include "pillarfield/tare.h"
 #include "pillarfield/untouched_skin.h"
+#include "pillarfield/weight_calibration.h"
 #include "pillarfield/wire_calibration.h"
 
 // Simulation and its comparison with the truth.
