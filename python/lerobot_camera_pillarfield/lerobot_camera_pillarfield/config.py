@@ -25,8 +25,9 @@ class PillarfieldCameraConfig(CameraConfig):
     calibration: path of the skin's calibration
     counts_per_newton: of the skin; None: that of the calibration
     tare_frames: the first frames after connect(), at least 10, are of the unloaded skin; 0: no tare
-    width, height: of the image, whole multiples not needed; None: one pixel a pillar or sensel, known
-        after connect(). LeRobot's robots need both before.
+    width, height: of the image, pixels; None: one a pillar or sensel, known after connect(). LeRobot's
+        robots ask before.
+    fps: not used; the sensor sets the pace
     """
 
     source: str
@@ -39,11 +40,14 @@ class PillarfieldCameraConfig(CameraConfig):
 
     def __post_init__(self) -> None:
         if self.rendering not in RENDERINGS:
-            raise pf.Error("rendering", f"'{self.rendering}' is none", f"give {' or '.join(RENDERINGS)}")
+            raise pf.Error("rendering", f"'{self.rendering}' is none",
+                           f"give {' or '.join(RENDERINGS)}")
         if self.rendering == "vector_rgb" and self.layout == "sensels":
             raise pf.Error("rendering", "sensels without pillars have no shear for vector_rgb",
                            "give normal, or the layout pillars if the skin has some")
         if not 0 < self.full_scale_n < float("inf"):
-            raise pf.Error("full_scale_n", f"{self.full_scale_n} N is not a full scale", "give a positive force")
+            raise pf.Error("full_scale_n", f"{self.full_scale_n} N is not a full scale",
+                           "give a positive force")
         if self.tare_frames and self.tare_frames < 10:
-            raise pf.Error("tare_frames", f"{self.tare_frames} frames are too few", "give 10 or more, or 0")
+            raise pf.Error("tare_frames", f"{self.tare_frames} frames are too few",
+                           "give 10 or more, or 0")

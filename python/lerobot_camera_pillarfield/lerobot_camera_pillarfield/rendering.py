@@ -13,7 +13,6 @@ Image = npt.NDArray[np.uint8]
 
 
 def _normal(forces: pf.ForceField) -> Any:
-    """0..1: grey."""
     return np.repeat(forces.normal[..., None], 3, -1)
 
 
@@ -36,4 +35,5 @@ def image_of(forces: pf.ForceField, rendering: str, full_scale_n: float, height:
     share = channels_of(forces) / full_scale_n
     pixels = np.clip(np.rint(zero + levels * np.clip(share, -1, 1)), 0, 255).astype(np.uint8)
     rows, cols = pixels.shape[:2]
-    return pixels[np.arange(height) * rows // height][:, np.arange(width) * cols // width]
+    image: Image = pixels[np.arange(height) * rows // height][:, np.arange(width) * cols // width]
+    return image
