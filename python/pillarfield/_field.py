@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._frames import Path
+from ._lerobot import Columns, Features, columns_and_features
 from ._picture import picture
 from ._status import REGIONS, Status
 
@@ -369,3 +370,23 @@ class ForceField:
             force = (self.shear_x.reshape(shape) * tangent_x
                      + self.shear_y.reshape(shape) * tangent_y + force)
         return Points(force.astype(np.float32), position / 1000, normal)
+
+    def to_lerobot(self, name: str = "skin") -> tuple[Columns, Features]:
+        """The forces for a LeRobotDataset: its column and the entry of its features.
+
+        name: of the skin; the key of both is 'observation.tactile.NAME'
+
+        The column is float32 [T, rows, cols, channels], N, of one frame [rows, cols, channels], as
+        add_frame() takes it. Channels are shear_x, shear_y, normal; without pillars normal alone.
+        The features are an entry of those that LeRobotDataset.create() takes, as LeRobot 0.6.2
+        checks them (datasets v3.0, and v2.1 before them). Raises Error for a name that LeRobot refuses.
+
+        >>> import numpy as np, pillarfield as pf
+        >>> forces = pf.solve(np.zeros((5, 8, 12)), counts_per_newton=320, layout="pillars")
+        >>> columns, features = forces.to_lerobot("left")
+        >>> columns["observation.tactile.left"].shape
+        (5, 4, 6, 3)
+        >>> features["observation.tactile.left"]
+        {'dtype': 'float32', 'shape': (4, 6, 3), 'names': ['shear_x', 'shear_y', 'normal']}
+        """
+        return columns_and_features(self, name)

@@ -30,14 +30,14 @@ def picture(planes: dict[str, Any], quantity: str, limits: Optional[tuple[float,
     """PNG of planes [1, P, Q]: heat map, arrows of the shear, and the colour bar with its ends."""
     pillars, low, high, unit = _core.paint(planes, quantity, limits, light, skin)
     zoom = max(1, math.ceil(_LEAST_PIXELS / max(1, *pillars.shape[:2])))
-    skin = pillars.repeat(zoom, 0).repeat(zoom, 1)
+    heat = pillars.repeat(zoom, 0).repeat(zoom, 1)
     if "shear_x" in planes:
-        _draw_arrows(skin, planes, zoom, light)
+        _draw_arrows(heat, planes, zoom, light)
     colours = _core.colours(quantity, light)
-    image = np.empty((max(skin.shape[0], 80) + 40, skin.shape[1] + 130, 3), np.uint8)
+    image = np.empty((max(heat.shape[0], 80) + 40, heat.shape[1] + 130, 3), np.uint8)
     image[:] = colours[-1]
-    image[20:20 + skin.shape[0], 20:20 + skin.shape[1]] = skin
-    left = skin.shape[1] + 36
+    image[20:20 + heat.shape[0], 20:20 + heat.shape[1]] = heat
+    left = heat.shape[1] + 36
     if quantity not in ("region", "status"):
         height = image.shape[0] - 40
         image[20:20 + height, left:left + 16] = colours[(np.arange(height)[::-1] * 256) // height,

@@ -39,9 +39,11 @@ class Sender(threading.Thread):
     def run(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             while not self.stopped.wait(0.002):
-                readings = np.full((16, 24), 40 + self.number % 50, np.uint8)
-                out.sendto(packet(readings, self.number), ("127.0.0.1", self.port))
+                out.sendto(packet(self.readings(), self.number), ("127.0.0.1", self.port))
                 self.number += 1
+
+    def readings(self):
+        return np.full((16, 24), 40 + self.number % 50, np.uint8)
 
     def __enter__(self):
         self.start()
