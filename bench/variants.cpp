@@ -140,6 +140,7 @@ constexpr std::array kStages = {
     Stage{"bending", add_bending},
     Stage{"calibrated", add_calibrated},
     Stage{"sensor", add_sensor},
+    Stage{"sensels", [](SolverPlan& plan) { plan.skin.layout = SkinLayout::sensels; }},
 };
 
 }  // namespace
@@ -185,6 +186,8 @@ Streams streams_of(const SolverPlan& plan) {
   }
   streams.mask = !calibration.mask.empty();
   streams.tare_follows = plan.baseline_rate.has_value();
+  // A float and a byte for each of 2 x 2 sensels: 20 bytes, of which the copy makes 21.
+  if (!plan.skin.has_pillars()) streams.result_planes = 5;
   if (plan.angles) streams.result_planes += 3;
   if (plan.uncertainty) streams.result_planes += static_cast<int>(kUncertaintyPlanes);
   return streams;
