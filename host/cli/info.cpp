@@ -103,6 +103,7 @@ void add_skin(Json& facts, const Skin& skin) {
   facts["sensel_rows"] = skin.rows;
   facts["sensel_cols"] = skin.cols;
   facts["layout"] = name_of(skin.layout);
+  if (skin.falling) facts["falling"] = true;
   if (skin.has_pillars()) {
     facts["pillar_rows"] = skin.pillar_rows();
     facts["pillar_cols"] = skin.pillar_cols();

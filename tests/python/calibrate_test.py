@@ -101,6 +101,63 @@ class Steps(unittest.TestCase):
                 call()
 
 
+class Sensels(unittest.TestCase):
+    """A pad of odd size without pillars; 4 counts per newton and mm pitch of its own."""
+
+    PITCH_MM, K = 5.0, 80.0
+
+    @classmethod
+    def setUpClass(cls):
+        cls.tare = RANDOM.normal(30, 4, (15, 33))
+        cls.gain = 1 + RANDOM.normal(0, 0.08, (15, 33))
+        cls.gain /= cls.gain.mean()
+        cls.skin = pf.Skin(15, 33, layout="sensels", sensel_pitch_mm=cls.PITCH_MM)
+        cls.tared = pf.calibrate.tare(noisy(cls.tare), skin=cls.skin).calibration
+
+    def pressed(self, normal_n):
+        return noisy(self.tare + self.K * np.asarray(normal_n) * self.gain)
+
+    def test_equilibrate_and_load(self):
+        area_mm2 = self.PITCH_MM**2
+        presses = [(self.pressed(np.full((15, 33), kpa * 1e-3 * area_mm2)), kpa) for kpa in (50, 100, 200)]
+        even = pf.calibrate.equilibrate(presses, self.tared, skin=self.skin).calibration
+        np.testing.assert_allclose(even.gain, 1 / self.gain, rtol=0.03)
+        self.assertAlmostEqual(even.counts_per_newton, self.K, delta=0.02 * self.K)
+        normal = np.zeros((15, 33))
+        normal[9:, 25:] = 0.5  # up to the last row and column
+        loaded = pf.calibrate.load([(self.pressed(normal), 24.0)], even, skin=self.skin).calibration
+        self.assertAlmostEqual(loaded.counts_per_newton, self.K, delta=0.02 * self.K)
+        forces = pf.solve(self.pressed(normal), calibration=loaded, skin=self.skin)
+        self.assertFalse(forces.has_pillars)
+        np.testing.assert_allclose(forces.normal.mean(0)[9:, 25:], 0.5, rtol=0.04)
+        self.assertAlmostEqual(float(forces.normal.sum((1, 2)).mean()), 24, delta=0.3)
+        loaded.save(WORK / "pad.h5", overwrite=True)
+        self.assertFalse(pf.solve(self.pressed(normal), calibration=WORK / "pad.h5").has_pillars)
+
+    def test_one_weight_gives_newtons(self):
+        rows, cols = np.mgrid[0:15, 0:33]
+        def under(newtons, row, col):
+            shape = np.clip(1 - ((rows - row)**2 + (cols - col)**2) / 9, 0, None)
+            return self.tare + self.K * newtons * shape / shape.sum() * self.gain
+        path = [(7 + 3.5 * np.sin(0.9 * t), 16 + 11 * np.sin(0.17 * t)) for t in np.arange(0, 60, 0.1)]
+        frames = np.array([under(20, row, col) for row, col in path]) + RANDOM.normal(0, 0.6, (600, 15, 33))
+        step = pf.calibrate.weight([(frames.round(), 20.0)], self.tared, skin=self.skin)
+        other = np.array([under(30, row, col) for row, col in path[::50]]).round()
+        total = pf.solve(other, calibration=step.calibration).normal.sum((1, 2))
+        np.testing.assert_allclose(total, 30, rtol=0.05)
+
+    def test_steps_of_pillars_are_refused(self):
+        still = noisy(self.tare)
+        for call in (lambda: pf.calibrate.shear([(still, (1.0, 0.0))], self.tared),
+                     lambda: pf.calibrate.arm([still], self.tared),
+                     lambda: pf.calibrate.faults([still], self.tared)):
+            with self.assertRaisesRegex(pf.Error, "needs pillars"):
+                call()
+        pillars = pf.calibrate.tare(still, skin=pf.Skin(15, 33)).calibration
+        with self.assertRaisesRegex(pf.Error, "without pillars"):
+            pf.calibrate.weight([(still, 5.0)], pillars)
+
+
 if __name__ == "__main__":
     WORK.mkdir(parents=True, exist_ok=True)
     unittest.main()
