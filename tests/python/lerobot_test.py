@@ -128,6 +128,18 @@ class Images(unittest.TestCase):
     def test_tare(self):
         self.assertLess(self.see(tare_frames=20).max(), 2)
 
+    def test_a_calibration_gives_layout_and_scale(self):
+        path = str(WORK / "skin.h5")
+        unloaded = np.full((20, 16, 24), 5, np.uint8) + np.arange(20, dtype=np.uint8)[:, None, None] % 2
+        tare = pf.calibrate.tare(unloaded, skin=pf.Skin(16, 24, layout="sensels")).calibration
+        pf.calibrate.load([(READINGS[None], READINGS.sum() / 400)], tare).calibration.save(path)
+        options = {"calibration": path, "counts_per_newton": None}
+        forces = pf.solve(READINGS, calibration=path)
+        grey = 255 * np.clip(forces.normal / FULL_SCALE_N, 0, 1)
+        np.testing.assert_allclose(self.see(**options)[..., 0], grey, atol=0.51)
+        with self.assertRaisesRegex(pf.Error, "no shear"):
+            self.see(rendering="vector_rgb", **options)
+
     def test_what_is_refused(self):
         for message, options in (("no shear", {"rendering": "vector_rgb", "layout": "sensels"}),
                                  ("is none", {"rendering": "colour"}),
@@ -151,7 +163,7 @@ class Reading(unittest.TestCase):
                 camera.connect()
             np.testing.assert_array_equal(camera.read(), camera.read_latest(60_000))
         with self.assertRaises(TimeoutError):
-            while True:
+            for _ in range(10_000):  # More than wait.
                 camera.async_read(300)
         self.assertEqual(camera.read_latest(600_000).shape, (8, 12, 3))
         with self.assertRaises(TimeoutError):

@@ -14,7 +14,7 @@ from lerobot.cameras import Camera
 from lerobot.utils.errors import DeviceAlreadyConnectedError, DeviceNotConnectedError
 
 from .config import PillarfieldCameraConfig
-from .rendering import Image, image_of
+from .rendering import Image, check_rendering, image_of
 
 _PATIENCE_S = 0.1  # from a wish to stop to the end of the thread
 _READ_TIMEOUT_MS = 10_000  # of read(), as of LeRobot's own cameras
@@ -63,6 +63,7 @@ class PillarfieldCamera(Camera):
         source = pf.live(self.config.source, skin=pf.Skin(2, 2, layout=self.config.layout))
         try:
             plan = self._plan_of(source)
+            check_rendering(self.config.rendering, plan.skin.layout)
             self._set_size(plan.skin)
             processor = pf.Processor(plan)
         except BaseException:

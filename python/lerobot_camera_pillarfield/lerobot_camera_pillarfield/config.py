@@ -8,7 +8,7 @@ from typing import Optional
 import pillarfield as pf
 from lerobot.cameras import CameraConfig
 
-from .rendering import RENDERINGS
+from .rendering import check_rendering
 
 
 @CameraConfig.register_subclass("pillarfield")
@@ -21,7 +21,7 @@ class PillarfieldCameraConfig(CameraConfig):
     full_scale_n: force on one pillar or sensel at which a channel is at its end, N
     rendering: 'normal': normal force as grey, 0 N black; 'vector_rgb': shear_x, shear_y and normal as
         red, green and blue, 0 N at 128
-    layout: 'pillars' or 'sensels', which have normal force alone
+    layout: 'pillars' or 'sensels', which have normal force alone; a calibration knows its own
     calibration: path of the skin's calibration
     counts_per_newton: of the skin; None: that of the calibration
     tare_frames: the first frames after connect(), at least 10, are of the unloaded skin; 0: no tare
@@ -39,12 +39,7 @@ class PillarfieldCameraConfig(CameraConfig):
     tare_frames: int = 0
 
     def __post_init__(self) -> None:
-        if self.rendering not in RENDERINGS:
-            raise pf.Error("rendering", f"'{self.rendering}' is none",
-                           f"give {' or '.join(RENDERINGS)}")
-        if self.rendering == "vector_rgb" and self.layout == "sensels":
-            raise pf.Error("rendering", "sensels without pillars have no shear for vector_rgb",
-                           "give normal, or the layout pillars if the skin has some")
+        check_rendering(self.rendering, self.layout)
         if not 0 < self.full_scale_n < float("inf"):
             raise pf.Error("full_scale_n", f"{self.full_scale_n} N is not a full scale",
                            "give a positive force")

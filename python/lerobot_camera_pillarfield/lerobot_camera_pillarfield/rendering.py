@@ -25,6 +25,15 @@ RENDERINGS: dict[str, tuple[Callable[[pf.ForceField], Any], int, int]] = {
     "normal": (_normal, 0, 255), "vector_rgb": (_vector_rgb, 128, 127)}
 
 
+def check_rendering(rendering: str, layout: str) -> None:
+    """Raises Error if there is no such rendering of the layout."""
+    if rendering not in RENDERINGS:
+        raise pf.Error("rendering", f"'{rendering}' is none", f"give {' or '.join(RENDERINGS)}")
+    if rendering == "vector_rgb" and layout == "sensels":
+        raise pf.Error("rendering", "sensels without pillars have no shear for vector_rgb",
+                       "give normal, or the layout pillars if the skin has some")
+
+
 def image_of(forces: pf.ForceField, rendering: str, full_scale_n: float, height: int,
              width: int) -> Image:
     """One frame as RGB, uint8 [height, width, 3], each pillar or sensel a rectangle of pixels.
