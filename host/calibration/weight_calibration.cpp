@@ -25,8 +25,8 @@ constexpr std::size_t kFewestPlaces = 5;
 constexpr std::size_t kFewestVisits = 5;
 /// Largest misfit of the sums, relative.
 constexpr double kMostWeightMisfit = 0.15;
-/// Largest deviation of an exponent that is stored, relative: loads that differ by a factor of three
-/// are then wrong by a tenth.
+/// Largest deviation of an exponent that is stored, relative: loads that differ by a factor of
+/// three are then wrong by a tenth.
 constexpr double kMostExponentDeviation = 0.1;
 constexpr int kWeightSamples = 48;
 
@@ -68,10 +68,9 @@ void WeightFinder::add(const FrameView& frame) {
   const double full_scale =
       skin_.full_scale_counts.value_or(std::numeric_limits<double>::infinity());
   std::vector<float> readings(skin_.sensels());
-  std::vector<std::uint8_t> near(skin_.sensels(), 0);
+  std::vector<std::size_t> above;
   bool saturated = false;
   bool unreadable = false;
-  bool touched = false;
   for_each_row(frame, [&](std::size_t row, const auto* raws) {
     for (std::size_t col = 0; col < skin_.cols; ++col) {
       const std::size_t i = row * skin_.cols + col;
@@ -81,23 +80,31 @@ void WeightFinder::add(const FrameView& frame) {
       unreadable |= !(std::abs(raw) <= kMaxCounts);
       const double gain = planes.gain.empty() ? 1 : planes.gain[i];
       readings[i] = static_cast<float>((raw - planes.tare[i]) * gain);
-      if (!(readings[i] > threshold_)) continue;
-      touched = true;
-      near[i] = 1;
-      for (const std::size_t n : Neighbours(skin_, i).all()) near[n] = 1;
+      if (readings[i] > threshold_) above.push_back(i);
     }
   });
   if (unreadable || saturated) {
     ++(unreadable ? unreadable_ : saturated_);
     return;
   }
-  if (!touched) return;
+  std::vector<std::uint8_t> near(skin_.sensels(), 0);
+  for (const std::size_t i : above) {
+    const Neighbours beside(skin_, i);
+    // A sensel alone is noise, somewhere on the array.
+    if (std::ranges::none_of(beside.all(),
+                             [&](std::size_t n) { return readings[n] > threshold_; })) {
+      continue;
+    }
+    near[i] = 1;
+    for (const std::size_t n : beside.all()) near[n] = 1;
+  }
   const std::size_t begin = sensels_.size();
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (near[i] == 0 || state_of(planes, i) != kGood) continue;
     sensels_.push_back(static_cast<std::uint32_t>(i));
     readings_.push_back(readings[i]);
   }
+  if (sensels_.size() == begin) return;
   contacts_.push_back({recordings_.size() - 1, begin, sensels_.size()});
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include "base/quantile.h"
@@ -19,6 +20,9 @@ constexpr double kExponentSpread = 0.3;
 constexpr double kMostExponentStep = 0.15;
 constexpr double kMostExponentChange = 0.9;
 constexpr double kMostLogGain = 1.5;
+/// Changes below which a fit ends.
+constexpr double kAccurateExponent = 1e-3;
+constexpr double kAccurateGain = 5e-3;
 /// Least relative misfit, common to the frames at a place: sensels are no exact squares.
 constexpr double kLeastMisfit = 1e-3;
 /// Part of the sums' error that may follow the exponent's slopes, relative: noise that bends at
@@ -65,6 +69,7 @@ WeightFit::WeightFit(std::span<const WeighedFrame> frames, WeighedArray array,
       response_(std::move(response)),
       first_exponent_(response_.exponent),
       begins_(1, 0),
+      touched_(array_.noise.size(), false),
       x_(array_.noise.size(), 0.0),
       spread_(kGainSpread),
       residuals_(frames.size()),
@@ -75,6 +80,9 @@ WeightFit::WeightFit(std::span<const WeighedFrame> frames, WeighedArray array,
     begins_.push_back(begins_.back() + frame.readings.size());
     const auto [first, last] = std::ranges::minmax(
         frame.readings, {}, [&](const WeighedReading& each) { return place(each.sensel); });
+    for (const auto& [i, reading] : frame.readings) {
+      if (reading > array_.threshold) touched_[i] = true;
+    }
     reach_ = std::max(reach_, place(last.sensel) - place(first.sensel));
   }
   slopes_.resize(begins_.back());
@@ -163,6 +171,7 @@ WeightFit::Equations WeightFit::equations() const {
   all.shared[0] = exponent_prior;
   all.shared_right[0] =
       -exponent_prior * response_.exponent * std::log(response_.exponent / first_exponent_);
+  std::vector<std::size_t> places;
   for (std::size_t t = 0; t < frames_.size(); ++t) {
     const double weight = weights_[t];
     if (weight == 0) continue;
@@ -174,13 +183,15 @@ WeightFit::Equations WeightFit::equations() const {
     all.shared[2] += weight;
     const auto& readings = frames_[t].readings;
     const double* slope = &slopes_[begins_[t]];
+    places.clear();
+    for (const WeighedReading& each : readings) places.push_back(place(each.sensel));
     for (std::size_t a = 0; a < readings.size(); ++a) {
-      const std::size_t at = place(readings[a].sensel);
+      const std::size_t at = places[a];
       const double weighed = weight * slope[a];
       all.right[at] -= weighed * residual;
       for (std::size_t s = 0; s < 2; ++s) all.beside.at(s)[at] += weighed * shared.at(s);
       for (std::size_t b = 0; b <= a; ++b) {
-        const std::size_t other = place(readings[b].sensel);
+        const std::size_t other = places[b];
         all.factor.add(std::max(at, other), std::min(at, other), weighed * slope[b]);
       }
     }
@@ -189,8 +200,9 @@ WeightFit::Equations WeightFit::equations() const {
   return all;
 }
 
-/// A Gauss-Newton step; a known exponent stays.
-void WeightFit::step() {
+/// A Gauss-Newton step; a known exponent stays. Returns the largest change, relative to
+/// those below which a fit ends.
+double WeightFit::step() {
   const Equations all = equations();
   const std::vector<double> alone = all.factor.solve(all.right);
   const std::vector<double> by_exponent = all.factor.solve(all.beside[0]);
@@ -204,14 +216,17 @@ void WeightFit::step() {
   const double most = kMostExponentStep * response_.exponent;
   exponent = std::clamp(exponent, -most, most);
   const double log_k = (k - ek * exponent) / kk;
+  double largest = std::abs(exponent) / kAccurateExponent;
   for (std::uint32_t i = 0; i < x_.size(); ++i) {
     const std::size_t at = place(i);
     const double change = alone[at] - by_exponent[at] * exponent - by_k[at] * log_k;
     x_[i] = std::clamp(x_[i] + change, -kMostLogGain, kMostLogGain);
+    largest = std::max(largest, std::abs(change) / kAccurateGain);
   }
   response_.exponent =
       std::clamp(response_.exponent + exponent, first_exponent_ * std::exp(-kMostExponentChange),
                  first_exponent_ * std::exp(kMostExponentChange));
+  return largest;
 }
 
 void WeightFit::settle(int steps) {
@@ -219,7 +234,7 @@ void WeightFit::settle(int steps) {
     linearise();
     estimate_misfit();
     weigh();
-    step();
+    if (step() < 1) break;
   }
   linearise();
   estimate_misfit();
@@ -228,19 +243,26 @@ void WeightFit::settle(int steps) {
 
 /// The spread from sensel to sensel, of which the gains that the frames determine are samples.
 void WeightFit::estimate_spread() {
+  constexpr int kDraws = 32;
   const Equations all = equations();
-  std::vector<double> unit(x_.size(), 0);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<double> variances(x_.size(), 0);
+  std::vector<double> independent(x_.size());
+  for (int draw = 0; draw < kDraws; ++draw) {
+    for (double& value : independent) value = normal(random);
+    const std::vector<double> errors = all.factor.spread(independent);
+    for (std::size_t at = 0; at < errors.size(); ++at) {
+      variances[at] += squared(errors[at]) / kDraws;
+    }
+  }
   double squares = 0;
   double count = 0;
   for (std::uint32_t i = 0; i < x_.size(); ++i) {
-    unit[place(i)] = 1;
-    const double variance = all.factor.solve(unit)[place(i)];
-    unit[place(i)] = 0;
-    if (variance > squared(0.9 * spread_)) continue;
-    squares += squared(x_[i]) + variance;
+    if (!touched_[i]) continue;
+    squares += squared(x_[i]) + variances[place(i)];
     ++count;
   }
-  if (count == 0) return;
   spread_ = std::clamp(std::sqrt(squares / count), kLeastGainSpread, kMostGainSpread);
 }
 

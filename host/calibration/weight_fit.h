@@ -99,7 +99,7 @@ class WeightFit {
   void linearise();
   void estimate_misfit();
   void weigh();
-  void step();
+  [[nodiscard]] double step();
   void settle(int steps);
   void estimate_spread();
   void state_deviations();
@@ -113,7 +113,8 @@ class WeightFit {
   double first_exponent_;
   std::optional<Exponent> known_;
   std::vector<std::size_t> begins_;
-  std::size_t reach_ = 0;
+  std::vector<bool> touched_;  ///< sensels that read above the threshold
+  std::size_t reach_ = 0;      ///< of a frame, in places
   std::vector<double> x_;
   double log_k_ = 0;
   double misfit_ = 0;
