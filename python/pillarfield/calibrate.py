@@ -28,7 +28,7 @@ Before = Union[_core.Calibration, str, "os.PathLike[str]", None]
 Skin = Optional[_core.Skin]
 
 __all__ = ["SenselFinding", "Step", "arm", "bending", "equilibrate", "faults", "leak", "load", "memory",
-           "shear", "tare", "wires"]
+           "shear", "tare", "weight", "wires"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -107,6 +107,17 @@ def load(loads: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = Non
     frames, loads_n = _pairs(loads)
     return _run("load", frames, before, skin, axes, load_n=loads_n,
                 model="power" if power else "linear")
+
+
+def weight(recordings: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = None,
+           axes: Axes = "") -> Step:
+    """Gains, a power law and newtons from a known weight that is placed or rolled anywhere.
+
+    recordings: (frames, N) of each weight, on an array of sensels without pillars. Sensels that it
+    did not visit are in facts["unvisited_sensels"]. Raises Error if frames or places are too few.
+    """
+    frames, weights_n = _pairs(recordings)
+    return _run("weight", frames, before, skin, axes, load_n=weights_n)
 
 
 def shear(loads: Sequence[tuple[Any, tuple[float, float]]], before: Before, *, skin: Skin = None,
