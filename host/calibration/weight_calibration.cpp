@@ -293,9 +293,6 @@ WeightResult WeightFinder::result() const {
 
 namespace {
 
-/// Share of the sensels that may stay unvisited without a warning.
-constexpr double kManyUnvisited = 0.1;
-
 void report_weight(StepReport& report, const WeightResult& result) {
   const SkinCalibration& calibration = result.calibration;
   const double k = *calibration.counts_per_newton;
@@ -322,6 +319,11 @@ void report_weight(StepReport& report, const WeightResult& result) {
   }
   report.measure("visited", static_cast<double>(visited) / static_cast<double>(good), "visited",
                  fmt::format("% of the good sensels: {} of {}", visited, good));
+  if (!unvisited.empty()) {
+    report.notes.push_back(fmt::format("Not visited: {}, which keep their gain, ± {:.0f} %",
+                                       counted(unvisited.size(), "sensel"),
+                                       100 * result.unvisited_deviation));
+  }
   report.facts["unvisited_sensels"] = std::move(unvisited);
   report.measure("gain_spread", result.gain_spread, "gain", "% spread of the visited sensels");
   report.measure("gain_deviation", result.gain_deviation, "gain error",
@@ -363,12 +365,6 @@ SkinCalibration run_weight(StepWork& work) {
       fmt::format("Found gains and newtons from {}, {}", counted(weights_n.size(), "weight"),
                   counted(work.frames(), "frame"));
   report_weight(work.report, result);
-  const double visited = work.report.facts["visited"].get<double>();
-  if (visited < 1 - kManyUnvisited) {
-    work.report.warnings.push_back(fmt::format(
-        "{}: {:.0f} % of the sensels were not visited and keep their gain, ± {:.0f} %",
-        work.files.front().name(), 100 * (1 - visited), 100 * result.unvisited_deviation));
-  }
   work.parameters = fmt::format(
       "loads_n = {}, exponent = {:.4f}, total_deviation = {:.4f}", fmt::join(weights_n, " "),
       result.finds_exponent ? result.exponent : 1, result.total_deviation);

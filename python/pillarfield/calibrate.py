@@ -109,15 +109,15 @@ def load(loads: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = Non
                 model="power" if power else "linear")
 
 
-def weight(loads: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = None,
+def weight(recordings: Sequence[tuple[Any, float]], before: Before, *, skin: Skin = None,
            axes: Axes = "") -> Step:
-    """Gains, a power law and newtons of sensels without pillars, from known weights that move.
+    """Gains, a power law and newtons from a known weight that is placed or rolled anywhere.
 
-    loads: (frames, N) of each weight, placed or rolled anywhere. Raises Error with pillars, or if the
-    frames show no contact or too few places.
+    recordings: (frames, N) of each weight, on an array of sensels without pillars. Sensels that it
+    did not visit are in facts["unvisited_sensels"]. Raises Error if frames or places are too few.
     """
-    frames, loads_n = _pairs(loads)
-    return _run("weight", frames, before, skin, axes, load_n=loads_n)
+    frames, weights_n = _pairs(recordings)
+    return _run("weight", frames, before, skin, axes, load_n=weights_n)
 
 
 def shear(loads: Sequence[tuple[Any, tuple[float, float]]], before: Before, *, skin: Skin = None,

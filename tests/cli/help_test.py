@@ -11,7 +11,7 @@ import unittest
 
 from command import PROGRAM, SOURCE, CommandTest, datasets, on_terminal, run, run_json
 
-STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "apply"]
+STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "weight", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["stream"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["info"], ["doctor"], ["completion"]]
 
@@ -173,7 +173,7 @@ class Numbers(CommandTest):
                   "solve": [recording, "-o", output, "--contacts", output]}
         step = [recording, "--calibration", recording, "-o", output]
         needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
-                   "load": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"], "arm": step, "leak": step, "memory": [*step, "--pressure", "log.csv"],
+                   "load": [*step, "--load-n", 10], "weight": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"], "arm": step, "leak": step, "memory": [*step, "--pressure", "log.csv"],
                    "wires": [recording, "-o", output], "bending": [*step, "--radius-mm", 60, "--axis-deg", 0]}
         tried = 0
         for command in COMMANDS:

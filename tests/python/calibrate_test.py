@@ -79,6 +79,21 @@ class Steps(unittest.TestCase):
         step = pf.calibrate.shear([(frames, (pulled / 1.3, 0.0))], self.equilibrated().calibration)
         self.assertAlmostEqual(step.facts["shear_coefficient_x"], 1.3, delta=0.05)
 
+    def test_weight(self):
+        rows, cols = np.mgrid[0:32, 0:40]
+        frames = []
+        for place in range(120):
+            row, col = 7 + place // 12 * 1.9, 7 + place % 12 * 2.3
+            far = (rows - row) ** 2 + (cols - col) ** 2
+            pressure = np.maximum(0, 1 - far / (16 + place % 5 * 4))
+            force_n = 25 * pressure / pressure.sum()
+            frames.append(noisy(self.tare + K * force_n * self.gain, 5))
+        step = pf.calibrate.weight([(np.concatenate(frames), 25.0)], self.tared.calibration)
+        self.assertAlmostEqual(step.facts["counts_per_newton"] / K, 1, delta=0.03)
+        self.assertAlmostEqual(step.facts["exponent"], 1, delta=0.05)
+        self.assertIn([0, 0], step.facts["unvisited_sensels"])
+        self.assertEqual(step.calibration.gain[0, 0], 1)
+
     def test_paths_and_wrong_arguments(self):
         path = WORK / "unloaded.h5"
         pf.save_recording(path, self.unloaded, overwrite=True)
@@ -94,6 +109,7 @@ class Steps(unittest.TestCase):
                  lambda: pf.calibrate.equilibrate([(self.unloaded, -1.0)], self.tared.calibration),
                  lambda: pf.calibrate.equilibrate([(self.unloaded, 5.0)], None, model="cubic"),
                  lambda: pf.calibrate.load([(self.unloaded, 5.0)], self.tared.calibration),
+                 lambda: pf.calibrate.weight([(self.unloaded, 5.0)], self.tared.calibration),
                  lambda: pf.calibrate.memory([(self.unloaded, [1.0])], self.tared.calibration),
                  lambda: pf.calibrate.leak([self.unloaded], None)]
         for call in calls:
