@@ -63,15 +63,18 @@ void add_quantities(Class& bound, Get get) {
   };
   using Q = ContactQuantities;
   add("pillars", &Q::pillars, "number of pillars, or of sensels without pillars");
-  add_of_pillars("ambiguous", &Q::ambiguous, "of these, ambiguous by their readings alone; None without pillars");
-  add_of_pillars("resolved", &Q::resolved, "of the ambiguous, resolved by friction; None without pillars");
+  add_of_pillars("ambiguous", &Q::ambiguous,
+                 "of these, ambiguous by their readings alone; None without pillars");
+  add_of_pillars("resolved", &Q::resolved,
+                 "of the ambiguous, resolved by friction; None without pillars");
   add_of_pillars("shear_x_n", &Q::shear_x_n, "force to the right, N; None without pillars");
   add_of_pillars("shear_y_n", &Q::shear_y_n, "force up, N; None without pillars");
   add("normal_n", &Q::normal_n, "pressing force, N");
   add_place("centre_of_pressure_mm", &Q::centre_of_pressure,
             "(x, y) from the centre of the skin, mm");
   add_place("centre_mm", &Q::centre, "(x, y) of the mean pillar, mm");
-  add_of_pillars("torque_nmm", &Q::torque_nmm, "about the outward normal, counter-clockwise, N mm; None without pillars");
+  add_of_pillars("torque_nmm", &Q::torque_nmm,
+                 "about the outward normal, counter-clockwise, N mm; None without pillars");
   add("area_mm2", &Q::area_mm2, "mm²");
   add("peak_n", &Q::peak_n, "largest normal force of a pillar, N");
   add_place("peak_mm", &Q::peak, "(x, y) of that pillar, mm");

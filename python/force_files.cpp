@@ -145,8 +145,9 @@ void bind_force_files(py::module_& module) {
   py::class_<ForceReader>(module, "ForceReader", kReader)
       .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
            py::arg("trust") = false)
-      .def_property_readonly("skin", [](const ForceReader& self) { return skin_of(self.info()); },
-                             "Skin, as far as the file tells: size, pitch and surface.")
+      .def_property_readonly(
+          "skin", [](const ForceReader& self) { return skin_of(self.info()); },
+          "Skin, as far as the file tells: size, pitch and surface.")
       .def_property_readonly(
           "estimator", [](const ForceReader& self) { return self.info().estimator; },
           "The estimator that solved it.")

@@ -149,8 +149,9 @@ class Sink {
   void send(const py::dict& planes, const std::shared_ptr<FrameContacts>& contacts, double time_s,
             std::uint64_t sequence) {
     const ForceArrays forces(planes);
-    if (forces.frames() != 1 || forces.layout() != plan_.skin.layout || forces.rows() != plan_.skin.element_rows() ||
-        forces.cols() != plan_.skin.element_cols() || planes.contains("theta") < plan_.angles ||
+    if (forces.frames() != 1 || forces.layout() != plan_.skin.layout ||
+        forces.rows() != plan_.skin.element_rows() || forces.cols() != plan_.skin.element_cols() ||
+        planes.contains("theta") < plan_.angles ||
         planes.contains("uncertainty_normal") < plan_.uncertainty) {
       throw Error(target_, "the forces do not fit its plan",
                   "send one frame of the plan's size and outputs");

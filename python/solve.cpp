@@ -68,8 +68,7 @@ class IteratorStream final : public FrameStream {
 /// Collects planes, times and contacts.
 class Collector final : public ForceSink {
  public:
-  explicit Collector(const SolverPlan& plan)
-      : planes_(plan.skin), check_(plan) {}
+  explicit Collector(const SolverPlan& plan) : planes_(plan.skin), check_(plan) {}
 
   void reserve(std::size_t frames) {
     planes_.reserve(frames);

@@ -136,8 +136,8 @@ struct StepKind {
   const char* frames;  ///< name of the argument of frames
   const char* frames_help;
   SkinCalibration (*run)(StepWork&);
-  bool is_single = false;   ///< takes one file
-  bool uses_times = false;  ///< of the frames
+  bool is_single = false;               ///< takes one file
+  bool uses_times = false;              ///< of the frames
   std::optional<SkinLayout> only = {};  ///< the layout of the skins that it is for; unset: any
   Before before = Before::required;
   const char* before_help = "Calibration to extend";

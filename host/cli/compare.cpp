@@ -239,7 +239,9 @@ void print_sensel_text(const std::vector<Row>& rows, const ResultantComparison& 
                loaded ? percentage(errors.p95_relative, 1) : "-");
   }
   print_resultants(resultants, false);
-  fmt::print("\n95 %: the 95th percentile over sensels. Worst: the largest error of a frame or contact.\n");
+  fmt::print(
+      "\n95 %: the 95th percentile over sensels. Worst: the largest error of a frame or "
+      "contact.\n");
   if (!coverage) return;
   fmt::print("Truths within 1.96 deviations: {:.1f}% of {} loaded sensels without a flag\n",
              100 * coverage->share(), grouped(coverage->sensels));
@@ -271,7 +273,8 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   }
   const Skin& skin = recording.skin();
   const ForceFileInfo& info = forces.info();
-  if (info.layout != skin.layout || info.rows != skin.element_rows() || info.cols != skin.element_cols()) {
+  if (info.layout != skin.layout || info.rows != skin.element_rows() ||
+      info.cols != skin.element_cols()) {
     throw Error(options.forces,
                 fmt::format("it has {} x {} {} and {} has {} x {} {}", info.rows, info.cols,
                             name_of(info.layout), options.recording, skin.element_rows(),

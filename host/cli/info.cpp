@@ -138,9 +138,8 @@ Json facts_of_frames(const std::string& file, const ReadOptions& options) {
 Json facts_of_forces(const std::string& file, const InfoOptions& options) {
   const ForceFileReader reader(file, options.read);
   const ForceFileInfo& info = reader.info();
-  Json facts = {{"format", "force field"},
-                {"frames", reader.frames()},
-                {"layout", name_of(info.layout)}};
+  Json facts = {
+      {"format", "force field"}, {"frames", reader.frames()}, {"layout", name_of(info.layout)}};
   const std::string element = info.layout == SkinLayout::pillars ? "pillar" : "sensel";
   facts[element + "_rows"] = info.rows;
   facts[element + "_cols"] = info.cols;

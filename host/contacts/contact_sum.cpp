@@ -159,8 +159,8 @@ PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run
     const Ints present = Ints{0, 1, 2, 3} < static_cast<std::int32_t>(run.end - col);
     Place from = {kNoShear.data(), kNoShear.data(), forces.normal.data() + at,
                   forces.status.data() + at};
-    if (has_shear) from = {forces.shear_x.data() + at, forces.shear_y.data() + at, from.normal,
-                           from.status};
+    if (has_shear)
+      from = {forces.shear_x.data() + at, forces.shear_y.data() + at, from.normal, from.status};
     if (at + kLanes > forces.status.size()) from = last.copy(forces, at);
     Floats values;
     Doubles shear_x;

@@ -61,9 +61,9 @@ bool is_whole(const SolverPlan& plan) {
       threshold <= kLargestWholeThreshold && 2 * threshold == std::floor(2 * threshold);
   const bool saturates_below =
       plan.skin.full_scale_counts && static_cast<float>(*plan.skin.full_scale_counts) <= threshold;
-  return plan.sensel_type == SenselType::u8 && plan.skin.has_pillars() && plan.estimator != Estimator::paper && !corrects &&
-         !plan.angles && !plan.uncertainty && halves && !saturates_below &&
-         whole_segment_point(plan);
+  return plan.sensel_type == SenselType::u8 && plan.skin.has_pillars() &&
+         plan.estimator != Estimator::paper && !corrects && !plan.angles && !plan.uncertainty &&
+         halves && !saturates_below && whole_segment_point(plan);
 }
 
 /// A limit in counts in a program of whole numbers, rounded so that comparisons do not change.

@@ -87,9 +87,9 @@ class Slot {
   cl::Kernel bend_;     ///< null where the skin is not bent
   cl::Kernel follow_;   ///< null without a baseline rate
   FrameOrder* order_;
-  cl::Event done_;    ///< behind the frame, once is_done() was asked for it; else null
+  cl::Event done_;  ///< behind the frame, once is_done() was asked for it; else null
   std::optional<FrameBuffer> padded_;  ///< of a frame that lacks sensels of its last quads
-  cl::Buffer frame_;  ///< keeps the frame in flight alive
+  cl::Buffer frame_;                   ///< keeps the frame in flight alive
   single_precision::Layout layout_{};
   std::unique_ptr<SlotMemory> memory_;
 };

@@ -66,10 +66,9 @@ void check(const SolvedFrame& frame, const ForceFileInfo& info, const std::strin
   const auto complete = [&](std::span<const float> plane) { return plane.size() == elements; };
   if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.normal) ||
       forces.status.size() != elements) {
-    throw Error(where,
-                fmt::format("a frame of {} x {} {}", forces.rows, forces.cols,
-                            name_of(info.layout)),
-                fmt::format("the file needs frames of {} x {}", info.rows, info.cols));
+    throw Error(
+        where, fmt::format("a frame of {} x {} {}", forces.rows, forces.cols, name_of(info.layout)),
+        fmt::format("the file needs frames of {} x {}", info.rows, info.cols));
   }
   for (const ResultPlane& plane : std::span(kResultPlanes).first(kSolvedPlanes)) {
     if (!has_plane(info.layout, info.angles, info.uncertainty, plane)) continue;
@@ -133,7 +132,8 @@ ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
   info.cols = plan.skin.element_cols();
   info.element_pitch_mm = plan.skin.element_pitch_mm();
   info.estimator = name_of(plan.estimator);
-  if (plan.skin.has_pillars() && plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
+  if (plan.skin.has_pillars() && plan.estimator != Estimator::paper)
+    info.segment_point = plan.segment_point;
   info.device = device;
   info.source = source;
   info.angles = plan.angles;

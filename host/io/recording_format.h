@@ -26,7 +26,7 @@ inline constexpr const char* kFullScale = "full_scale_counts";
 inline constexpr const char* kExponent = "power_law_exponent";
 inline constexpr const char* kReference = "power_law_reference_counts";
 inline constexpr const char* kFalling = "falling";  ///< 1: readings are mirrored
-inline constexpr const char* kLayout = "layout";  ///< "pillars" or "sensels"
+inline constexpr const char* kLayout = "layout";    ///< "pillars" or "sensels"
 
 inline constexpr const char* kCalibration = "/calibration";
 inline constexpr const char* kTare = "/calibration/tare";

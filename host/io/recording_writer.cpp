@@ -139,7 +139,7 @@ void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
   const std::array planes = {&field->shear_x, &field->shear_y, &field->normal};
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const std::size_t values = has_truth_plane(i) ? skin.elements() : 0;
-    if (planes[i]->size() != values || field->rows != skin.element_rows() || 
+    if (planes[i]->size() != values || field->rows != skin.element_rows() ||
         field->cols != skin.element_cols()) {
       throw Error(where, fmt::format("its truth is {} x {}", field->rows, field->cols),
                   fmt::format("it needs {} x {} {}", skin.element_rows(), skin.element_cols(),

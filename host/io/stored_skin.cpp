@@ -117,9 +117,12 @@ StoredSkin read_skin(const hdf5::File& file) {
   const hdf5::Handle object = open_skin(file);
   if (!object.valid()) return {};
   const auto read = [&](const char* name) { return hdf5::read_number(file, object.get(), name); };
-  return {read(recording_format::kPitch), read(recording_format::kCountsPerNewton),
-          read(recording_format::kThreshold), read(recording_format::kFullScale),
-          read_power_law(file, object.get()), read_layout(file, object.get()),
+  return {read(recording_format::kPitch),
+          read(recording_format::kCountsPerNewton),
+          read(recording_format::kThreshold),
+          read(recording_format::kFullScale),
+          read_power_law(file, object.get()),
+          read_layout(file, object.get()),
           read(recording_format::kFalling).value_or(0) != 0};
 }
 

@@ -15,8 +15,8 @@ namespace pillarfield {
 /// status of missing sensels.
 class MissingPillars {
  public:
-  /// Returns `forces` without the elements that touch the blocks of sensels; the view is valid until
-  /// the next call.
+  /// Returns `forces` without the elements that touch the blocks of sensels; the view is valid
+  /// until the next call.
   [[nodiscard]] ForceFieldView without(const ForceFieldView& forces,
                                        std::span<const SenselBlock> missing);
 

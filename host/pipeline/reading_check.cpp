@@ -96,7 +96,8 @@ void ReadingCheck::warn_of_no_contact(std::vector<std::string>& sentences) const
     sentences.push_back(fmt::format(
         "Readings fall: {} sensels of a frame read less than their tare by more than the "
         "threshold, "
-        "down to {:.4g} counts below it, and at most {} read more. Give --falling (in Python the full "
+        "down to {:.4g} counts below it, and at most {} read more. Give --falling (in Python the "
+        "full "
         "scale minus the reading) if they fall under load.",
         most_.below, -most_.lowest, most_.above));
   } else if (in_contact_ == 0) {
@@ -106,8 +107,7 @@ void ReadingCheck::warn_of_no_contact(std::vector<std::string>& sentences) const
         "above the threshold of {:.4g} are usable; give a lower --threshold (in Python "
         "threshold_counts=), or a tare of the unloaded skin.",
         plan_.skin.has_pillars() ? "pillar" : "sensel", frames_, most_.highest,
-        plan_.calibration.tare.empty() ? "" : " above their tare",
-        plan_.skin.threshold_counts));
+        plan_.calibration.tare.empty() ? "" : " above their tare", plan_.skin.threshold_counts));
   }
 }
 

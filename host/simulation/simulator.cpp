@@ -125,8 +125,8 @@ struct Simulator::State {
 
   /// Fills the three planes of force, and clears the status bytes.
   [[nodiscard]] FrameLoad load(std::uint64_t index, ForceField& truth) const {
-    FrameLoad load{
-        truth, pillars.needs_moments() ? PressureMoments(scene.skin.elements()) : PressureMoments()};
+    FrameLoad load{truth, pillars.needs_moments() ? PressureMoments(scene.skin.elements())
+                                                  : PressureMoments()};
     if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load)) {
       truth = sweep_truth;
       scale(truth, factor_at(*sweep, time_of(index)));

@@ -11,8 +11,7 @@ ForceField::ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols)
       normal(elements()),
       status(elements()) {}
 
-ForceField::ForceField(const Skin& skin)
-    : ForceField(skin.element_rows(), skin.element_cols()) {
+ForceField::ForceField(const Skin& skin) : ForceField(skin.element_rows(), skin.element_cols()) {
   if (skin.has_pillars()) return;
   shear_x.clear();
   shear_y.clear();

@@ -20,8 +20,8 @@ namespace pillarfield {
   return std::size_t{quad_rows(skin)} * quad_cols(skin);
 }
 
-/// Rows and columns of a frame in a device's memory: those of the skin, and without pillars at least
-/// those of its quads.
+/// Rows and columns of a frame in a device's memory: those of the skin, and without pillars at
+/// least those of its quads.
 [[nodiscard]] inline std::uint32_t padded_rows(const Skin& skin) {
   return std::max(skin.rows, 2 * quad_rows(skin));
 }

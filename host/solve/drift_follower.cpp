@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "pillarfield/tuning.h"
-#include "skin/raw_reading.h"
 #include "skin/quads.h"
+#include "skin/raw_reading.h"
 
 namespace pillarfield {
 namespace {

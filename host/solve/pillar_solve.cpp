@@ -35,8 +35,7 @@ void store_solution(const maths::Solution& solution, std::size_t index, bool unc
 /// Solves the 2 x 2 sensels of a pillar, or, without pillars, each for itself.
 class QuadSolver {
  public:
-  QuadSolver(const SolverPlan& plan, const FrameView& frame, SensorState& state,
-             ForceField& field)
+  QuadSolver(const SolverPlan& plan, const FrameView& frame, SensorState& state, ForceField& field)
       : sensels_(plan, frame, &state), field_(field) {
     if (!plan.uncertainty) return;
     for (std::size_t i = kNamedPlanes; i < kSolvedPlanes; ++i) {

@@ -59,7 +59,8 @@ inline constexpr std::size_t kForcePlanes = 3;
 /// deviation and the ends of its interval exist.
 constexpr bool has_plane(SkinLayout layout, bool angles, bool uncertainty,
                          const ResultPlane& plane) {
-  if (layout == SkinLayout::sensels && !std::string_view(plane.name).starts_with("normal")) return false;
+  if (layout == SkinLayout::sensels && !std::string_view(plane.name).starts_with("normal"))
+    return false;
   return plane.set == PlaneSet::forces || (plane.set == PlaneSet::angles ? angles : uncertainty);
 }
 

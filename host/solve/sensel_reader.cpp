@@ -1,10 +1,10 @@
 #include "solve/sensel_reader.h"
 
 #include "pillarfield/tuning.h"
+#include "skin/quads.h"
 #include "skin/raw_reading.h"
 #include "solve/curvature_follower.h"
 #include "solve/stages.h"
-#include "skin/quads.h"
 
 namespace pillarfield {
 
@@ -128,8 +128,7 @@ maths::Pillar SenselReader::recalled(const maths::Pillar& pillar, std::size_t in
 float SenselReader::sensel_noise(std::size_t row, std::size_t col) const {
   const float noise =
       calibration_.noise.empty() ? noise_ : value_of(calibration_.noise, row, col, 0.0F);
-  return maths::corrected_noise(noise, reading(row, col), correction(row, col),
-                                stages_);
+  return maths::corrected_noise(noise, reading(row, col), correction(row, col), stages_);
 }
 
 const std::vector<float>& SenselReader::tares() const {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "skin/raw_reading.h"
 #include "skin/quads.h"
+#include "skin/raw_reading.h"
 
 namespace pillarfield {
 namespace {

@@ -205,28 +205,28 @@ PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
 #ifdef PF_SENSELS
 /* Writes the values of one row of sensels under PF_LANES pillars, those of `sensels`. */
 #if PF_LANES == 1
-#define PF_DEFINE_STORE_SENSELS(name, Value, type, as, store)                                     \
-  PF_INLINE void store_##name(Value left, Value right, global type* row, Lanes sensels) {         \
-    if (sensels.first == 0) row[0] = (type)left;                                                  \
-    if (sensels.end == 2) row[1] = (type)right;                                                   \
+#define PF_DEFINE_STORE_SENSELS(name, Value, type, as, store)                             \
+  PF_INLINE void store_##name(Value left, Value right, global type* row, Lanes sensels) { \
+    if (sensels.first == 0) row[0] = (type)left;                                          \
+    if (sensels.end == 2) row[1] = (type)right;                                           \
   }
 #else
-#define PF_DEFINE_STORE_SENSELS(name, Value, type, as, store)                                     \
-  PF_INLINE void store_##name(Value left, Value right, global type* row, Lanes sensels) {         \
-    PF_LANE_TYPE(type) low, high;                                                                 \
-    low.even = as(left).lo;                                                                       \
-    low.odd = as(right).lo;                                                                       \
-    high.even = as(left).hi;                                                                      \
-    high.odd = as(right).hi;                                                                      \
-    if (sensels.end - sensels.first == 2 * PF_LANES) {                                            \
-      store(low, row);                                                                            \
-      store(high, row + PF_LANES);                                                                \
-    } else {                                                                                      \
-      type values[2 * PF_LANES];                                                                  \
-      PF_VSTORE(low, 0, values);                                                                  \
-      PF_VSTORE(high, 1, values);                                                                 \
-      for (uint i = sensels.first; i < sensels.end; ++i) row[i] = values[i];                      \
-    }                                                                                             \
+#define PF_DEFINE_STORE_SENSELS(name, Value, type, as, store)                             \
+  PF_INLINE void store_##name(Value left, Value right, global type* row, Lanes sensels) { \
+    PF_LANE_TYPE(type) low, high;                                                         \
+    low.even = as(left).lo;                                                               \
+    low.odd = as(right).lo;                                                               \
+    high.even = as(left).hi;                                                              \
+    high.odd = as(right).hi;                                                              \
+    if (sensels.end - sensels.first == 2 * PF_LANES) {                                    \
+      store(low, row);                                                                    \
+      store(high, row + PF_LANES);                                                        \
+    } else {                                                                              \
+      type values[2 * PF_LANES];                                                          \
+      PF_VSTORE(low, 0, values);                                                          \
+      PF_VSTORE(high, 1, values);                                                         \
+      for (uint i = sensels.first; i < sensels.end; ++i) row[i] = values[i];              \
+    }                                                                                     \
   }
 #endif
 #define PF_AS_REAL(value) (value)

@@ -77,16 +77,14 @@ PF_INLINE Pillar corrected_block(Block block, Input input) {
 
 #ifdef PF_SENSELS
 
-#define PF_STORE_ROW(store, value, plane) \
-  store(left.value, right.value, (plane) + index, sensels)
+#define PF_STORE_ROW(store, value, plane) store(left.value, right.value, (plane) + index, sensels)
 
 /* Writes the results of one row of sensels, the first of them at `index`. */
 PF_INLINE void store_sensels(SenselSolution left, SenselSolution right, Output output, size_t index,
                              Lanes sensels) {
   PF_STORE_ROW(store_sensel_plane, normal, (global float*)output.planes);
 #ifdef PF_UNCERTAINTY
-  PF_STORE_ROW(store_sensel_plane, deviation,
-               (global float*)(output.planes + output.plane_bytes));
+  PF_STORE_ROW(store_sensel_plane, deviation, (global float*)(output.planes + output.plane_bytes));
 #endif
   PF_STORE_ROW(store_sensel_status, status, output.status);
 }
@@ -265,10 +263,14 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
 #else
   global uchar* const forces = results;
 #endif
-  const Output output = {forces, results, layout.result_bytes, results + layout.status,
+  const Output output = {forces,
+                         results,
+                         layout.result_bytes,
+                         results + layout.status,
                          results + layout.idle,
 #ifdef PF_SENSELS
-                         results + layout.touched, (uint)layout.sensel_rows,
+                         results + layout.touched,
+                         (uint)layout.sensel_rows,
                          (uint)layout.sensel_cols
 #endif
   };

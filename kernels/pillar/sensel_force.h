@@ -12,8 +12,7 @@ static inline Bits sensel_status(Sensel sensel) {
 /* N, from newtons per count; zero where the sensel is inactive or missing, the least force where it
  * is saturated. */
 static inline Real sensel_force(Sensel sensel, Real newtons_per_count) {
-  return (sensel.usable || sensel.saturated) ? sensel.reading * newtons_per_count
-                                             : PF_REAL(0.0);
+  return (sensel.usable || sensel.saturated) ? sensel.reading * newtons_per_count : PF_REAL(0.0);
 }
 
 /* Standard deviation of the force, N, from that of the corrected reading, counts: infinite where

@@ -107,8 +107,7 @@ class SenselsOnDevice : public testing::TestWithParam<Path> {
 };
 
 TEST_P(SenselsOnDevice, BareHaveTheBitsOfTheHost) {
-  expect_host_bits(without_pillars(
-      bare_plan(GetParam().rows, GetParam().cols, GetParam().type)));
+  expect_host_bits(without_pillars(bare_plan(GetParam().rows, GetParam().cols, GetParam().type)));
 }
 
 TEST_P(SenselsOnDevice, CorrectedHaveTheBitsOfTheHost) {

@@ -182,7 +182,7 @@ class Readme(unittest.TestCase):
         with h5py.File(folder / "mine_forces.h5") as forces:
             normal = forces["force/normal"][:].sum(axis=(1, 2))
         self.assertAlmostEqual(normal[:100].max(), 0, delta=0.1)
-        self.assertAlmostEqual(normal[100:].mean(), 25, delta=0.2)  # 50 pillars of 160 counts
+        self.assertAlmostEqual(normal[100:].mean(), 100, delta=0.5)  # 200 sensels of 160 counts
 
 
 if __name__ == "__main__":

@@ -94,12 +94,12 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
     plain.number("--rate", options.rate_hz, "HZ", "Frames per second, if the file has no times",
                  1e-6, 1e9);
   }
-  plain
-      .choice<SkinLayout>("--layout", options.layout,
-                          {{"pillars", SkinLayout::pillars}, {"sensels", SkinLayout::sensels}},
-                          "pillars: one on each 2 x 2 sensels, three components of force; sensels: "
-                          "none, normal force and pressure on each [the file's; of plain data and "
-                          "Tekscan exports sensels]");
+  plain.choice<SkinLayout>(
+      "--layout", options.layout,
+      {{"pillars", SkinLayout::pillars}, {"sensels", SkinLayout::sensels}},
+      "pillars: one on each 2 x 2 sensels, three components of force; sensels: "
+      "none, normal force and pressure on each [the file's; of plain data and "
+      "Tekscan exports sensels]");
   plain.flag("--falling", options.falling,
              "Readings fall under load: they are mirrored, 255 or 65535 less the reading");
   plain.number("--pitch-mm", options.sensel_pitch_mm, "MM",

@@ -53,9 +53,10 @@ class UncertaintyPlanes {
 ///
 /// shear_x (+ right) and shear_y (+ up) are the tangential force on the skin; normal is positive
 /// under pressure. The status byte is described in status.h. Planes that the plan does not enable
-/// are empty; without pillars also shear_x and shear_y, and of the uncertainty all but that of normal.
+/// are empty; without pillars also shear_x and shear_y, and of the uncertainty all but that of
+/// normal.
 struct ForceFieldView {
-  std::uint32_t rows = 0;          ///< of elements
+  std::uint32_t rows = 0;  ///< of elements
   std::uint32_t cols = 0;
   std::span<const float> shear_x;  ///< N
   std::span<const float> shear_y;  ///< N

@@ -32,9 +32,9 @@ struct ForceFileInfo {
       {};  ///< holds contacts, found with these options; HDF5 only
   /// SolverPlan::segment_point; HDF5 only. Unset: not stated.
   std::optional<double> segment_point = {};
-  SensorEffects effects = {};           ///< of the skin's calibration; HDF5 only
-  std::optional<Surface> surface = {};  ///< of the skin; HDF5 only
-  std::optional<ForcePart> part = {};   ///< it holds one part of the frames; HDF5 only
+  SensorEffects effects = {};               ///< of the skin's calibration; HDF5 only
+  std::optional<Surface> surface = {};      ///< of the skin; HDF5 only
+  std::optional<ForcePart> part = {};       ///< it holds one part of the frames; HDF5 only
   SkinLayout layout = SkinLayout::pillars;  ///< without pillars: normal force alone
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };

@@ -35,7 +35,7 @@ struct SkinCalibration {
   std::optional<double> counts_per_newton;
   std::optional<PowerLaw> power_law;     ///< set only with counts_per_newton
   std::optional<SkinLayout> layout;      ///< unset in files of earlier versions
-  bool falling = false;  ///< it is of mirrored readings
+  bool falling = false;                  ///< it is of mirrored readings
   std::vector<CalibrationStep> history;  ///< oldest first
 };
 

@@ -136,12 +136,12 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   };
   const std::optional<hdf5::StoredFrames>* const contact_columns = contacts_.columns.data();
   read_columns(identity_columns(), contact_columns, first_contact, frame.contacts, itself);
-  read_columns(columns_, contact_columns + identity_columns().size(), first_contact,
-               frame.contacts, quantities);
+  read_columns(columns_, contact_columns + identity_columns().size(), first_contact, frame.contacts,
+               quantities);
   read_columns(ended_columns(), ended_.columns.data(), first_ended, frame.ended, itself);
   std::vector<ContactQuantities> patch(1);
-  read_columns(columns_, patch_.columns.data() + std::size(force_format::kPatchRows),
-               index, patch, itself);
+  read_columns(columns_, patch_.columns.data() + std::size(force_format::kPatchRows), index, patch,
+               itself);
   frame.total = patch[0];
   frame.total.has_shear = options_.layout == SkinLayout::pillars;
   for (TrackedContact& contact : frame.contacts) {

@@ -69,13 +69,13 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info,
       columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))) {
   const ContactOptions& options = info.contacts.value();
   const auto& friction = options.friction.given;
-  file_.write(fmt::format(
-      "{},\"version\":1,\"source\":{},"
-      "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
-      "\"reach_mm\":{},\"frames\":[",
-      kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
-      info.element_pitch_mm, options.minimum_pillars,
-      friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
+  file_.write(
+      fmt::format("{},\"version\":1,\"source\":{},"
+                  "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+                  "\"reach_mm\":{},\"frames\":[",
+                  kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
+                  info.element_pitch_mm, options.minimum_pillars,
+                  friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
 }
 
 void JsonSink::append(const SolvedFrame& frame) {

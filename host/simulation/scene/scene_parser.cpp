@@ -190,7 +190,8 @@ void set_size(const TomlSection& section, std::string_view key, PillarCounts cou
   const Range allowed = {1, kMaxPillars};
   const bool fits = 4 * counts.rows * counts.cols <= double{kMaxSkinSensels};
   if (!allowed.contains(counts.rows) || !allowed.contains(counts.cols) || !fits) {
-    section.fail(key, fmt::format("means {} x {} {}", counts.rows, counts.cols, name_of(skin.layout)),
+    section.fail(key,
+                 fmt::format("means {} x {} {}", counts.rows, counts.cols, name_of(skin.layout)),
                  fmt::format("1 to {} each way, {} in all", kMaxPillars, kMaxSkinSensels / 4));
   }
   const std::uint32_t side = skin.has_pillars() ? 2 : 1;

@@ -59,7 +59,8 @@ void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contac
     fmt::format_to(out, R"("force":{{"normal":{}}},"peak_pressure_kpa":{},)", contact.normal_n,
                    contact.peak_pressure_kpa());
   }
-  fmt::format_to(out, R"("{}":{},"centre_mm":{{"x":{},"y":{}}})", contact.has_shear ? "pillars" : "sensels", contact.pillars,
+  fmt::format_to(out, R"("{}":{},"centre_mm":{{"x":{},"y":{}}})",
+                 contact.has_shear ? "pillars" : "sensels", contact.pillars,
                  contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm);
   if (contact.friction) {
     fmt::format_to(std::back_inserter(json), R"(,"friction":{})", *contact.friction);
