@@ -122,7 +122,7 @@ void require_selection(const WeightSelection& selection, const WeightResult& res
         fmt::format("give {} at least, away from the edge and below full scale", kFewestFrames));
   }
   if (selection.places < kFewestPlaces) {
-    throw Error(name, fmt::format("the weight stands at {} places", selection.places),
+    throw Error(name, fmt::format("the weight stands at {}", counted(selection.places, "place")),
                 fmt::format("roll it over the array, or place it at {} at least", kFewestPlaces));
   }
 }
@@ -152,15 +152,16 @@ WeightResponse response_before(const SkinCalibration& before, double reading) {
 }
 
 /// Weighted mean of the counts of V above the threshold for each newton.
-double counts_per_newton(const std::vector<WeighedFrame>& frames, const WeightFit& fit,
-                         const std::vector<double>& copies, double threshold_counts) {
+double counts_per_newton(const WeightFit& fit, double threshold_counts) {
+  const std::span<const WeighedFrame> frames = fit.frames();
+  const WeighedArray& array = fit.array();
   double sum = 0;
   double weights = 0;
   for (std::size_t t = 0; t < frames.size(); ++t) {
     double counts = 0;
     for (const auto& [i, reading] : frames[t].readings) {
       const double load = fit.response().at(std::exp(fit.log_gains()[i]) * reading).load;
-      if (load > threshold_counts) counts += copies[i] * load;
+      if (load > threshold_counts) counts += array.copies[i] * (load + array.zone(i, reading));
     }
     if (!(counts > 0) || fit.weights()[t] == 0) continue;
     sum += fit.weights()[t] * std::log(counts / frames[t].weight_n);
@@ -253,7 +254,7 @@ WeightResult WeightFinder::result() const {
   require_selection(selection, result, name);
   const std::vector<WeighedFrame>& frames = selection.frames;
 
-  WeighedArray array{skin_.rows, skin_.cols, threshold_, {}, copies};
+  WeighedArray array{skin_.rows, skin_.cols, threshold_, {}, copies, after.planes.dead_zone};
   for (std::size_t i = 0; i < skin_.sensels(); ++i) {
     const double gain = after.planes.gain.empty() ? 1 : after.planes.gain[i];
     array.noise.push_back(std::max(gain * after.planes.noise[i], 1e-3 * threshold_ + 1e-9));
@@ -279,8 +280,8 @@ WeightResult WeightFinder::result() const {
     set_power_law(after, PowerLaw{fit.response().exponent, fit.response().reference});
   }
   set_threshold(after, calibration_.threshold_factor.value_or(4));
-  after.counts_per_newton = counts_per_newton(frames, fit, copies, *after.threshold_counts) /
-                            sensel_leak_sum(after.planes.effects);
+  after.counts_per_newton =
+      counts_per_newton(fit, *after.threshold_counts) / sensel_leak_sum(after.planes.effects);
   const WeightDeviations deviations = deviations_of(fit, kWeightSamples);
   summarise_gains(fit, deviations.gains, result);
   result.total_deviation = deviations.total;

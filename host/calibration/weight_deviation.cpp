@@ -46,9 +46,8 @@ class OtherBodies {
       right = std::max(right, i % array_.cols);
     }
     double base = kLeastBase + uniform() * (kMostBase - kLeastBase);
-    const double largest =
-        std::min(static_cast<double>(array_.rows - 1) / std::max(1U, bottom - top),
-                 static_cast<double>(array_.cols - 1) / std::max(1U, right - left));
+    const double largest = std::min((array_.rows - 1.0) / std::max(1U, bottom - top),
+                                    (array_.cols - 1.0) / std::max(1U, right - left));
     base = std::min(base, largest);
     const double row = uniform() * (array_.rows - 1 - base * (bottom - top));
     const double col = uniform() * (array_.cols - 1 - base * (right - left));
@@ -58,10 +57,12 @@ class OtherBodies {
     double sum = 0;
     for (const auto& [i, reading] : frame.readings) {
       if (!(reading > array_.threshold)) continue;
+      const std::uint32_t from_row = i / array_.cols;
+      const std::uint32_t from_col = i % array_.cols;
       const auto at_row =
-          static_cast<std::size_t>(std::lround(row + base * (i / array_.cols - top)));
+          static_cast<std::size_t>(std::lround(row + base * static_cast<double>(from_row - top)));
       const auto at_col =
-          static_cast<std::size_t>(std::lround(col + base * (i % array_.cols - left)));
+          static_cast<std::size_t>(std::lround(col + base * static_cast<double>(from_col - left)));
       const double corrected = std::exp(fit_.log_gains()[i]) * reading;
       const double share = fit_.response().at(corrected).load;
       const double log_reading = std::log(corrected / fit_.response().reference) + log_pressure;

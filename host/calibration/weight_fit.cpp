@@ -108,7 +108,7 @@ void WeightFit::linearise() {
       const auto [load, rise] = response_.at(reading);
       const double copies = array_.copies[i];
       *slope++ = copies * rise;
-      sum += copies * load;
+      sum += copies * (load + array_.zone(i, raw));
       const double sigma = gains[i] * array_.noise[i];
       // The slope of a reading within the noise is that at the noise.
       const bool quiet = std::abs(reading) < sigma;

@@ -49,6 +49,12 @@ struct WeighedArray {
   double threshold = 0;        ///< of a reading, counts
   std::vector<double> noise;   ///< of a reading, counts
   std::vector<double> copies;  ///< 1 + the missing sensels for which a sensel stands
+  std::vector<float> zones;    ///< as Calibration::dead_zone
+
+  /// What a reading above the threshold adds to V.
+  [[nodiscard]] double zone(std::uint32_t sensel, double reading) const {
+    return zones.empty() || !(reading > threshold) ? 0 : zones[sensel];
+  }
 };
 
 /// Maximum a posteriori of the logarithmic gains x, the exponent and the logarithm of the counts

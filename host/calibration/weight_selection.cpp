@@ -118,13 +118,13 @@ class FrameSelector {
   [[nodiscard]] WeightSelection select() const {
     WeightSelection selection;
     std::vector<std::vector<double>> sums(weights_n_.size());
-    for (const auto& contact : all_.contacts)
-      sums[contact.recording].push_back(sum_of(contact, [](std::size_t) { return 1.0; }));
+    for (const auto& contact : all_.contacts) sums[contact.recording].push_back(sum_of(contact));
     std::vector<double> typical;
+    typical.reserve(sums.size());
     for (const auto& each : sums) typical.push_back(each.empty() ? 0 : typical_sum(each));
     std::vector<std::pair<std::size_t, std::size_t>> places;  // recording and sensel
     for (const auto& contact : all_.contacts) {
-      const double sum = sum_of(contact, [](std::size_t) { return 1.0; });
+      const double sum = sum_of(contact);
       const double relative = sum / typical[contact.recording];
       if (relative < kLeastSum || relative > kMostSum) {
         ++selection.apart;
@@ -156,6 +156,10 @@ class FrameSelector {
       }
     }
     return sum;
+  }
+
+  [[nodiscard]] double sum_of(const WeightFinder::Contact& contact) const {
+    return sum_of(contact, [](std::size_t) { return 1.0; });
   }
 
   [[nodiscard]] double edge_share(const WeightFinder::Contact& contact, double sum) const {

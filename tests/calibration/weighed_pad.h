@@ -40,6 +40,7 @@ class WeighedPad {
     double power = 0.8;
     double noise = 0.7;
     double counts_at_newton = 600;
+    double dead_zone = 0;  ///< counts
   };
 
   WeighedPad(std::uint64_t seed, const Model& model) : model_(model), random_(seed) {
@@ -103,8 +104,9 @@ class WeighedPad {
     const auto readings = frame.readings<std::uint8_t>();
     for (std::size_t i = 0; i < readings.size(); ++i) {
       const double load = sensitivity_[i] * forces[i];
-      const double counts = tare_[i] + model_.counts_at_newton * std::pow(load, model_.power) +
-                            model_.noise * normal();
+      const double response = model_.counts_at_newton * std::pow(load, model_.power);
+      const double counts =
+          tare_[i] + std::max(0.0, response - model_.dead_zone) + model_.noise * normal();
       readings[i] = static_cast<std::uint8_t>(std::clamp(std::round(counts), 0.0, 255.0));
     }
     return frame;

@@ -238,6 +238,38 @@ TEST(WeightCalibration, TwoWeightsDetermineTheResponse) {
   EXPECT_NEAR(result.exponent, 1.25, 0.02);
 }
 
+TEST(WeightCalibration, AKnownCurveStays) {
+  WeighedPad pad(11, pad_model(2.5));
+  SkinCalibration before = pad.tared();
+  ResponseCurve& curve = before.planes.effects.curve;
+  for (double reading = 2; reading < 260; reading *= 1.3) {
+    curve.readings.push_back(reading);
+    curve.loads.push_back(std::pow(reading, 1.25));
+  }
+  set_threshold(before, *before.threshold_factor);
+  const WeightResult result = calibrate(pad, before, round_body(2.5), 0.2, 1500);
+  EXPECT_EQ(result.calibration.planes.effects.curve.loads, curve.loads);
+  EXPECT_FALSE(result.calibration.power_law);
+  // V = reading^1.25 = counts_at_newton^1.25 · force.
+  const double k = std::pow(pad_model(2.5).counts_at_newton, 1.25);
+  EXPECT_NEAR(*result.calibration.counts_per_newton / k, 1, 0.04);
+  EXPECT_LT(result.misfit, 0.003);
+}
+
+TEST(WeightCalibration, KnownDeadZonesCount) {
+  WeighedPad::Model model = pad_model(2.5);
+  model.power = 1;
+  model.spread = 0.1;
+  model.counts_at_newton = 120 / (1.7 * kWeightN / (3.14 * 2.5 * 2.5));
+  model.dead_zone = 6;
+  WeighedPad pad(12, model);
+  SkinCalibration before = pad.tared();
+  before.planes.dead_zone.assign(before.planes.tare.size(), 6);
+  const WeightResult result = calibrate(pad, before, round_body(2.5), 0.2, 1500);
+  EXPECT_NEAR(result.exponent, 1, 0.03);
+  EXPECT_NEAR(*result.calibration.counts_per_newton / model.counts_at_newton, 1, 0.03);
+}
+
 TEST(WeightCalibration, WhatCannotWorkIsRefused) {
   WeighedPad pad(10, pad_model(2.5));
   const SkinCalibration before = pad.tared();
