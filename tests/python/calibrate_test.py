@@ -88,7 +88,8 @@ class Steps(unittest.TestCase):
             pressure = np.maximum(0, 1 - far / (16 + place % 5 * 4))
             force_n = 25 * pressure / pressure.sum()
             frames.append(noisy(self.tare + K * force_n * self.gain, 5))
-        step = pf.calibrate.weight([(np.concatenate(frames), 25.0)], self.tared.calibration)
+        tared = pf.calibrate.tare(self.unloaded).calibration  # of bare sensels
+        step = pf.calibrate.weight([(np.concatenate(frames), 25.0)], tared)
         self.assertAlmostEqual(step.facts["counts_per_newton"] / K, 1, delta=0.03)
         self.assertAlmostEqual(step.facts["exponent"], 1, delta=0.05)
         self.assertIn([0, 0], step.facts["unvisited_sensels"])
