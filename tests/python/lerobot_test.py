@@ -1,6 +1,7 @@
 """Forces for LeRobot: the columns of its datasets, and the plugin that shows a live skin as a camera."""
 
 import importlib.metadata
+import importlib.util
 import os
 import pathlib
 import shutil
@@ -46,16 +47,20 @@ class Pattern(Sender):
 
 
 def setUpModule():
-    """Installs the plugin with pip and imports it as LeRobot does."""
+    """Installs the plugin with pip, where there is pip, and imports it as LeRobot does."""
     shutil.rmtree(WORK, ignore_errors=True)
     # A copy: pip leaves files beside the sources.
     shutil.copytree(SOURCE / "python/lerobot_camera_pillarfield", WORK / "source")
-    subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--no-index", "--no-deps",
-                    "--no-build-isolation", "--root-user-action=ignore", "--target", WORK / "site",
-                    WORK / "source"], check=True)
+    name = "lerobot_camera_pillarfield"
+    if all(importlib.util.find_spec(needed) for needed in ("pip", "setuptools", "wheel")):
+        subprocess.run([sys.executable, "-m", "pip", "install", "-q", "--no-index", "--no-deps",
+                        "--no-build-isolation", "--root-user-action=ignore", "--target", WORK / "site",
+                        WORK / "source"], check=True)
+        (project,) = importlib.metadata.distributions(path=[str(WORK / "site")])
+        name = project.metadata["Name"].replace("-", "_")  # Setuptools before 69.0.3 makes hyphens.
+    else:
+        shutil.copytree(WORK / "source" / name, WORK / "site" / name)
     sys.path.insert(0, str(WORK / "site"))
-    (project,) = importlib.metadata.distributions(path=[str(WORK / "site")])
-    name = project.metadata["Name"].replace("-", "_")  # Setuptools before 69.0.3 makes hyphens.
     assert name.startswith("lerobot_camera_"), name
     importlib.import_module(name)
 
