@@ -99,10 +99,11 @@ std::unique_ptr<ByteParser> packet_parser(const AddressOptions& options,
 struct Protocol {
   const char* name;
   std::unique_ptr<ByteParser> (*parser)(const AddressOptions& options, const std::string& source);
+  std::optional<SkinLayout> layout = {};  ///< of its boards; unset: any
 };
 
 constexpr std::array kProtocols = {Protocol{"packets", packet_parser},
-                                   Protocol{"flexitac", flexitac_parser}};
+                                   Protocol{"flexitac", flexitac_parser, SkinLayout::sensels}};
 
 const Protocol& protocol_of(const AddressOptions& options, const std::string& source) {
   const auto given = options.find("protocol");
@@ -125,7 +126,8 @@ SerialAddress serial_address(const std::string& text) {
   const std::size_t question = std::min(text.find('?'), text.size());
   const AddressOptions options =
       options_of(std::string_view(text).substr(std::min(question + 1, text.size())), source);
-  return {text.substr(0, question), protocol_of(options, source).parser(options, source)};
+  const Protocol& protocol = protocol_of(options, source);
+  return {text.substr(0, question), protocol.parser(options, source), protocol.layout};
 }
 
 }  // namespace pillarfield

@@ -49,6 +49,7 @@ class FlexitacTest(unittest.TestCase):
         summary = json.loads(stream.communicate(timeout=600)[0].splitlines()[-1])["summary"]
         self.assertEqual(stream.returncode, 0)
         with h5py.File(recording) as file:
+            self.assertEqual(file["skin"].attrs["layout"], b"sensels")
             frames = file["frames/raw"][()]
         self.assertEqual(len(frames), summary["frames"])
         self.assertEqual(frames.dtype, numpy.uint8)
