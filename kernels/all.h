@@ -1,6 +1,6 @@
 /* The ordered list of the kernel files. C++ includes it in a namespace, once per precision
- * (host/solve/pillar_maths.h); CMake embeds its files as one OpenCL C program, which clang lints.
- */
+ * (host/solve/pillar_maths.h), and in a struct for lanes of the host (host/lanes/lane_program.h);
+ * CMake embeds its files as one OpenCL C program, which clang lints. */
 /* clang-format off */
 #include "portable.h"
 #include "pillar/status.h"
@@ -30,8 +30,12 @@
 #endif
 #include "frame/stage_table.h"
 #include "frame/stages.h"
-#ifndef __cplusplus
+#if !defined(__cplusplus) || defined(PF_LANES)
+#ifdef __cplusplus
+#include "frame/load_store_lanes.h"
+#else
 #include "frame/load_store.h"
+#endif
 #include "frame/wire_vectors.h"
 #include "frame/calibration_planes.h"
 #include "frame/idle.h"

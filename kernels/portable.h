@@ -1,14 +1,17 @@
 /* The only file that depends on the language, the precision and the number of lanes.
  *
- * It defines types, macros and conversions with which kernels/pillar compiles four ways:
+ * It defines types, macros and conversions with which kernels/pillar compiles in four ways, and
+ * kernels/frame in the first and the last:
  *
- *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
- *   Real     float, or floatN of lanes  floatN         float                  double
- *   Counts   as Real                    shortN         float                  double
- *   Fraction as Real                    short          float                  double
- *   Mask     int, or intN               shortN         bool                   bool
- *   Bits     char, or charN             charN          int                    int
- *   Word     uint, or uintN             uintN          std::uint32_t          none
+ *            OpenCL C                   and PF_WHOLE   C++      PF_PRECISION 64   C++ with PF_LANES
+ *   Real     float, or floatN of lanes  floatN         float    double            vectors of float
+ *   Counts   as Real                    shortN         float    double            as Real
+ *   Fraction as Real                    short          float    double            as Real
+ *   Mask     int, or intN               shortN         bool     bool              vectors of int
+ *   Bits     char, or charN             charN          int      int               as Mask
+ *   Word     uint, or uintN             uintN          uint32   none              vectors of uint32
+ *
+ * The last are the vectors of g++ and clang++; with PF_WHOLE Counts and Mask are vectors of short.
  *
  *   PF_REAL(x)    the constant x in every lane, of Real's own precision
  *   PF_INFINITY   infinity in every lane, of Real
@@ -34,8 +37,9 @@
  * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, a Fraction
  * is the number n of 1 - 1 / 2^n, and only pillar_model.h, sensel.h and direct_solve.h are used.
  *
- * C++ includes it inside a namespace, once per precision; it therefore has no guard. In OpenCL C
- * the program's first lines define PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE.
+ * C++ includes it inside a namespace, once per precision, or with PF_LANES inside a struct whose
+ * members are the numbers of a plan; it therefore has no guard. In OpenCL C the program's first
+ * lines define PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE.
  *
  * kernels/pillar uses only expressions with one meaning in all four: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts;
@@ -128,6 +132,92 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
 #define PF_WORD(x) ((Word)(x##u))
+
+#elif defined(PF_LANES) /* C++ with vectors, members of a struct */
+
+#define PF_INLINE inline __attribute__((always_inline))
+#define PF_UNROLL
+#undef PF_CONSTANT
+#undef PF_REAL
+#undef PF_INFINITY
+#undef PF_COUNTS
+#undef PF_BITS
+#undef PF_WORD
+#define PF_LANES_OF(type) __attribute__((vector_size(sizeof(type) * PF_LANES))) type
+typedef PF_LANES_OF(float) Real;
+typedef PF_LANES_OF(uint) Word;
+#ifdef PF_WHOLE
+typedef PF_LANES_OF(short) Mask;
+typedef Mask Counts;
+typedef short Fraction;
+#else
+typedef PF_LANES_OF(int) Mask;
+typedef Real Counts;
+typedef Real Fraction;
+#endif
+typedef Mask Bits;
+/* A number in every lane; a vector stays. */
+template <class To, class From>
+PF_INLINE To in_lanes(From x) {
+  if constexpr (std::is_arithmetic_v<To> || std::is_same_v<From, To>) {
+    return static_cast<To>(x);
+  } else {
+    return static_cast<std::remove_cvref_t<decltype(To{}[0])>>(x) - To{};
+  }
+}
+#define PF_CONSTANT(type, x) in_lanes<type>(x)
+#define PF_REAL(x) in_lanes<Real>(x##f)
+#define PF_INFINITY in_lanes<Real>(__builtin_inff())
+#define PF_COUNTS(x) in_lanes<Counts>(x)
+#define PF_BITS(x) in_lanes<Bits>(x)
+#define PF_WORD(x) in_lanes<Word>(x##u)
+PF_INLINE Bits bits_of(Mask mask) { return mask; }
+PF_INLINE Mask mask_of(Bits bits) { return bits != 0; }
+PF_INLINE Word word_of(Real value) { return (Word)value; }
+PF_INLINE Real real_of_word(Word word) { return (Real)word; }
+PF_INLINE Real real_of_count(Word count) { return __builtin_convertvector(count, Real); }
+#ifdef PF_WHOLE
+PF_INLINE Counts halved(Counts counts) { return counts >> 1; }
+PF_INLINE Counts fraction_of(Counts counts, Fraction fraction) {
+  return counts - (counts >> fraction);
+}
+PF_INLINE Real real_of(Counts counts) { return __builtin_convertvector(counts, Real); }
+#else
+PF_INLINE Counts halved(Counts counts) { return 0.5f * counts; }
+PF_INLINE Counts fraction_of(Counts counts, Fraction fraction) { return fraction * counts; }
+PF_INLINE Real real_of(Counts counts) { return counts; }
+#endif
+/* True if any lane has any bit set. */
+template <class Vector>
+PF_INLINE bool any_bits(Vector bits) {
+  ulong parts[(sizeof(Vector) + sizeof(ulong) - 1) / sizeof(ulong)] = {};
+  __builtin_memcpy(parts, &bits, sizeof(Vector));
+  ulong all = 0;
+  for (const ulong part : parts) all |= part;
+  return all != 0;
+}
+PF_INLINE bool any_lane(Mask mask) { return any_bits(mask); }
+PF_INLINE float fabs(float x) { return __builtin_fabsf(x); }
+PF_INLINE Real fabs(Real x) { return real_of_word(word_of(x) & PF_WORD(0x7fffffff)); }
+PF_INLINE Real copysign(Real x, Real y) {
+  return real_of_word((word_of(x) & PF_WORD(0x7fffffff)) | (word_of(y) & PF_WORD(0x80000000)));
+}
+#define PF_DEFINE_BY_LANES(name, function)                                \
+  PF_INLINE Real name(Real x) {                                           \
+    for (int lane = 0; lane < PF_LANES; ++lane) x[lane] = function(x[lane]); \
+    return x;                                                             \
+  }
+PF_DEFINE_BY_LANES(sqrt, __builtin_sqrtf)
+PF_DEFINE_BY_LANES(floor, __builtin_floorf)
+PF_DEFINE_BY_LANES(sin, __builtin_sinf)
+PF_DEFINE_BY_LANES(cos, __builtin_cosf)
+PF_DEFINE_BY_LANES(asin, __builtin_asinf)
+PF_DEFINE_BY_LANES(atan, __builtin_atanf)
+#undef PF_DEFINE_BY_LANES
+PF_INLINE Real atan2(Real y, Real x) {
+  for (int lane = 0; lane < PF_LANES; ++lane) y[lane] = __builtin_atan2f(y[lane], x[lane]);
+  return y;
+}
 
 #else /* C++ */
 

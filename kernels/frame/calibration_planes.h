@@ -1,5 +1,11 @@
 /* Calibration planes in memory (layout.h). The host defines the index of each plane that a stage
  * reads: PF_TARE_PLANE and so on. */
+#ifdef PF_NOISE
+#define PF_HAS_NOISE_PLANE 1
+#elif !defined(PF_HAS_NOISE_PLANE)
+#define PF_HAS_NOISE_PLANE 0
+#define PF_NOISE_PLANE 0
+#endif
 
 typedef struct {
   global const uchar* planes;
@@ -34,39 +40,52 @@ PF_INLINE size_t offset_of(Calibration calibration, Place place) {
 /* Loads the corrections of one row of sensels under PF_LANES pillars. */
 PF_INLINE CorrectionPair load_corrections(Calibration calibration, Place place) {
   Correction none;
-  none.tare = (Counts)(0);
-  none.gain = (Real)(0.0f);
-  none.dead_zone = (Counts)(0);
-  none.good = (Counts)(0);
+  none.tare = PF_CONSTANT(Counts, 0);
+  none.gain = PF_CONSTANT(Real, 0.0f);
+  none.dead_zone = PF_CONSTANT(Counts, 0);
+  none.good = PF_CONSTANT(Counts, 0);
+#ifdef PF_WIRES
+  none.wires.row = none.wires.own = none.wires.column = PF_CONSTANT(Real, 0.0f);
+#endif
   CorrectionPair pair = {none, none};
 #ifdef PF_WIRES
-  const WiresPair wires = load_wires(calibration.wires, place.row, place.col);
-  pair.left.wires = wires.left;
-  pair.right.wires = wires.right;
+  if (PF_NAMED(wires)) {
+    const WiresPair wires = load_wires(calibration.wires, place.row, place.col);
+    pair.left.wires = wires.left;
+    pair.right.wires = wires.right;
+  }
 #endif
 #ifdef PF_TARE
-  const RealPair tares =
-      load_plane(PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset_of(calibration, place));
-  pair.left.tare = tares.left;
-  pair.right.tare = tares.right;
+  if (PF_NAMED(tare)) {
+    const RealPair tares =
+        load_plane(PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset_of(calibration, place));
+    pair.left.tare = tares.left;
+    pair.right.tare = tares.right;
+  }
 #endif
 #ifdef PF_GAIN
-  const RealPair gains =
-      load_plane(PF_PLANE_OF(calibration, float, PF_GAIN_PLANE) + offset_of(calibration, place));
-  pair.left.gain = gains.left;
-  pair.right.gain = gains.right;
+  if (PF_NAMED(gain)) {
+    const RealPair gains =
+        load_plane(PF_PLANE_OF(calibration, float, PF_GAIN_PLANE) + offset_of(calibration, place));
+    pair.left.gain = gains.left;
+    pair.right.gain = gains.right;
+  }
 #endif
 #ifdef PF_DEAD_ZONE
-  const RealPair zones = load_plane(PF_PLANE_OF(calibration, float, PF_DEAD_ZONE_PLANE) +
-                                    offset_of(calibration, place));
-  pair.left.dead_zone = zones.left;
-  pair.right.dead_zone = zones.right;
+  if (PF_NAMED(dead_zone)) {
+    const RealPair zones = load_plane(PF_PLANE_OF(calibration, float, PF_DEAD_ZONE_PLANE) +
+                                      offset_of(calibration, place));
+    pair.left.dead_zone = zones.left;
+    pair.right.dead_zone = zones.right;
+  }
 #endif
 #ifdef PF_MASK
-  const RealPair good =
-      load_mask(PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset_of(calibration, place));
-  pair.left.good = good.left;
-  pair.right.good = good.right;
+  if (PF_NAMED(mask)) {
+    const RealPair good =
+        load_mask(PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset_of(calibration, place));
+    pair.left.good = good.left;
+    pair.right.good = good.right;
+  }
 #endif
   return pair;
 }
@@ -102,10 +121,10 @@ PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibrati
   const CountsPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, place);
   RealPair noise = {PF_VALUE(Real, noise), PF_VALUE(Real, noise)};
-#ifdef PF_NOISE
-  noise =
-      load_plane(PF_PLANE_OF(calibration, float, PF_NOISE_PLANE) + offset_of(calibration, place));
-#endif
+  if (PF_HAS_NOISE_PLANE) {
+    noise =
+        load_plane(PF_PLANE_OF(calibration, float, PF_NOISE_PLANE) + offset_of(calibration, place));
+  }
   noise.left = corrected_noise(noise.left, readings.left, at.left, calibration.stages);
   noise.right = corrected_noise(noise.right, readings.right, at.right, calibration.stages);
   return noise;
@@ -120,20 +139,18 @@ PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibrati
 PF_INLINE void prefetch_planes(Calibration calibration, size_t offset) {
   for (uint row = 0; row < 2; ++row) {
 #ifdef PF_TARE
-    PF_PREFETCH_PLANE(float, PF_TARE_PLANE);
+    if (PF_NAMED(tare)) PF_PREFETCH_PLANE(float, PF_TARE_PLANE);
 #endif
 #ifdef PF_GAIN
-    PF_PREFETCH_PLANE(float, PF_GAIN_PLANE);
+    if (PF_NAMED(gain)) PF_PREFETCH_PLANE(float, PF_GAIN_PLANE);
 #endif
 #ifdef PF_DEAD_ZONE
-    PF_PREFETCH_PLANE(float, PF_DEAD_ZONE_PLANE);
+    if (PF_NAMED(dead_zone)) PF_PREFETCH_PLANE(float, PF_DEAD_ZONE_PLANE);
 #endif
 #ifdef PF_MASK
-    PF_PREFETCH_PLANE(uchar, PF_MASK_PLANE);
+    if (PF_NAMED(mask)) PF_PREFETCH_PLANE(uchar, PF_MASK_PLANE);
 #endif
-#ifdef PF_NOISE
-    PF_PREFETCH_PLANE(float, PF_NOISE_PLANE);
-#endif
+    if (PF_HAS_NOISE_PLANE) PF_PREFETCH_PLANE(float, PF_NOISE_PLANE);
   }
 }
 

@@ -21,7 +21,7 @@ PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
  * outside. */
 PF_INLINE Real load_near(global const float* plane, Layout layout, uint row, int down, int col) {
   const uint at = row + (uint)down;
-  if (at >= (uint)layout.rows) return (Real)(0.0f);
+  if (at >= (uint)layout.rows) return PF_CONSTANT(Real, 0.0f);
   return load_pillars(plane + (size_t)at * layout.cols, col, (uint)layout.cols);
 }
 
@@ -129,7 +129,7 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
         global const float* const solved =
             (global const float*)(results + layout.forces + plane * layout.result_bytes);
         global float* const to = (global float*)(results + plane * layout.result_bytes);
-        const Real force = loaded ? unleaked(solved, layout, row, (int)col) : (Real)(0.0f);
+        const Real force = loaded ? unleaked(solved, layout, row, (int)col) : PF_CONSTANT(Real, 0.0f);
         store_plane(force, to + (size_t)row * cols + col, block.lanes);
       }
     }
@@ -204,7 +204,7 @@ PF_INLINE ShearRatio load_ratio(global uchar* results, Layout layout, uint first
 PF_INLINE RatioSum opposite_parts(global uchar* results, Layout layout, uint first, ShearRatio own,
                                   uint row, int col, int down, int right) {
   global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
-  const Real distance = (Real)((float)(down * down + right * right));
+  const Real distance = PF_CONSTANT(Real, (float)(down * down + right * right));
   const RatioSum after = ratio_part(own, load_ratio(results, layout, first, row, down, col + right),
                                     load_near(normal, layout, row, down, col + right), distance);
   const RatioSum before =
@@ -237,10 +237,14 @@ PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uin
   plane += layout.result_bytes;
   PF_FORCE_PLANES(PF_LOAD)
 #ifdef PF_ANGLES
-  PF_ANGLE_PLANES(PF_LOAD)
+  if (PF_NAMED(angles)) {
+    PF_ANGLE_PLANES(PF_LOAD)
+  }
 #endif
 #ifdef PF_UNCERTAINTY
-  PF_UNCERTAINTY_PLANES(PF_LOAD)
+  if (PF_NAMED(uncertainty)) {
+    PF_UNCERTAINTY_PLANES(PF_LOAD)
+  }
 #endif
 #undef PF_LOAD
   solution.status =
@@ -255,7 +259,7 @@ PF_INLINE void store_corrected(Solution solution, Output output, size_t index, L
               lanes);
   store_derived(solution, output, index, lanes);
 #ifdef PF_LEAN
-  store_status(solution.status, output.status + index, lanes);
+  if (PF_NAMED(lean)) store_status(solution.status, output.status + index, lanes);
 #endif
 }
 
@@ -277,12 +281,13 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
       const OwnBlock block = own_block(own, at);
       const uint col = block.col;
       if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
+      const Real none = PF_CONSTANT(Real, 0.0f);
+      ShearRatios ratios = {{none, none}, {none, none}};
 #ifdef PF_LEAN
-      const ShearRatios ratios = {mean_of_ratios(results, layout, kRatioX, row, (int)col),
-                                  mean_of_ratios(results, layout, kRatioY, row, (int)col)};
-#else
-      const Real none = (Real)(0.0f);
-      const ShearRatios ratios = {{none, none}, {none, none}};
+      if (PF_NAMED(lean)) {
+        ratios.x = mean_of_ratios(results, layout, kRatioX, row, (int)col);
+        ratios.y = mean_of_ratios(results, layout, kRatioY, row, (int)col);
+      }
 #endif
       const Solution solution =
           correct_solution(load_solution(results, layout, row, col), ratios, planes.stages);

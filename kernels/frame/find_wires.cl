@@ -9,13 +9,13 @@
 #ifdef PF_RANGE
 #define PF_IN_RANGE(type, reading) (fabs(reading) <= PF_VALUE(type, largest))
 #else
-#define PF_IN_RANGE(type, reading) ((type)(0.0f) == (type)(0.0f))
+#define PF_IN_RANGE(type, reading) (PF_CONSTANT(type, 0.0f) == PF_CONSTANT(type, 0.0f))
 #endif
 /* Readings less their offset for the sums; missing sensels count as zero. */
 #define PF_DEFINE_SUMMED(name, type)                                    \
   PF_INLINE type name(type reading, type offset, type good) {           \
-    const type none = (type)(0.0f);                                     \
-    const type summed = good == (type)(1.0f) ? reading - offset : none; \
+    const type none = PF_CONSTANT(type, 0.0f);                          \
+    const type summed = good == PF_CONSTANT(type, 1.0f) ? reading - offset : none; \
     return PF_IN_RANGE(type, reading) ? summed : none;                  \
   }
 PF_DEFINE_SUMMED(summed_reading, float)
@@ -27,10 +27,11 @@ PF_DEFINE_SUMMED(summed_readings, Real)
 PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
                              uint cols, float* readings) {
   uint col = 0;
-#if PF_AFTER_TARE && defined(PF_TARE)
+#ifdef PF_TARE
   global const float* const tares = PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset;
-#define PF_OFFSETS_AT(col) PF_LOAD_WHOLE(float, tares + (col))
-#define PF_OFFSET_AT(col) tares[col]
+#define PF_HAS_OFFSETS (PF_AFTER_TARE && PF_NAMED(tare))
+#define PF_OFFSETS_AT(col) (PF_HAS_OFFSETS ? PF_LOAD_WHOLE(float, tares + (col)) : PF_REAL(0.0))
+#define PF_OFFSET_AT(col) (PF_HAS_OFFSETS ? tares[col] : 0.0f)
 #else
 #define PF_OFFSETS_AT(col) PF_REAL(0.0)
 #define PF_OFFSET_AT(col) 0.0f
@@ -40,9 +41,9 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
 #endif
 #if PF_LANES > 1
   for (; col + PF_LANES <= cols; col += PF_LANES) {
-    Real valid = (Real)(1.0f);
+    Real valid = PF_CONSTANT(Real, 1.0f);
 #ifdef PF_MASK
-    valid = PF_TO_REAL(PF_LOAD_WHOLE(uchar, good + col));
+    if (PF_NAMED(mask)) valid = PF_TO_REAL(PF_LOAD_WHOLE(uchar, good + col));
 #endif
     const Real reading = PF_TO_REAL(PF_LOAD_WHOLE(PF_SENSEL, raw + col));
     PF_STORE_WIRES(summed_readings(reading, PF_OFFSETS_AT(col), valid), readings + col);
@@ -51,17 +52,22 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
   for (; col < cols; ++col) {
     float valid = 1.0f;
 #ifdef PF_MASK
-    valid = (float)good[col];
+    if (PF_NAMED(mask)) valid = (float)good[col];
 #endif
     readings[col] = summed_reading((float)raw[col], PF_OFFSET_AT(col), valid);
   }
 }
 
+#ifndef PF_MOST_TILE_ROWS
+#define PF_MOST_TILE_ROWS PF_TILE_ROWS
+#define PF_MOST_TILE_PARTS PF_TILE_PARTS
+#endif
+
 /* A tile's wires (RowWires, and the gains of its columns); rows and columns are padded. */
 typedef struct {
-  float row[PF_TILE_ROWS + PF_LANES];
-  float driven[PF_TILE_ROWS + PF_LANES];
-  float column[PF_TILE_PARTS];
+  float row[PF_MOST_TILE_ROWS + PF_LANES];
+  float driven[PF_MOST_TILE_ROWS + PF_LANES];
+  float column[PF_MOST_TILE_PARTS];
 } TileWires;
 
 PF_INLINE void fill_floats(float* values, uint count, float value) {
@@ -74,8 +80,8 @@ PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, 
                           Tile tile, TileWires* wires) {
   const WireModel model = {(float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT),
                            (float)(PF_IDLE_PER_COUNT)};
-  float readings[PF_LANES * PF_TILE_PARTS];
-  float losses[PF_TILE_PARTS];
+  float readings[PF_LANES * PF_MOST_TILE_PARTS];
+  float losses[PF_MOST_TILE_PARTS];
   float loads[PF_LANES];
   float squares[PF_LANES];
   if (tile.cols < PF_TILE_PARTS) fill_floats(readings, PF_LANES * PF_TILE_PARTS, 0.0f);

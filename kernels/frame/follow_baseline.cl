@@ -16,14 +16,7 @@ PF_INLINE Bits status_around(global const uchar* status, uint row, uint col, uin
 }
 
 /* The columns of PF_LANES pillars from `col` on. */
-PF_INLINE Real columns_from(uint col) {
-#if PF_LANES == 1
-  return (Real)col;
-#else
-  const float lanes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  return (Real)col + PF_VLOAD(0, lanes);
-#endif
-}
+PF_INLINE Real columns_from(uint col) { return PF_CONSTANT(Real, (float)col) + PF_LANE_NUMBERS; }
 
 /* Updates the tares and activation thresholds of one row of sensels under PF_LANES pillars; writes
  * those of `lanes`. */
@@ -63,11 +56,11 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw,
       const Lanes lanes = {place - col, PF_LANES};
       const Bits around = status_around(status, row, col, rows, cols);
       const Mask untouched = !mask_of(around & PF_BITS(PF_STATUS_PRESSED));
-      const Real shift = drift_at(drift, columns_from(col), (Real)row);
+      const Real shift = drift_at(drift, columns_from(col), PF_CONSTANT(Real, (float)row));
       for (uint side = 0; side < 2; ++side) {
         const Place place = {2 * row + side, 2 * col};
         follow_row(raw + (2 * row + side) * layout.row_stride + 2 * col, planes, place, untouched,
-                   (Real)(rate), shift, lanes);
+                   PF_CONSTANT(Real, rate), shift, lanes);
       }
     }
   }

@@ -20,7 +20,7 @@ PF_INLINE global const PF_SENSEL* activation_thresholds(Calibration calibration)
  * frame. */
 #define PF_IDLE 1
 #ifdef PF_PILLAR_LEAK
-#define PF_NEWLY_IDLE 3
+#define PF_NEWLY_IDLE (PF_NAMED(pillar_leak) ? 3 : PF_IDLE)
 #else
 #define PF_NEWLY_IDLE PF_IDLE
 #endif
@@ -30,17 +30,18 @@ PF_INLINE global const PF_SENSEL* activation_thresholds(Calibration calibration)
 #if defined(PF_BASELINE) || defined(PF_BEND)
 /* Activation threshold of sensels with these tares and corrections, raw counts. */
 PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
-  Real gain = (Real)(1.0f);
+  Real gain = PF_CONSTANT(Real, 1.0f);
 #ifdef PF_GAIN
-  gain = at.gain;
+  if (PF_NAMED(gain)) gain = at.gain;
 #endif
-  const Real lowest = (Real)(PF_ACTIVATION_LOWEST);
-  const Real highest = (Real)(PF_ACTIVATION_HIGHEST);
-  const Real threshold = activation_threshold(tare, gain, (Real)(PF_ACTIVATION_CUT),
-                                              (Real)(PF_ACTIVATION_STEP), lowest);
+  const Real lowest = PF_CONSTANT(Real, PF_ACTIVATION_LOWEST);
+  const Real highest = PF_CONSTANT(Real, PF_ACTIVATION_HIGHEST);
+  const Real threshold = activation_threshold(tare, gain, PF_CONSTANT(Real, PF_ACTIVATION_CUT),
+                                              PF_CONSTANT(Real, PF_ACTIVATION_STEP), lowest);
   const Real bounded = threshold < lowest ? lowest : (threshold < highest ? threshold : highest);
 #ifdef PF_MASK
-  return at.good != (Real)(1.0f) ? (Real)(PF_ACTIVATION_NEVER) : bounded;
+  if (!PF_NAMED(mask)) return bounded;
+  return at.good != PF_CONSTANT(Real, 1.0f) ? PF_CONSTANT(Real, PF_ACTIVATION_NEVER) : bounded;
 #else
   return bounded;
 #endif
@@ -49,7 +50,7 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
 
 #ifdef PF_RANGE
 #define PF_IS_ACTIVE(reading, threshold) \
-  (!((reading) < (threshold)) || (reading) < (PF_SENSEL)(-(PF_VALUE_largest)))
+  (!((reading) < (threshold)) || (reading) < (PF_SENSEL)(-PF_NUMBER(largest)))
 #else
 #define PF_IS_ACTIVE(reading, threshold) ((reading) >= (threshold))
 #endif
@@ -77,10 +78,10 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
   global const PF_SENSEL* const below_raw = raw + row_stride;
   const PF_LANE_TYPE(PF_SENSEL) above = max(PF_READING(raw, 0), PF_READING(raw, 1));
   const PF_LANE_TYPE(PF_SENSEL) below = max(PF_READING(below_raw, 0), PF_READING(below_raw, 1));
-  return !any_bits(PF_JOIN(convert_char, PF_LANES)(
-      PF_IS_ACTIVE(max(above, below), (PF_LANE_TYPE(PF_SENSEL))(PF_THRESHOLD_AT(0, 0)))));
+  return !PF_ANY((
+      PF_IS_ACTIVE(max(above, below), PF_CONSTANT(PF_LANE_TYPE(PF_SENSEL), PF_THRESHOLD_AT(0, 0)))));
 #else
-  return !any_bits(PF_JOIN(convert_char, PF_LANES)(PF_ACTIVE(0, 0) | PF_ACTIVE(0, 1) |
+  return !PF_ANY((PF_ACTIVE(0, 0) | PF_ACTIVE(0, 1) |
                                                    PF_ACTIVE(1, 0) | PF_ACTIVE(1, 1)));
 #endif
 }

@@ -7,25 +7,27 @@
 
 /* Bound of an idle tile; of a row whose readout is saturated: no reading is idle behind it. */
 #define PF_IDLE_TILE 0.0f
-#define PF_SATURATED_ROW INFINITY
+#define PF_SATURATED_ROW (float)(INFINITY)
 #define PF_FLOAT(x) x##f
 #define PF_ROWS_AHEAD 64 /* that are prefetched */
 /* The largest load of an idle sensel: with PF_WIRES_AFTER_TARE the wires act on what it reads above
  * its tare, which the activation threshold bounds (PF_IDLE_LOAD). */
-#ifdef PF_WIRES_AFTER_TARE
-#define PF_LARGEST_LOAD(range) (float)(PF_IDLE_LOAD)
-#define PF_LOAD_OF(counts) (Real)(PF_IDLE_LOAD)
-#else
-#define PF_LARGEST_LOAD(range) range.largest
-#define PF_LOAD_OF(counts) fabs(counts)
+#if !defined(PF_WIRES_AFTER_TARE) && !defined(__cplusplus)
+#define PF_IDLE_LOAD 0.0f
 #endif
+#define PF_LARGEST_LOAD(range) (PF_AFTER_TARE ? (float)(PF_IDLE_LOAD) : (range).largest)
+#define PF_LOAD_OF(counts) (PF_AFTER_TARE ? PF_CONSTANT(Real, PF_IDLE_LOAD) : fabs(counts))
 /* Factor above 1 that covers the rounding of a bound. */
 #define PF_BOUND_RESERVE 1.00001f
 
 /* Pillars do not share tiles, and no other stage needs the gains of idle sensels. */
-#if PF_TILE_ROWS % 2 == 0 && PF_TILE_COLS % 2 == 0 && !defined(PF_BASELINE)
-#define PF_SKIP_IDLE_TILES
+#ifdef PF_BASELINE
+#define PF_READS_ALL_WIRES PF_NAMED(follow_baseline)
+#else
+#define PF_READS_ALL_WIRES 0
 #endif
+#define PF_SKIPS_IDLE_TILES \
+  (PF_TILE_ROWS % 2 == 0 && PF_TILE_COLS % 2 == 0 && !PF_READS_ALL_WIRES)
 
 /* Greatest absolute reading of a tile, and least distance of a reading from its threshold, both in
  * counts; negative where a reading is out of range. */
@@ -37,7 +39,7 @@ typedef struct {
 /* Readings in their own type, which is narrower, if all are valid numbers. */
 #if PF_LANES == 1
 #define PF_SENSELS_AT(place) (*(place))
-#define PF_REALS_OF(readings) ((Real)(readings))
+#define PF_REALS_OF(readings) (PF_CONSTANT(Real, readings))
 #else
 #define PF_SENSELS_AT(place) PF_LOAD_WHOLE(PF_SENSEL, place)
 #define PF_REALS_OF(readings) PF_TO_REAL(readings)
@@ -57,7 +59,7 @@ typedef PF_LANE_TYPE(PF_SENSEL) SenselLanes;
 #define PF_THRESHOLDS_AT(calibration, offset) \
   PF_READINGS_AT(activation_thresholds(calibration) + (offset))
 #else
-#define PF_THRESHOLDS_AT(calibration, offset) ((SenselLanes)((PF_SENSEL)(PF_ACTIVATION)))
+#define PF_THRESHOLDS_AT(calibration, offset) (PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION)))
 #endif
 
 /* The same by lanes. */
@@ -69,7 +71,7 @@ typedef struct {
 PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
 #ifdef PF_RANGE
   const Real size = fabs(reading);
-  const Real distance = size <= PF_VALUE(Real, largest) ? threshold - reading : (Real)(-1.0f);
+  const Real distance = size <= PF_VALUE(Real, largest) ? threshold - reading : PF_CONSTANT(Real, -1.0f);
   range.largest = size > range.largest ? size : range.largest;
 #else
   const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
@@ -108,8 +110,9 @@ PF_INLINE void prefetch_tile_row(global const PF_SENSEL* raw, Calibration calibr
 
 PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
                                   Layout layout, Tile tile) {
-  if (tile.cols < PF_LANES) return (TileRange){(float)(PF_ACTIVATION_NEVER), -1.0f};
-  LaneRange range = {(SenselLanes)(0), (SenselLanes)((PF_SENSEL)(PF_ACTIVATION_NEVER))};
+  const TileRange unknown = {(float)(PF_ACTIVATION_NEVER), -1.0f};
+  if (tile.cols < PF_LANES) return unknown;
+  LaneRange range = {PF_CONSTANT(SenselLanes, 0), PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION_NEVER))};
   for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
     prefetch_tile_row(raw, calibration, layout, tile, row);
   }
@@ -143,7 +146,7 @@ PF_INLINE float largest_gain(float largest, Tile tile) {
 /* True if a tile is idle; then writes gains of 1. */
 PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, size_t first,
                               global float* columns) {
-#ifdef PF_SKIP_IDLE_TILES
+  if (!PF_SKIPS_IDLE_TILES) return false;
   const float largest = PF_LARGEST_LOAD(range);
   const float gain = largest_gain(largest, tile);
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
@@ -155,9 +158,6 @@ PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, siz
   }
   for (uint i = 0; idle && i < tile.cols; ++i) columns[i] = 1.0f;
   return idle;
-#else
-  return false;
-#endif
 }
 
 /* Bounds of a tile's rows: how far a gain of their sensels is from 1 at most, plus 1. */
@@ -192,7 +192,7 @@ PF_INLINE float bound_of(WireVectors wires, Place place) {
 PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise) {
   const Real counts = PF_REALS_OF(reading);
   const Mask idle =
-      counts + PF_LOAD_OF(counts) * rise <= PF_REALS_OF(threshold) - (Real)(PF_ACTIVATION_STEP);
+      counts + PF_LOAD_OF(counts) * rise <= PF_REALS_OF(threshold) - PF_CONSTANT(Real, PF_ACTIVATION_STEP);
 #ifdef PF_RANGE
   return idle && fabs(counts) <= PF_VALUE(Real, largest);
 #else
@@ -203,7 +203,7 @@ PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise)
 /* As is_idle(), behind wires with this bound_of(). */
 PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
                              Calibration calibration, Place place, float bound) {
-  const Real rise = (Real)(bound - 1.0f);
+  const Real rise = PF_CONSTANT(Real, bound - 1.0f);
   Mask idle = mask_of(PF_BITS(-1));
   for (uint row = 0; row < 2; ++row) {
     for (uint side = 0; side < 2; ++side) {

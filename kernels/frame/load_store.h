@@ -20,6 +20,21 @@ typedef RealPair CountsPair;
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
+/* True where a comparison holds in any lane. */
+#define PF_ANY(mask) any_bits(PF_JOIN(convert_char, PF_LANES)(mask))
+
+#if PF_LANES == 1
+#define PF_LANE_NUMBERS 0.0f
+#elif PF_LANES == 2
+#define PF_LANE_NUMBERS (Real)(0, 1)
+#elif PF_LANES == 4
+#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3)
+#elif PF_LANES == 8
+#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3, 4, 5, 6, 7)
+#else
+#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#endif
+
 /* Unaligned vectors. Drivers split vload and vstore (PoCL 3.1: bytes one by one, 16 floats into
  * three accesses), but not a member of a packed structure. */
 #if PF_LANES > 1

@@ -5,9 +5,13 @@
 #define PF_MEMORY_WORDS (1 + 2 * (PF_PLAYS + PF_CREEPS)) /* of a pillar */
 
 PF_INLINE MemoryModel memory_model(void) {
+#ifdef __cplusplus
+  return named.memory_model;
+#else
   const MemoryModel model = {PF_PLAY_WIDTHS,   PF_PLAY_WEIGHTS, PF_CREEP_RATES, PF_CREEP_DECAYS,
                              PF_CREEP_WEIGHTS, PF_PLAYS,        PF_CREEPS};
   return model;
+#endif
 }
 
 /* Word `word` of a block's pillars. With several lanes all words of a block lie together, lane by
@@ -39,10 +43,10 @@ PF_INLINE Pillar recall_block(Pillar pillar, Calibration calibration, Block bloc
   for (int i = 0; i < PF_MAX_STATES; ++i) {
     const int number = number_of_state(i, model);
     const bool has = number >= 0;
-    memory.pair[0][i] = has ? *word_at(calibration, 1 + 2 * number, row, block) : (Word)(0);
-    memory.pair[1][i] = has ? *word_at(calibration, 2 + 2 * number, row, block) : (Word)(0);
+    memory.pair[0][i] = has ? *word_at(calibration, 1 + 2 * number, row, block) : PF_CONSTANT(Word, 0);
+    memory.pair[1][i] = has ? *word_at(calibration, 2 + 2 * number, row, block) : PF_CONSTANT(Word, 0);
   }
-  const Recalled result = recall(pillar, memory, model, threshold, (Word)(calibration.frame));
+  const Recalled result = recall(pillar, memory, model, threshold, PF_CONSTANT(Word, calibration.frame));
   *word_at(calibration, 0, row, block) = result.memory.last;
   PF_UNROLL
   for (int i = 0; i < PF_MAX_STATES; ++i) {

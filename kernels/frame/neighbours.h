@@ -77,7 +77,7 @@ PF_INLINE void clear_ring_row(Ring ring, uint row, bool whole) {
   global float* const first = ring_row(ring, row, 0, 0) - 1;
   const size_t count = 4 * ring.stride;
   for (size_t i = 0; whole && i < count; i += PF_LANES) {
-    PF_STORE_WHOLE(float, (Real)(0.0f), first + min(i, count - PF_LANES));
+    PF_STORE_WHOLE(float, PF_CONSTANT(Real, 0.0f), first + min(i, count - PF_LANES));
   }
   for (size_t i = 0; i < count; i += ring.stride) first[i] = first[i + ring.stride - 1] = 0.0f;
 }
@@ -127,7 +127,7 @@ PF_INLINE SenselPair pair_in_ring(SenselPair pair, Surroundings around, uint sid
 
 /* Sources of the pillar at `col`, in the row of sensels `row`; zero outside the skin. */
 PF_INLINE RealPair sources_at(Input input, uint row, uint col) {
-  RealPair none = {(Real)(0.0f), (Real)(0.0f)};
+  RealPair none = {PF_CONSTANT(Real, 0.0f), PF_CONSTANT(Real, 0.0f)};
   if (row >= 2 * input.rows || col >= input.cols) return none;
   const Place place = {row, 2 * col};
   return leak_sources(input.raw + row * input.row_stride + 2 * col, input.calibration, place);

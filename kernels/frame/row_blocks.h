@@ -47,26 +47,26 @@ PF_INLINE void prefetch_readings(Row row, size_t sensel, bool idle) {
 /* True if a block is idle, as far as raw readings tell. */
 PF_INLINE bool readings_are_idle(Row row, size_t sensel, bool was_idle) {
 #ifdef PF_WIRES
-  const Place place = {row.sensel_row, (uint)sensel};
-  const float bound = bound_of(row.calibration.wires, place);
-  if (bound == PF_IDLE_TILE) return true;
-  prefetch_readings(row, sensel, was_idle);
-  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel,
-                 row.activation_stride) &&
-         rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, bound);
-#else
+  if (PF_NAMED(wires)) {
+    const Place place = {row.sensel_row, (uint)sensel};
+    const float bound = bound_of(row.calibration.wires, place);
+    if (bound == PF_IDLE_TILE) return true;
+    prefetch_readings(row, sensel, was_idle);
+    return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel,
+                   row.activation_stride) &&
+           rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, bound);
+  }
+#endif
   prefetch_readings(row, sensel, was_idle);
   return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
-#endif
 }
 
 /* The same of block `at`; the ring knows it. */
 PF_INLINE bool block_is_idle(Row row, uint at, size_t sensel) {
 #ifdef PF_RING
-  return row.idle_now[at] != 0;
-#else
-  return readings_are_idle(row, sensel, row.idle[at] != 0);
+  if (PF_NAMED(leak)) return row.idle_now[at] != 0;
 #endif
+  return readings_are_idle(row, sensel, row.idle[at] != 0);
 }
 #endif
 
@@ -80,12 +80,11 @@ PF_INLINE Row row_of(Input input, global uchar* idle, uint at_row) {
   row.activation_stride = calibration.stride;
   row.idle = idle + (size_t)at_row * blocks_of_row(cols);
 #ifdef PF_RING
-  row.idle_now = idle_in_ring(input.ring, at_row);
+  if (PF_NAMED(leak)) row.idle_now = idle_in_ring(input.ring, at_row);
 #endif
-#ifdef PF_SENSELS
-  row.skew = 0;
-#else
   row.skew = (uint)((size_t)at_row * cols % PF_LANES);
+#ifdef PF_SENSELS
+  if (PF_NAMED(sensel_force)) row.skew = 0;
 #endif
   row.last_col = cols - PF_LANES;
   row.blocks = (row.skew + cols + PF_LANES - 1) / PF_LANES;

@@ -23,28 +23,31 @@
 /* Noise of a block's sensels, counts; zero without PF_UNCERTAINTY. */
 PF_INLINE Noise noise_of(Block block, Input input) {
 #ifdef PF_UNCERTAINTY
-  const RealPair top = read_noise(block.raw, input.calibration, block.top);
-  const RealPair bottom = read_noise(block.raw + input.row_stride, input.calibration, block.bottom);
-  const Noise noise = {top.right, top.left, bottom.left, bottom.right};
-#else
-  const Real none = (Real)(0.0f);
-  const Noise noise = {none, none, none, none};
+  if (PF_NAMED(uncertainty)) {
+    const RealPair top = read_noise(block.raw, input.calibration, block.top);
+    const RealPair bottom =
+        read_noise(block.raw + input.row_stride, input.calibration, block.bottom);
+    const Noise noise = {top.right, top.left, bottom.left, bottom.right};
+    return noise;
+  }
 #endif
+  const Real none = PF_CONSTANT(Real, 0.0f);
+  const Noise noise = {none, none, none, none};
   return noise;
 }
 
 /* A sensel that is neither missing nor saturated in any lane, with constant masks. */
 PF_INLINE Sensel valid_sensel(Sensel sensel) {
-  const Mask none = (Mask)(0);
+  const Mask none = PF_CONSTANT(Mask, 0);
   sensel.missing = none;
   sensel.saturated = none;
   sensel.absent = none;
   return sensel;
 }
 
-#ifndef PF_SENSELS
+#if !defined(PF_SENSELS) || defined(__cplusplus)
+#define PF_PILLARS /* has programs with pillars */
 PF_INLINE Mask is_invalid(Sensel sensel) { return sensel.missing || sensel.saturated; }
-
 #endif
 
 /* The corrected sensels of a block. */
@@ -53,21 +56,25 @@ PF_INLINE Pillar corrected_block(Block block, Input input) {
   SenselPair top = read_linear(block.raw, calibration, block.top);
   SenselPair bottom = read_linear(block.raw + input.row_stride, calibration, block.bottom);
 #ifdef PF_LEAK
-  const Surroundings around = surroundings_of(block, input);
+  if (PF_NAMED(leak)) {
+    const Surroundings around = surroundings_of(block, input);
 #ifdef PF_RING
-  top = pair_in_ring(top, around, 0);
-  bottom = pair_in_ring(bottom, around, 1);
+    top = pair_in_ring(top, around, 0);
+    bottom = pair_in_ring(bottom, around, 1);
 #endif
-  top = without_leak(top, around, 0);
-  bottom = without_leak(bottom, around, 1);
+    top = without_leak(top, around, 0);
+    bottom = without_leak(bottom, around, 1);
+  }
 #endif
 #ifdef PF_MEMORY
-  const Pillar before = {top.right, top.left, bottom.left, bottom.right};
-  const Pillar recalled = recall_block(before, calibration, block);
-  top.right = recalled.s1;
-  top.left = recalled.s2;
-  bottom.left = recalled.s3;
-  bottom.right = recalled.s4;
+  if (PF_NAMED(memory)) {
+    const Pillar before = {top.right, top.left, bottom.left, bottom.right};
+    const Pillar recalled = recall_block(before, calibration, block);
+    top.right = recalled.s1;
+    top.left = recalled.s2;
+    bottom.left = recalled.s3;
+    bottom.right = recalled.s4;
+  }
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
@@ -84,14 +91,17 @@ PF_INLINE void store_sensels(SenselSolution left, SenselSolution right, Output o
                              Lanes sensels) {
   PF_STORE_ROW(store_sensel_plane, normal, (global float*)output.planes);
 #ifdef PF_UNCERTAINTY
-  PF_STORE_ROW(store_sensel_plane, deviation, (global float*)(output.planes + output.plane_bytes));
+  if (PF_NAMED(uncertainty)) {
+    PF_STORE_ROW(store_sensel_plane, deviation,
+                 (global float*)(output.planes + output.plane_bytes));
+  }
 #endif
   PF_STORE_ROW(store_sensel_status, status, output.status);
 }
 #undef PF_STORE_ROW
 
 /* Solves a block of sensels without pillars, and writes those that exist. */
-PF_INLINE void write_block(Block block, Input input, Output output) {
+PF_INLINE void write_sensels(Block block, Input input, Output output) {
   const Stages stages = input.calibration.stages;
   const Pillar sensels = corrected_block(block, input);
   const Noise noise = noise_of(block, input);
@@ -108,11 +118,15 @@ PF_INLINE void write_block(Block block, Input input, Output output) {
   }
 #ifdef PF_BASELINE
   const Bits touched = s1.status | s2.status | s3.status | s4.status;
-  store_status(touched, output.touched + block.index, block.lanes);
+  if (PF_NAMED(follow_baseline)) {
+    store_status(touched, output.touched + block.index, block.lanes);
+  }
 #endif
 }
 
-#else
+#endif
+
+#ifdef PF_PILLARS
 
 /* Solves a block. Most blocks have no missing and no saturated sensel; constant false masks let the
  * compiler drop half of the code for them. */
@@ -141,10 +155,14 @@ PF_INLINE void store_derived(Solution solution, Output output, size_t index, Lan
   global uchar* plane = output.planes + 3 * output.plane_bytes;
 #endif
 #ifdef PF_ANGLES
-  PF_ANGLE_PLANES(PF_STORE)
+  if (PF_NAMED(angles)) {
+    PF_ANGLE_PLANES(PF_STORE)
+  }
 #endif
 #ifdef PF_UNCERTAINTY
-  PF_UNCERTAINTY_PLANES(PF_STORE)
+  if (PF_NAMED(uncertainty)) {
+    PF_UNCERTAINTY_PLANES(PF_STORE)
+  }
 #endif
 }
 
@@ -167,11 +185,20 @@ PF_INLINE void store_solution(Solution solution, Output output, size_t index, La
   }
 }
 
-PF_INLINE void write_block(Block block, Input input, Output output) {
-  store_solution(solve_block(block, input), output, block.index, block.lanes);
-}
-
 #endif
+
+/* Solves a block, and writes its results. */
+PF_INLINE void write_block(Block block, Input input, Output output) {
+#ifdef PF_SENSELS
+  if (PF_NAMED(sensel_force)) {
+    write_sensels(block, input, output);
+    return;
+  }
+#endif
+#ifdef PF_PILLARS
+  store_solution(solve_block(block, input), output, block.index, block.lanes);
+#endif
+}
 
 /* True if a block is idle and its stored results are already those of an idle block; updates its
  * flag. */
@@ -209,10 +236,9 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
   const uint pillar_cols = input.cols;
   const size_t first_index = (size_t)at_row * pillar_cols;
   const Row row = row_of(input, output.idle, at_row);
+  size_t row_ahead = 2 * at_row + 2;
 #ifdef PF_RING
-  const size_t row_ahead = 2 * at_row + 4; /* the next one of which the ring is filled */
-#else
-  const size_t row_ahead = 2 * at_row + 2;
+  if (PF_NAMED(leak)) row_ahead = 2 * at_row + 4; /* the next one of which the ring is filled */
 #endif
   const uint step = (uint)get_global_size(0);
   for (uint at = next_active(row, (uint)get_global_id(0)); at < row.blocks;
@@ -221,10 +247,9 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
     const Place top = {2 * at_row, 2 * col};
     const Place bottom = {2 * at_row + 1, 2 * col};
     prefetch_planes(input.calibration, row_ahead * input.calibration.stride + 2 * col);
+    Lanes lanes = {0, PF_LANES};
 #if defined(PF_STREAM) || defined(PF_MEMORY)
-    const Lanes lanes = own_lanes(at * PF_LANES, row.skew, col, pillar_cols);
-#else
-    const Lanes lanes = {0, PF_LANES};
+    if (PF_NAMED(memory)) lanes = own_lanes(at * PF_LANES, row.skew, col, pillar_cols);
 #endif
     Block block;
     block.raw = row.raw + 2 * col;
@@ -235,7 +260,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
 #ifdef PF_MEMORY
     block.at = at;
     block.blocks = blocks_of_row(pillar_cols);
-    prefetch_states(input.calibration, block);
+    if (PF_NAMED(memory)) prefetch_states(input.calibration, block);
 #endif
     write_block(block, input, output);
   }
@@ -258,10 +283,9 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
   input.calibration = calibration_of(calibration, results, layout);
   input.rows = (uint)layout.rows;
   input.cols = (uint)layout.cols;
+  global uchar* forces = results;
 #ifdef PF_PILLAR_LEAK
-  global uchar* const forces = results + layout.forces;
-#else
-  global uchar* const forces = results;
+  if (PF_NAMED(pillar_leak)) forces = results + layout.forces;
 #endif
   const Output output = {forces,
                          results,
@@ -279,7 +303,7 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
 #endif
   for (uint row = band.first; row < band.end; ++row) {
 #ifdef PF_RING
-    fill_ring(&input, output.idle, row, row == band.first);
+    if (PF_NAMED(leak)) fill_ring(&input, output.idle, row, row == band.first);
 #endif
     solve_row(input, output, row);
   }

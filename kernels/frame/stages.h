@@ -1,7 +1,8 @@
 /* The stages of the solve, for the device and, as C++, for the host.
  *
  * A program defines the macro of each stage that its plan names; other stages are not compiled. C++
- * compiles all of them and tests PF_NAMED at run time. stage_table.h lists stages and constants.
+ * compiles all of them and tests PF_NAMED at run time; so do the files of kernels/frame, which C++
+ * compiles with PF_LANES. stage_table.h lists stages and constants.
  *
  * Where a new stage goes:
  * - Correction of one sensel: in correct_sensel, its effect on noise in corrected_noise. A
@@ -16,43 +17,67 @@
  * that moves small readings across the threshold. */
 
 #ifdef __cplusplus
+#ifdef PF_LANES
+#define PF_NAMED(stage) named.stage
+#define PF_NUMBER(name) named.name
+#else
 #define PF_NAMED(stage) stages.stage
-#define PF_VALUE(type, name) PF_CONSTANT(type, stages.name)
+#define PF_NUMBER(name) stages.name
+#endif
+#define PF_VALUE(type, name) PF_CONSTANT(type, PF_NUMBER(name))
+#define PF_SATURATION
+#define PF_PARITY_TEST
+#ifndef PF_WHOLE
 #define PF_RANGE
 #define PF_MASK
-#define PF_SATURATION
 #define PF_WIRES
-#define PF_AFTER_TARE stages.wires_after_tare
-#define PF_WIRES_ACT(after_tare) (stages.wires && stages.wires_after_tare == (after_tare))
+#define PF_AFTER_TARE PF_NAMED(wires_after_tare)
+#define PF_WIRES_ACT(after_tare) (PF_NAMED(wires) && PF_AFTER_TARE == (after_tare))
+#define PF_BEND
 #define PF_TARE
 #define PF_GAIN
 #define PF_SENSELS
 #define PF_POWER_LAW
 #define PF_CURVE
 #define PF_LEAK
+#define PF_MEMORY
 #define PF_DEAD_ZONE
 #define PF_PAPER
 #define PF_SHEAR_COEFFICIENT
 #define PF_RESIDUAL
-#define PF_PARITY_TEST
 #define PF_ANGLES
 #define PF_UNCERTAINTY
 #define PF_PILLAR_LEAK
 #define PF_LEAN
+#define PF_BASELINE
+#endif
 
 /* The stages that a plan names, and their constants. */
 typedef struct {
 #define PF_MEMBER(name, macro, place, state, named) bool name;
   PF_STAGES(PF_MEMBER)
 #undef PF_MEMBER
+#ifdef PF_LANES
+#define PF_MEMBER(name, needed, kind, value) float name;
+#else
 #define PF_MEMBER(name, needed, kind, value) Real name;
+#endif
   PF_STAGE_CONSTANTS(PF_MEMBER)
 #undef PF_MEMBER
+#ifndef PF_WHOLE
   CurvePolynomial curve_polynomial;
   MemoryModel memory_model;
-} Stages;
+#endif
+} NamedStages;
+#ifdef PF_LANES
+NamedStages named;
+typedef int Stages; /* They are a member of the program. */
+#else
+typedef NamedStages Stages;
+#endif
 #else
 #define PF_NAMED(stage) 1
+#define PF_NUMBER(name) (PF_VALUE_##name)
 #define PF_VALUE(type, name) PF_CONSTANT(type, PF_VALUE_##name)
 #ifdef PF_WIRES_AFTER_TARE
 #define PF_AFTER_TARE 1
@@ -92,7 +117,7 @@ PF_INLINE Sensel validate_reading(Counts raw, Counts good, Stages stages) {
 #ifdef PF_CURVE
 PF_INLINE CurvePolynomial curve_of(Stages stages) {
 #ifdef __cplusplus
-  return stages.curve_polynomial;
+  return PF_NUMBER(curve_polynomial);
 #else
   const CurvePolynomial curve = {PF_CURVE_COEFFICIENTS, PF_CURVE_PER_COUNT, PF_CURVE_ROOT};
   return curve;

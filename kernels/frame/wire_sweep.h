@@ -20,7 +20,7 @@ typedef struct {
 } RowWires;
 
 /* PF_WIRE_PARTS sensels at once: vectors of the device, or one by one. */
-#if defined(__cplusplus)
+#if defined(__cplusplus) && !defined(PF_LANES)
 #define PF_WIRE_LANES 1
 #else
 #define PF_WIRE_LANES PF_LANES
@@ -32,7 +32,7 @@ typedef struct {
 #define PF_LOAD_WIRES(place) (((const WireLanes*)(place))->lanes)
 #define PF_STORE_WIRES(value, place) ((WireLanes*)(place))->lanes = (value)
 /* As in load_store.h. */
-typedef struct __attribute__((packed)) {
+typedef struct __attribute__((packed, may_alias)) {
   Real lanes;
 } WireLanes;
 #endif
@@ -41,6 +41,13 @@ typedef struct __attribute__((packed)) {
 /* Sum of lanes, by pairs. */
 #if PF_WIRE_LANES == 1
 PF_INLINE float sum_of_lanes(Real lanes) { return lanes; }
+#elif defined(__cplusplus)
+PF_INLINE float sum_of_lanes(Real lanes) {
+  for (int half = PF_LANES / 2; half > 0; half /= 2) {
+    for (int lane = 0; lane < half; ++lane) lanes[lane] = lanes[lane] + lanes[lane + half];
+  }
+  return lanes[0];
+}
 #else
 PF_INLINE float sum_of_2(float2 lanes) { return lanes.x + lanes.y; }
 PF_INLINE float sum_of_4(float4 lanes) { return sum_of_2(lanes.lo + lanes.hi); }

@@ -33,18 +33,6 @@ typedef struct {
   Wires right;
 } WiresPair;
 
-#if PF_LANES == 1
-#define PF_LANE_NUMBERS 0.0f
-#elif PF_LANES == 2
-#define PF_LANE_NUMBERS (Real)(0, 1)
-#elif PF_LANES == 4
-#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3)
-#elif PF_LANES == 8
-#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3, 4, 5, 6, 7)
-#else
-#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
-#endif
-
 /* Wires of one row of sensels under PF_LANES pillars, from column `col` on. */
 PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
   const RealPair columns =
@@ -54,19 +42,19 @@ PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
   WiresPair pair;
   if (first == last) {
     const size_t at = (size_t)first * wires.rows + row;
-    pair.left.row = pair.right.row = (Real)(wires.row[at]);
-    pair.left.own = pair.right.own = (Real)(wires.own[at]);
+    pair.left.row = pair.right.row = PF_CONSTANT(Real, wires.row[at]);
+    pair.left.own = pair.right.own = PF_CONSTANT(Real, wires.own[at]);
   } else if (PF_TILE_COLS >= 2 * PF_LANES) {
     /* Two tiles: lanes before and from the border on. */
     const size_t at = (size_t)first * wires.rows + row;
     const size_t next = at + wires.rows;
-    const Real before = (Real)((float)(last * PF_TILE_COLS - col)) - (Real)(2.0f) * PF_LANE_NUMBERS;
-    const Mask left = before > (Real)(0.0f);
-    const Mask right = before > (Real)(1.0f);
-    pair.left.row = left ? (Real)(wires.row[at]) : (Real)(wires.row[next]);
-    pair.right.row = right ? (Real)(wires.row[at]) : (Real)(wires.row[next]);
-    pair.left.own = left ? (Real)(wires.own[at]) : (Real)(wires.own[next]);
-    pair.right.own = right ? (Real)(wires.own[at]) : (Real)(wires.own[next]);
+    const Real before = PF_CONSTANT(Real, (float)(last * PF_TILE_COLS - col)) - PF_CONSTANT(Real, 2.0f) * PF_LANE_NUMBERS;
+    const Mask left = before > PF_CONSTANT(Real, 0.0f);
+    const Mask right = before > PF_CONSTANT(Real, 1.0f);
+    pair.left.row = left ? PF_CONSTANT(Real, wires.row[at]) : PF_CONSTANT(Real, wires.row[next]);
+    pair.right.row = right ? PF_CONSTANT(Real, wires.row[at]) : PF_CONSTANT(Real, wires.row[next]);
+    pair.left.own = left ? PF_CONSTANT(Real, wires.own[at]) : PF_CONSTANT(Real, wires.own[next]);
+    pair.right.own = right ? PF_CONSTANT(Real, wires.own[at]) : PF_CONSTANT(Real, wires.own[next]);
   } else {
     float rows[2 * PF_LANES];
     float owns[2 * PF_LANES];

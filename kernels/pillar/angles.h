@@ -7,7 +7,7 @@ typedef struct {
 } Direction;
 
 /* Magnitude and direction of a force, within 3 ULP of the exact values. */
-static inline Direction direction_of(Force force) {
+PF_INLINE Direction direction_of(Force force) {
   const Real zero = PF_REAL(0.0);
   const Lengths lengths = lengths_of(force.shear_x, force.shear_y, force.normal);
   Direction direction;

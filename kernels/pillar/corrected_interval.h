@@ -2,11 +2,11 @@
  * (docs/derivations/sensor_effects.md, E10). */
 
 /* True where exactly the sensels of `bits` are usable. */
-static inline Mask usable_are(Bits status, int bits) {
+PF_INLINE Mask usable_are(Bits status, int bits) {
   return !mask_of((status & PF_BITS(15)) ^ PF_BITS(bits));
 }
 
-static inline Mask at_least_three(Bits status) {
+PF_INLINE Mask at_least_three(Bits status) {
   return usable_are(status, 15) || usable_are(status, 7) || usable_are(status, 11) ||
          usable_are(status, 13) || usable_are(status, 14);
 }
@@ -14,7 +14,7 @@ static inline Mask at_least_three(Bits status) {
 /* The interval of a segment of forces whose component `free` falls by `slope` per newton of normal
  * force; `known` is the other one, `high` the largest normal force. `along_y`: the free one is
  * shear_y. */
-static inline DirectionInterval segment_interval(Real known, Real free, Real normal, Real high,
+PF_INLINE DirectionInterval segment_interval(Real known, Real free, Real normal, Real high,
                                                  Real slope, Mask along_y) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
@@ -49,7 +49,7 @@ static inline DirectionInterval segment_interval(Real known, Real free, Real nor
 
 /* The interval of a corrected force: a point with three or four usable sensels, a segment with two
  * adjacent ones; else any direction, and the magnitude before, widened by `moved` newtons. */
-static inline DirectionInterval corrected_interval(DirectionInterval before, Force force,
+PF_INLINE DirectionInterval corrected_interval(DirectionInterval before, Force force,
                                                    Direction direction, Bits status,
                                                    Real segment_point, Real moved,
                                                    ShearWeights weights) {

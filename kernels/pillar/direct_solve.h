@@ -52,14 +52,14 @@ typedef struct {
   Real normal;
 } ForceScale;
 
-static inline Mask is_pressed(Sensel sensel) { return sensel.usable || sensel.saturated; }
+PF_INLINE Mask is_pressed(Sensel sensel) { return sensel.usable || sensel.saturated; }
 
-static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) && is_pressed(q); }
+PF_INLINE Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) && is_pressed(q); }
 
 /* Measured sensels of a diagonal (D4): usable ones; saturated ones, whose reading is a lower bound,
  * unless the other diagonal's sum is larger (`more`) and determines them; and, on a pillar in
  * `contact`, inactive ones, whose reading is an upper bound, where nothing else divides the sum. */
-static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
+PF_INLINE Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
   const Mask p_follows = p.saturated && more && (q.usable || is_inactive(q));
   const Mask q_follows = q.saturated && more && (p.usable || is_inactive(p));
   const Mask p_active = is_pressed(p) && !p_follows;
@@ -74,7 +74,7 @@ static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact
   return d;
 }
 
-static inline Diagonals pillar_diagonals(Pillar pillar) {
+PF_INLINE Diagonals pillar_diagonals(Pillar pillar) {
   const Mask rising_pressed = both_pressed(pillar.s1, pillar.s3);
   const Mask falling_pressed = both_pressed(pillar.s2, pillar.s4);
   const Counts rising = pillar.s1.reading + pillar.s3.reading;
@@ -89,12 +89,12 @@ static inline Diagonals pillar_diagonals(Pillar pillar) {
   return diagonals;
 }
 
-static inline Mask one_measured(Diagonal d) { return d.p_measured || d.q_measured; }
+PF_INLINE Mask one_measured(Diagonal d) { return d.p_measured || d.q_measured; }
 
 /* Upper end of the parity interval where no diagonal is full, counts (D5): the smaller bound of the
  * diagonals without a missing sensel. If both have one, the interval is centred on the smallest
  * force that is consistent with the readings. Zero without contact. */
-static inline Counts parity_bound(Diagonal a, Diagonal b) {
+PF_INLINE Counts parity_bound(Diagonal a, Diagonal b) {
   const Counts a_sum = a.p + a.q;
   const Counts b_sum = b.p + b.q;
   const Counts least = a_sum < b_sum ? a_sum : b_sum;
@@ -112,7 +112,7 @@ static inline Counts parity_bound(Diagonal a, Diagonal b) {
 
 /* True if the forces form a segment whose upper end is a reading: a sensel of each diagonal is
  * measured, and a diagonal bounds the sum (D10). Requires that no diagonal is full. */
-static inline Mask has_segment(Diagonal a, Diagonal b) {
+PF_INLINE Mask has_segment(Diagonal a, Diagonal b) {
 #ifdef PF_WHOLE /* No sensel is missing. */
   return one_measured(a) && one_measured(b);
 #else
@@ -123,7 +123,7 @@ static inline Mask has_segment(Diagonal a, Diagonal b) {
 /* Parity sum: measured by one diagonal or as the mean of two (D1, D2), or the interval [0, bound]
  * (D5). The reported point is `segment_point` of the bound on a segment, its midpoint elsewhere
  * (D10). */
-static inline ParitySum parity_sum(Diagonals diagonals, Fraction segment_point) {
+PF_INLINE ParitySum parity_sum(Diagonals diagonals, Fraction segment_point) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Counts a_sum = a.p + a.q;
@@ -143,18 +143,18 @@ static inline ParitySum parity_sum(Diagonals diagonals, Fraction segment_point) 
 
 /* V_p and V_q of a diagonal whose parity sum is `sum`; parity gives the one that is not measured.
  * Requires that one of the two is. */
-static inline Counts filled_p(Diagonal d, Counts sum) { return d.p_measured ? d.p : sum - d.q; }
-static inline Counts filled_q(Diagonal d, Counts sum) { return d.q_measured ? d.q : sum - d.p; }
+PF_INLINE Counts filled_p(Diagonal d, Counts sum) { return d.p_measured ? d.p : sum - d.q; }
+PF_INLINE Counts filled_q(Diagonal d, Counts sum) { return d.q_measured ? d.q : sum - d.p; }
 
 /* V_p - V_q of a diagonal whose parity sum is `sum` (D3); zero if neither sensel is measured. */
-static inline Counts diagonal_difference(Diagonal d, Counts sum) {
+PF_INLINE Counts diagonal_difference(Diagonal d, Counts sum) {
   const Counts difference = filled_p(d, sum) - filled_q(d, sum);
   return one_measured(d) ? difference : PF_COUNTS(0);
 }
 
 /* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 the sums of the interval
  * give the feasible segment: all forces that are consistent with the readings. */
-static inline Force force_at(Diagonals diagonals, Counts sum, ForceScale scale) {
+PF_INLINE Force force_at(Diagonals diagonals, Counts sum, ForceScale scale) {
   const Counts rising = diagonal_difference(diagonals.rising, sum);
   const Counts falling = diagonal_difference(diagonals.falling, sum);
   Force force;
@@ -166,14 +166,14 @@ static inline Force force_at(Diagonals diagonals, Counts sum, ForceScale scale) 
 
 /* The force on a pillar, in region 3 at the segment point. Regions 1 and 2: within 4 ULP of the
  * magnitude, float or double. */
-static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale scale) {
+PF_INLINE Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale scale) {
   return force_at(diagonals, sum.point, scale);
 }
 
-static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
+PF_INLINE Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
 
 #ifndef PF_WHOLE
-static inline Real largest_reading(Pillar pillar) {
+PF_INLINE Real largest_reading(Pillar pillar) {
   const Real rising = pillar.s1.reading > pillar.s3.reading ? pillar.s1.reading : pillar.s3.reading;
   const Real falling =
       pillar.s2.reading > pillar.s4.reading ? pillar.s2.reading : pillar.s4.reading;
@@ -184,7 +184,7 @@ static inline Real largest_reading(Pillar pillar) {
 /* True if the inactive fourth sensel may carry load while three are usable: its upper bound is
  * above zero, and parity predicts more than -`margin` counts for it (D9). Usable sensels are above
  * zero, so the minimum over all four decides. */
-static inline Mask fourth_may_be_loaded(Pillar pillar, Diagonals diagonals, Counts sum,
+PF_INLINE Mask fourth_may_be_loaded(Pillar pillar, Diagonals diagonals, Counts sum,
                                         Counts margin) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
@@ -204,7 +204,7 @@ typedef struct {
   Bits inactive;
 } State;
 
-static inline State state_of(Sensel sensel) {
+PF_INLINE State state_of(Sensel sensel) {
   State state;
   state.usable = bits_of(sensel.usable);
   state.saturated = bits_of(sensel.saturated);
@@ -215,7 +215,7 @@ static inline State state_of(Sensel sensel) {
 }
 
 /* One of two opposite sensels is usable, the other inactive, as Bits. */
-static inline Bits one_inactive_of(State p, State q) {
+PF_INLINE Bits one_inactive_of(State p, State q) {
   return (p.usable & q.inactive) | (p.inactive & q.usable);
 }
 
@@ -223,7 +223,7 @@ static inline Bits one_inactive_of(State p, State q) {
  * within `margin` counts of parity. Inconsistent: a sensel is missing (an absent one only counts
  * where the pillar is in contact), or two opposite sensels are usable and the other two inactive,
  * which contradicts the model. */
-static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts margin) {
+PF_INLINE Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts margin) {
   const State s1 = state_of(pillar.s1);
   const State s2 = state_of(pillar.s2);
   const State s3 = state_of(pillar.s3);
@@ -248,14 +248,14 @@ static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum s
 }
 
 /* True if one of two opposite sensels is usable and the other inactive. */
-static inline Mask one_inactive(Sensel p, Sensel q) {
+PF_INLINE Mask one_inactive(Sensel p, Sensel q) {
   return (p.usable && is_inactive(q)) || (is_inactive(p) && q.usable);
 }
 
 /* True if a redundant reading disagrees by more than `tolerance` counts: with four usable, the
  * parity residual (D7); with three, the excess of the reading that parity predicts for the inactive
  * sensel over its upper bound (D8). */
-static inline Mask fails_parity(Pillar pillar, ParitySum sum, Counts tolerance) {
+PF_INLINE Mask fails_parity(Pillar pillar, ParitySum sum, Counts tolerance) {
   const Mask rising_usable = pillar.s1.usable && pillar.s3.usable;
   const Mask falling_usable = pillar.s2.usable && pillar.s4.usable;
   const Counts rising = pillar.s1.reading + pillar.s3.reading;

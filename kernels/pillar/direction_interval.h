@@ -13,16 +13,16 @@ typedef struct {
 } DirectionInterval;
 
 /* True if parity does not divide the sum between the two sensels of a diagonal. */
-static inline Mask is_unconstrained(Sensel p, Sensel q) { return is_inactive(p) && is_inactive(q); }
+PF_INLINE Mask is_unconstrained(Sensel p, Sensel q) { return is_inactive(p) && is_inactive(q); }
 
 /* True if the parity sum is a point and neither diagonal is unconstrained. */
-static inline Mask is_determined(Pillar pillar, ParitySum sum) {
+PF_INLINE Mask is_determined(Pillar pillar, ParitySum sum) {
   return !(sum.ambiguous || is_unconstrained(pillar.s1, pillar.s3) ||
            is_unconstrained(pillar.s2, pillar.s4));
 }
 
 /* The interval of a determined pillar: both ends are the estimate. */
-static inline DirectionInterval point_interval(Direction estimate) {
+PF_INLINE DirectionInterval point_interval(Direction estimate) {
   DirectionInterval interval;
   interval.theta_low = estimate.theta;
   interval.theta_high = estimate.theta;
@@ -33,7 +33,7 @@ static inline DirectionInterval point_interval(Direction estimate) {
   return interval;
 }
 
-static inline DirectionInterval either_interval(Mask condition, DirectionInterval a,
+PF_INLINE DirectionInterval either_interval(Mask condition, DirectionInterval a,
                                                 DirectionInterval b) {
   DirectionInterval interval;
   interval.theta_low = condition ? a.theta_low : b.theta_low;
@@ -57,7 +57,7 @@ typedef struct {
   Real newtons; /* per count */
 } ScaledPillar;
 
-static inline ScaledPillar scaled_pillar(Pillar pillar, Diagonals diagonals, ParitySum sum,
+PF_INLINE ScaledPillar scaled_pillar(Pillar pillar, Diagonals diagonals, ParitySum sum,
                                          Real newtons) {
   ScaledPillar e;
   e.a = diagonals.rising;
@@ -88,7 +88,7 @@ typedef struct {
   Real slope; /* 1 if p alone is measured, -1 if q alone is, else 0 */
 } DifferenceLine;
 
-static inline DifferenceLine difference_line(Diagonal d) {
+PF_INLINE DifferenceLine difference_line(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const Real level = (d.p_measured ? d.p : zero) - (d.q_measured ? d.q : zero);
@@ -98,12 +98,12 @@ static inline DifferenceLine difference_line(Diagonal d) {
   return line;
 }
 
-static inline Real difference_at(DifferenceLine line, Real sum) {
+PF_INLINE Real difference_at(DifferenceLine line, Real sum) {
   return line.base - line.slope * sum;
 }
 
 /* Largest difference of two inactive sensels in one direction (U5). */
-static inline Real most_difference(Real reading, Real sum) {
+PF_INLINE Real most_difference(Real reading, Real sum) {
   return larger_of((reading + reading) - sum, PF_REAL(0.0));
 }
 
@@ -115,7 +115,7 @@ typedef struct {
 } ShearWeights;
 
 /* Squared shear with these differences over the diagonals, counts^2. */
-static inline Real shear_square(Real a, Real b, ShearWeights weights) {
+PF_INLINE Real shear_square(Real a, Real b, ShearWeights weights) {
   if (weights.are_one) return a * a + b * b;
   const Real x = weights.x * (a - b);
   const Real y = weights.y * (a + b);
@@ -129,7 +129,7 @@ typedef struct {
   Real high;
 } DifferenceEnds;
 
-static inline DifferenceEnds ends_of(Diagonal d, Mask unconstrained, Real flat, Real sum) {
+PF_INLINE DifferenceEnds ends_of(Diagonal d, Mask unconstrained, Real flat, Real sum) {
   DifferenceEnds ends;
   ends.low = unconstrained ? most_difference(d.q, sum) : flat;
   ends.high = unconstrained ? most_difference(d.p, sum) : flat;
@@ -137,7 +137,7 @@ static inline DifferenceEnds ends_of(Diagonal d, Mask unconstrained, Real flat, 
 }
 
 /* Squared shear of the longest force, counts^2: the force at the smallest parity sum. */
-static inline Real longest_shear(ScaledPillar e, DifferenceEnds a_ends, DifferenceEnds b_ends,
+PF_INLINE Real longest_shear(ScaledPillar e, DifferenceEnds a_ends, DifferenceEnds b_ends,
                                  ShearWeights weights) {
   const Real a = larger_of(a_ends.low, a_ends.high);
   const Real b = larger_of(b_ends.low, b_ends.high);
@@ -148,12 +148,12 @@ static inline Real longest_shear(ScaledPillar e, DifferenceEnds a_ends, Differen
 }
 
 /* The largest |phi| of a pillar without measured sensels, rad. */
-static inline Real largest_phi_of(ScaledPillar e) {
+PF_INLINE Real largest_phi_of(ScaledPillar e) {
   return e.high > PF_REAL(0.0) ? PF_REAL(3.14159265358979323846) : PF_REAL(0.0);
 }
 
 /* The interval of a pillar without measured sensels, up to the bounds of its inactive ones (U8). */
-static inline DirectionInterval inactive_interval(ScaledPillar e, ShearWeights weights) {
+PF_INLINE DirectionInterval inactive_interval(ScaledPillar e, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
   const Real largest_phi = largest_phi_of(e);
   DirectionInterval interval;
@@ -169,7 +169,7 @@ static inline DirectionInterval inactive_interval(ScaledPillar e, ShearWeights w
 }
 
 /* phi of the shear with these differences over the diagonals (M2, M5); zero without shear. */
-static inline Real phi_of(Real rising, Real falling, ShearWeights weights) {
+PF_INLINE Real phi_of(Real rising, Real falling, ShearWeights weights) {
   return angle_of(PF_REAL(0.0) - weights.y * (rising + falling), weights.x * (falling - rising));
 }
 
@@ -180,7 +180,7 @@ typedef struct {
 } PhiInterval;
 
 /* The shorter interval between two directions of shear (U7). */
-static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to,
+PF_INLINE PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to,
                                       ShearWeights weights) {
   const Mask clockwise = a_from * b_to < b_from * a_to;
   const Real from = phi_of(a_from, b_from, weights);
@@ -192,7 +192,7 @@ static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real 
 }
 
 /* phi between the ends of a segment, or of an unconstrained diagonal at the smallest sum. */
-static inline PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, DifferenceEnds b,
+PF_INLINE PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, DifferenceEnds b,
                                        Real a_steep, Real b_steep, ShearWeights weights) {
   const Mask unconstrained = e.a_unconstrained || e.b_unconstrained;
   const Real a_from = e.a_unconstrained ? -a.low : a.low;
@@ -203,7 +203,7 @@ static inline PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, Differe
 }
 
 /* The parity sum of the shortest force (U6). */
-static inline Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b,
+PF_INLINE Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b,
                                 ShearWeights weights) {
   const Real one_half = PF_REAL(0.5);
   Real free;
@@ -223,7 +223,7 @@ static inline Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine
 }
 
 /* The interval of a pillar whose force is not determined; `inactive` are those of U8. */
-static inline DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive,
+PF_INLINE DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive,
                                                    Direction estimate, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
   const Real quarter_turn = PF_REAL(1.57079632679489661923);
@@ -259,7 +259,7 @@ static inline DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive
  *
  * The general interval costs more than the rest of the solve; cheaper formulas give the same bits
  * where no lane needs it. */
-static inline DirectionInterval interval_of_readings(Pillar pillar, Diagonals diagonals,
+PF_INLINE DirectionInterval interval_of_readings(Pillar pillar, Diagonals diagonals,
                                                      ParitySum sum, Direction estimate,
                                                      ForceScale scale, ShearWeights weights) {
   const Mask determined = is_determined(pillar, sum);
@@ -276,7 +276,7 @@ static inline DirectionInterval interval_of_readings(Pillar pillar, Diagonals di
 
 /* The interval of a pillar with saturated sensels whose force is open: any direction, and a
  * magnitude of at least that of `interval` (U12). */
-static inline DirectionInterval open_interval(DirectionInterval interval, Open open) {
+PF_INLINE DirectionInterval open_interval(DirectionInterval interval, Open open) {
   const Real pi = PF_REAL(3.14159265358979323846);
   DirectionInterval any;
   any.theta_low = PF_REAL(0.0);
@@ -293,7 +293,7 @@ static inline DirectionInterval open_interval(DirectionInterval interval, Open o
 /* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
  * pillar without missing sensels (U4 to U8, U12). Both ends are the estimate where the force is
  * determined. `sum` comes from `parity_sum`, `estimate` is the direction of `direct_force`. */
-static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
+PF_INLINE DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
                                                    ParitySum sum, Direction estimate,
                                                    ForceScale scale, ShearWeights weights) {
   const DirectionInterval interval =

@@ -2,7 +2,7 @@
  * them correctly gives the same bits, and a vector of lanes needs no call. Double precision uses
  * the C++ library. Largest errors, measured against 113 bits: docs/derivations/elementary.md. */
 
-static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
+PF_INLINE Real larger_of(Real a, Real b) { return a < b ? b : a; }
 
 /* A power of two by which squares of numbers up to `largest` stay in range, and its inverse. */
 typedef struct {
@@ -10,7 +10,7 @@ typedef struct {
   Real up;
 } Scaling;
 
-static inline Scaling scaling_for(Real largest) {
+PF_INLINE Scaling scaling_for(Real largest) {
   const Mask is_large = largest > PF_REAL(0x1p60);
   const Mask is_small = largest < PF_REAL(0x1p-40);
   const Real one = PF_REAL(1.0);
@@ -21,12 +21,12 @@ static inline Scaling scaling_for(Real largest) {
 }
 
 /* True where squares of numbers up to `largest` fall below the range. Zeros need no scaling. */
-static inline Mask is_small(Real largest) {
+PF_INLINE Mask is_small(Real largest) {
   return (largest < PF_REAL(0x1p-40)) && (largest > PF_REAL(0.0));
 }
 
 /* True if squares of numbers up to `largest` leave the range in any lane. */
-static inline bool needs_scaling(Real largest) {
+PF_INLINE bool needs_scaling(Real largest) {
   return any_lane(is_small(largest) || (largest > PF_REAL(0x1p60)));
 }
 
@@ -37,13 +37,13 @@ typedef struct {
 } Lengths;
 
 /* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) without scaling. */
-static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
-static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
+PF_INLINE Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
+PF_INLINE Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
 
 #if !defined(__cplusplus) || PF_PRECISION == 32
 
 /* sqrt(x^2 + y^2) without intermediate overflow and underflow; 1.25 ULP. */
-static inline Real length_2(Real x, Real y) {
+PF_INLINE Real length_2(Real x, Real y) {
   const Real largest = larger_of(fabs(x), fabs(y));
   if (!needs_scaling(largest)) return plain_length_2(x, y);
   const Scaling scaling = scaling_for(largest);
@@ -51,7 +51,7 @@ static inline Real length_2(Real x, Real y) {
 }
 
 /* sqrt(x^2 + y^2 + z^2) without intermediate overflow and underflow; 1.5 ULP. */
-static inline Real length_3(Real x, Real y, Real z) {
+PF_INLINE Real length_3(Real x, Real y, Real z) {
   const Real largest = larger_of(larger_of(fabs(x), fabs(y)), fabs(z));
   if (!needs_scaling(largest)) return plain_length_3(x, y, z);
   const Scaling scaling = scaling_for(largest);
@@ -59,7 +59,7 @@ static inline Real length_3(Real x, Real y, Real z) {
 }
 
 /* length_2 and length_3 of a vector, with one test for both. */
-static inline Lengths lengths_of(Real x, Real y, Real z) {
+PF_INLINE Lengths lengths_of(Real x, Real y, Real z) {
   const Real larger = larger_of(fabs(x), fabs(y));
   const Real largest = larger_of(larger, fabs(z));
   const Real square = x * x + y * y;
@@ -79,7 +79,7 @@ typedef struct {
   Mask is_steep;
 } QuadrantAngle;
 
-static inline QuadrantAngle quadrant_angle(Real y, Real x) {
+PF_INLINE QuadrantAngle quadrant_angle(Real y, Real x) {
   const Real zero = PF_REAL(0.0);
   const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const Real eighth_turn = PF_REAL(0.78539816339744830962);
@@ -103,13 +103,13 @@ static inline QuadrantAngle quadrant_angle(Real y, Real x) {
 }
 
 /* Polar angle of (x, y) with x, y >= 0: [0, pi / 2]; 3 ULP. */
-static inline Real acute_angle_of(Real y, Real x) {
+PF_INLINE Real acute_angle_of(Real y, Real x) {
   const QuadrantAngle angle = quadrant_angle(y, x);
   return angle.is_steep ? angle.nearest - angle.part : angle.nearest + angle.part;
 }
 
 /* Polar angle of (x, y) with y >= 0: [0, pi]; 3 ULP. */
-static inline Real upper_angle_of(Real y, Real x) {
+PF_INLINE Real upper_angle_of(Real y, Real x) {
   const QuadrantAngle angle = quadrant_angle(y, fabs(x));
   const Mask is_left = x < PF_REAL(0.0);
   const Real nearest = is_left ? PF_REAL(3.14159265358979323846) - angle.nearest : angle.nearest;
@@ -117,7 +117,7 @@ static inline Real upper_angle_of(Real y, Real x) {
 }
 
 /* Polar angle of (x, y): [-pi, pi], with the sign of y as atan2; zero at the origin; 3 ULP. */
-static inline Real angle_of(Real y, Real x) { return copysign(upper_angle_of(fabs(y), x), y); }
+PF_INLINE Real angle_of(Real y, Real x) { return copysign(upper_angle_of(fabs(y), x), y); }
 
 /* base^exponent for a normal base above zero and |exponent| up to 10; 3 + |exponent| ULP. Below
  * 2^-126 and from 2^128 on it stays near these. */
@@ -159,15 +159,15 @@ PF_INLINE Real power_of(Real base, Real exponent) {
 
 #else
 
-static inline Real length_2(Real x, Real y) { return hypot(x, y); }
-static inline Real length_3(Real x, Real y, Real z) { return hypot(hypot(x, y), z); }
-static inline Lengths lengths_of(Real x, Real y, Real z) {
+PF_INLINE Real length_2(Real x, Real y) { return hypot(x, y); }
+PF_INLINE Real length_3(Real x, Real y, Real z) { return hypot(hypot(x, y), z); }
+PF_INLINE Lengths lengths_of(Real x, Real y, Real z) {
   const Lengths lengths = {length_2(x, y), length_3(x, y, z)};
   return lengths;
 }
-static inline Real acute_angle_of(Real y, Real x) { return atan2(y, x); }
-static inline Real upper_angle_of(Real y, Real x) { return atan2(y, x); }
-static inline Real angle_of(Real y, Real x) { return atan2(y, x); }
-static inline Real power_of(Real base, Real exponent) { return pow(base, exponent); }
+PF_INLINE Real acute_angle_of(Real y, Real x) { return atan2(y, x); }
+PF_INLINE Real upper_angle_of(Real y, Real x) { return atan2(y, x); }
+PF_INLINE Real angle_of(Real y, Real x) { return atan2(y, x); }
+PF_INLINE Real power_of(Real base, Real exponent) { return pow(base, exponent); }
 
 #endif

@@ -3,7 +3,7 @@
 
 /* The offset from a row or column of sensels to the one under the same pillar. A neighbour in that
  * direction is inside; one in the opposite direction, under another pillar, is across. */
-static inline int inward(int at) { return (at & 1) == 0 ? 1 : -1; }
+PF_INLINE int inward(int at) { return (at & 1) == 0 ? 1 : -1; }
 
 /* Weights of a sensel and of its eight neighbours. */
 typedef struct {

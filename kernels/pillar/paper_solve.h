@@ -35,7 +35,7 @@ typedef struct {
   Real b;
 } SenselCosines;
 
-static inline SenselCosines sensel_cosines(Real phi) {
+PF_INLINE SenselCosines sensel_cosines(Real phi) {
   const Real cos_45_deg = PF_REAL(0.70710678118654752440);
   const Real x = cos(phi);
   const Real y = sin(phi);
@@ -46,13 +46,13 @@ static inline SenselCosines sensel_cosines(Real phi) {
 }
 
 /* Equation (5) for sensels i and j at these cosines; zero where it is 0/0. */
-static inline Real theta_of_pair(Real v_i, Real cos_i, Real v_j, Real cos_j) {
+PF_INLINE Real theta_of_pair(Real v_i, Real cos_i, Real v_j, Real cos_j) {
   return atan2(fabs(v_i - v_j), fabs(v_i * cos_j - v_j * cos_i));
 }
 
 /* Four usable: (7), then (5) with the diagonal along which the shear lies more (P1). The shear is
  * zero where (7) is 0/0: under a purely normal force, or where its products underflow. */
-static inline Angles paper_region_1(Ratios v) {
+PF_INLINE Angles paper_region_1(Ratios v) {
   const Real zero = PF_REAL(0.0);
   const Real up = v.c * v.d - v.a * v.b;
   const Real right = v.b * v.c - v.a * v.d;
@@ -70,7 +70,7 @@ static inline Angles paper_region_1(Ratios v) {
 /* All but d usable: (9), then (5) with b, opposite d, and the neighbour of b that differs more from
  * it (P2). If d is inactive, that is the weaker one; if d is missing, the weaker one may equal b,
  * where (5) is 0/0. */
-static inline Angles paper_region_2(Ratios v) {
+PF_INLINE Angles paper_region_2(Ratios v) {
   Angles angles;
   angles.phi = atan2(v.c - v.b, v.b - v.a);
   const SenselCosines cosines = sensel_cosines(angles.phi);
@@ -80,7 +80,7 @@ static inline Angles paper_region_2(Ratios v) {
 }
 
 /* Only a and b usable: theta is the midpoint of the contour (P3), and (5) gives phi (P4). */
-static inline Angles paper_region_3(Ratios v) {
+PF_INLINE Angles paper_region_3(Ratios v) {
   const Real one = PF_REAL(1.0);
   const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const Real sqrt_2 = PF_REAL(1.41421356237309504880);
@@ -97,14 +97,14 @@ static inline Angles paper_region_3(Ratios v) {
 }
 
 /* Only a usable: the direction opposite to it, in the plane of the skin. */
-static inline Angles paper_region_4(void) {
+PF_INLINE Angles paper_region_4(void) {
   Angles angles;
   angles.theta = PF_REAL(1.57079632679489661923);
   angles.phi = PF_REAL(-2.35619449019234492885);
   return angles;
 }
 
-static inline Ratios turned_ratios(Real v1, Real v2, Real v3, Real v4, Turn turn) {
+PF_INLINE Ratios turned_ratios(Real v1, Real v2, Real v3, Real v4, Turn turn) {
   Ratios v;
   v.a = turn.at_2 ? v2 : (turn.at_3 ? v3 : (turn.at_4 ? v4 : v1));
   v.b = turn.at_2 ? v3 : (turn.at_3 ? v4 : (turn.at_4 ? v1 : v2));
@@ -115,7 +115,7 @@ static inline Ratios turned_ratios(Real v1, Real v2, Real v3, Real v4, Turn turn
 
 /* The force on a turned pillar whose largest reading is `largest` counts: its magnitude by (2) at
  * that sensel, its components by M2, turned back. */
-static inline Force turned_force(Ratios v, Angles angles, Real largest, Turn turn,
+PF_INLINE Force turned_force(Ratios v, Angles angles, Real largest, Turn turn,
                                  ForceScale scale) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
@@ -140,7 +140,7 @@ static inline Force turned_force(Ratios v, Angles angles, Real largest, Turn tur
 /* The force on a pillar by the paper's equations. The paper does not cover saturated and missing
  * sensels: they count as usable and as unusable. Nor does it cover two opposite sensels alone:
  * `direct_force` solves them. */
-static inline Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum sum,
+PF_INLINE Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum sum,
                                 ForceScale scale) {
   const Real zero = PF_REAL(0.0);
   const Mask u1 = is_pressed(pillar.s1);

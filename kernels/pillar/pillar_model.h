@@ -19,7 +19,7 @@ typedef struct {
 
 /* Readings of the four sensels, counts, if they responded to tension too: negative where the pillar
  * lifts off. `counts_per_newton` is k. Each is within 5 ULP of the largest of the four. */
-static inline Readings model_readings(Force force, Real counts_per_newton) {
+PF_INLINE Readings model_readings(Force force, Real counts_per_newton) {
   const Real cos_45_deg = PF_REAL(0.70710678118654752440);
   const Real pressed = counts_per_newton * force.normal;
   const Real rising = counts_per_newton * (cos_45_deg * (force.shear_y + force.shear_x));

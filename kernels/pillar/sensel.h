@@ -12,7 +12,7 @@ typedef struct {
 } Sensel;
 
 /* A valid sensel with the reading `raw`. */
-static inline Sensel raw_sensel(Counts raw) {
+PF_INLINE Sensel raw_sensel(Counts raw) {
   Sensel sensel;
   sensel.reading = raw;
   sensel.usable = mask_of(PF_BITS(0));
@@ -24,32 +24,32 @@ static inline Sensel raw_sensel(Counts raw) {
 
 #ifndef PF_WHOLE
 /* NaN, infinity and readings beyond `largest` count as missing; for float32 sensels. */
-static inline Sensel reject_out_of_range(Sensel sensel, Real largest) {
+PF_INLINE Sensel reject_out_of_range(Sensel sensel, Real largest) {
   sensel.missing = sensel.missing || !(fabs(sensel.reading) <= largest);
   return sensel;
 }
 #endif
 
 /* `good` is 1, 0 where the sensel is masked, 2 where the sensor has none. */
-static inline Sensel apply_mask(Sensel sensel, Counts good) {
+PF_INLINE Sensel apply_mask(Sensel sensel, Counts good) {
   sensel.missing = sensel.missing || !(good == PF_COUNTS(1));
   sensel.absent = good == PF_COUNTS(2);
   return sensel;
 }
 
 /* A raw reading of `full_scale` counts or more is saturated. */
-static inline Sensel mark_saturated(Sensel sensel, Counts full_scale) {
+PF_INLINE Sensel mark_saturated(Sensel sensel, Counts full_scale) {
   sensel.saturated = (sensel.reading >= full_scale) && !sensel.missing;
   return sensel;
 }
 
-static inline Sensel subtract_tare(Sensel sensel, Counts tare) {
+PF_INLINE Sensel subtract_tare(Sensel sensel, Counts tare) {
   sensel.reading = sensel.reading - tare;
   return sensel;
 }
 
 #ifndef PF_WHOLE
-static inline Sensel apply_gain(Sensel sensel, Real gain) {
+PF_INLINE Sensel apply_gain(Sensel sensel, Real gain) {
   sensel.reading = sensel.reading * gain;
   return sensel;
 }
@@ -78,14 +78,14 @@ typedef struct {
   float per_row;
 } Drift;
 
-static inline Real drift_at(Drift drift, Real col, Real row) {
+PF_INLINE Real drift_at(Drift drift, Real col, Real row) {
   return PF_CONSTANT(Real, drift.first) +
          (col * PF_CONSTANT(Real, drift.per_col) + row * PF_CONSTANT(Real, drift.per_row));
 }
 
 /* Updates a tare: that of an untouched sensel with a valid reading by `rate` times the difference
  * between the raw reading and the tare, another one by the drift that untouched sensels share. */
-static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate, Real drift) {
+PF_INLINE Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate, Real drift) {
   const Mask follows = untouched && !(raw.missing || raw.saturated);
   return tare + (follows ? rate * (raw.reading - tare) : drift);
 }
@@ -100,7 +100,7 @@ typedef struct {
 } Curvature;
 
 /* The tare after a change of curvature; the patterns are in counts mm. */
-static inline Real bent_tare(Real tare, Real x, Real y, Real xy, Curvature change) {
+PF_INLINE Real bent_tare(Real tare, Real x, Real y, Real xy, Curvature change) {
   return tare + (x * PF_CONSTANT(Real, change.x) + y * PF_CONSTANT(Real, change.y) +
                  xy * PF_CONSTANT(Real, change.xy));
 }
@@ -109,7 +109,7 @@ static inline Real bent_tare(Real tare, Real x, Real y, Real xy, Curvature chang
 /* Classifies a reading: above `threshold` counts (zero or more) the sensel is usable or saturated.
  * Otherwise it is inactive and reads the threshold, the upper bound of V, or missing and reads
  * zero. A saturated sensel whose corrected reading is not above the threshold is missing. */
-static inline Sensel classify(Sensel sensel, Counts threshold) {
+PF_INLINE Sensel classify(Sensel sensel, Counts threshold) {
   const Mask is_active = (sensel.reading > threshold) && !sensel.missing;
   const Mask is_uninformative = sensel.missing || (sensel.saturated && !is_active);
   sensel.missing = is_uninformative;
@@ -124,7 +124,7 @@ static inline Sensel classify(Sensel sensel, Counts threshold) {
  * readings, 0: any), are inactive after tare and gain. It is the highest such threshold but for
  * rounding, computed with the arithmetic of the stages, which is monotonic in the reading; `lowest`
  * where rounding leaves none. */
-static inline Real activation_threshold(Real tare, Real gain, Real threshold, Real step,
+PF_INLINE Real activation_threshold(Real tare, Real gain, Real threshold, Real step,
                                         Real lowest) {
   const Real largest_inactive = floor(tare + threshold / gain);
   const Real below = largest_inactive - PF_REAL(1.0);
@@ -135,12 +135,12 @@ static inline Real activation_threshold(Real tare, Real gain, Real threshold, Re
 #endif
 
 /* Adds the dead zone, counts, to a reading, or to the upper bound of an inactive sensel. */
-static inline Sensel fill_dead_zone(Sensel sensel, Counts dead_zone) {
+PF_INLINE Sensel fill_dead_zone(Sensel sensel, Counts dead_zone) {
   sensel.reading = sensel.missing ? sensel.reading : sensel.reading + dead_zone;
   return sensel;
 }
 
 /* True if V is at most the reading: the threshold plus the dead zone. */
-static inline Mask is_inactive(Sensel sensel) {
+PF_INLINE Mask is_inactive(Sensel sensel) {
   return !(sensel.usable || sensel.saturated || sensel.missing);
 }

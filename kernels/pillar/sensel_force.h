@@ -3,7 +3,7 @@
 
 /* Bits of its status byte: PF_STATUS_SENSEL_1 where it is usable, PF_STATUS_SATURATED, and
  * PF_STATUS_INCONSISTENT where it is missing but not absent. */
-static inline Bits sensel_status(Sensel sensel) {
+PF_INLINE Bits sensel_status(Sensel sensel) {
   return (bits_of(sensel.usable) & PF_BITS(PF_STATUS_SENSEL_1)) |
          (bits_of(sensel.saturated) & PF_BITS(PF_STATUS_SATURATED)) |
          (bits_of(sensel.missing && !sensel.absent) & PF_BITS(PF_STATUS_INCONSISTENT));
@@ -11,13 +11,13 @@ static inline Bits sensel_status(Sensel sensel) {
 
 /* N, from newtons per count; zero where the sensel is inactive or missing, the least force where it
  * is saturated. */
-static inline Real sensel_force(Sensel sensel, Real newtons_per_count) {
+PF_INLINE Real sensel_force(Sensel sensel, Real newtons_per_count) {
   return (sensel.usable || sensel.saturated) ? sensel.reading * newtons_per_count : PF_REAL(0.0);
 }
 
 /* Standard deviation of the force, N, from that of the corrected reading, counts: infinite where
  * the sensel is saturated or missing, zero where it is inactive or absent. */
-static inline Real sensel_deviation(Sensel sensel, Real noise, Real newtons_per_count) {
+PF_INLINE Real sensel_deviation(Sensel sensel, Real noise, Real newtons_per_count) {
   const Mask open = sensel.saturated || (sensel.missing && !sensel.absent);
   const Real known = sensel.usable ? noise * newtons_per_count : PF_REAL(0.0);
   return open ? PF_INFINITY : known;

@@ -4,15 +4,15 @@
 /* What saturated sensels leave open of the force of a pillar (docs/derivations/uncertainty.md, U11,
  * U12): a saturated sensel bears its reading or more. */
 
-static inline Mask any_saturated(Pillar pillar) {
+PF_INLINE Mask any_saturated(Pillar pillar) {
   return pillar.s1.saturated || pillar.s2.saturated || pillar.s3.saturated || pillar.s4.saturated;
 }
 
 /* True if both sensels of a diagonal are usable, so that it measures the parity sum. */
-static inline Mask both_usable(Sensel p, Sensel q) { return p.usable && q.usable; }
+PF_INLINE Mask both_usable(Sensel p, Sensel q) { return p.usable && q.usable; }
 
 /* Half the range of V_p - V_q of a diagonal of two saturated sensels, counts (U12). */
-static inline Real hidden_difference(Sensel p, Sensel q, Mask measured, Real sum) {
+PF_INLINE Real hidden_difference(Sensel p, Sensel q, Mask measured, Real sum) {
   const Real rest = sum - (p.reading + q.reading);
   return (measured && p.saturated && q.saturated && rest > PF_REAL(0.0)) ? rest : PF_REAL(0.0);
 }
@@ -27,7 +27,7 @@ typedef struct {
 } Open;
 
 /* The components that the readings of a pillar with saturated sensels do not bound (U11, U12). */
-static inline Open open_components(Pillar pillar, Diagonals diagonals, ParitySum sum) {
+PF_INLINE Open open_components(Pillar pillar, Diagonals diagonals, ParitySum sum) {
   const Sensel s1 = pillar.s1;
   const Sensel s2 = pillar.s2;
   const Sensel s3 = pillar.s3;
@@ -53,7 +53,7 @@ static inline Open open_components(Pillar pillar, Diagonals diagonals, ParitySum
 }
 
 /* Adds what saturated sensels leave open to the deviations of the components. */
-static inline Force open_deviations(Force deviations, Open open, ForceScale scale) {
+PF_INLINE Force open_deviations(Force deviations, Open open, ForceScale scale) {
   const Real hidden = scale.shear * (PF_REAL(0.57735026918962576451) * open.difference);
   const Mask is_hidden = hidden > PF_REAL(0.0);
   const Real shear_x = is_hidden ? plain_length_2(deviations.shear_x, hidden) : deviations.shear_x;
@@ -78,7 +78,7 @@ typedef struct {
 } DifferenceWeights;
 
 /* The parity sum of `direct_force` is linear in the readings, with these weights (U1). */
-static inline ParityWeights parity_weights(Diagonals diagonals, Real segment_point) {
+PF_INLINE ParityWeights parity_weights(Diagonals diagonals, Real segment_point) {
   const Real zero = PF_REAL(0.0);
   const Real one_half = PF_REAL(0.5);
   const Real one = PF_REAL(1.0);
@@ -101,7 +101,7 @@ static inline ParityWeights parity_weights(Diagonals diagonals, Real segment_poi
 }
 
 /* The linear form of `diagonal_difference` (U2). */
-static inline DifferenceWeights difference_weights(Diagonal d) {
+PF_INLINE DifferenceWeights difference_weights(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   DifferenceWeights weights;
@@ -112,14 +112,14 @@ static inline DifferenceWeights difference_weights(Diagonal d) {
 }
 
 /* Variance of a reading, counts^2; zero for an inactive or missing sensel, a constant. */
-static inline Real variance_of(Sensel sensel, Real noise) {
+PF_INLINE Real variance_of(Sensel sensel, Real noise) {
   return is_pressed(sensel) ? noise * noise : PF_REAL(0.0);
 }
 
 /* Root mean square distance of the true parity sum from the reported one, counts (U9): on a segment
  * by the distribution under friction, elsewhere by a uniform one over the interval. Zero where the
  * force is determined. */
-static inline Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
+PF_INLINE Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
                                 Real segment_point) {
   const Real away = segment_point - PF_REAL(0.875);
   const Real on_segment =
@@ -130,7 +130,7 @@ static inline Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum su
 }
 
 /* Deviations, N, from variances of the components and what ambiguity adds to them, counts. */
-static inline Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity,
+PF_INLINE Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity,
                              ForceScale scale) {
   const Real square = ambiguity * ambiguity;
   Force deviations;
@@ -142,7 +142,7 @@ static inline Force roots_of(Force variances, Real to_x, Real to_y, Real ambigui
 
 /* Standard deviations of the components of the force of readings, N (U3, U9); exact in regions 1
  * and 2. */
-static inline Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum,
+PF_INLINE Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum,
                                        Noise noise, Real segment_point, ForceScale scale) {
   const ParityWeights weights = parity_weights(diagonals, segment_point);
   const DifferenceWeights rising = difference_weights(diagonals.rising);
@@ -182,7 +182,7 @@ static inline Force reading_deviations(Pillar pillar, Diagonals diagonals, Parit
 
 /* Standard deviations of the components of `direct_force`, N: those of its readings, infinite where
  * a saturated sensel leaves a component open. */
-static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
+PF_INLINE Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
                                      Real segment_point, ForceScale scale) {
   const Force deviations = reading_deviations(pillar, diagonals, sum, noise, segment_point, scale);
   if (!any_lane(any_saturated(pillar))) return deviations;

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "solve/pillar_maths.h"
+
+namespace pillarfield {
+
+/// Indices of the calibration planes that a plan has; the others are not read.
+struct LanePlanes {
+  std::size_t tare = 0;
+  std::size_t gain = 0;
+  std::size_t dead_zone = 0;
+  std::size_t noise = 0;
+  std::size_t mask = 0;
+  std::size_t activation = 0;
+  std::size_t bend_x = 0;
+  std::size_t bend_y = 0;
+  std::size_t bend_xy = 0;
+  std::size_t memory = 0;
+  bool has_noise = false;
+};
+
+/// The numbers of activation thresholds (ActivationRange), counts.
+struct LaneActivation {
+  float cut = 0;
+  float step = 0;
+  float lowest = 0;
+  float highest = 0;
+  float never = 0;
+  float idle_load = 0;
+  float of_all = 0;  ///< of all sensels, where they do not differ
+};
+
+/// Wires (WireCrosstalk).
+struct LaneWires {
+  std::uint32_t tile_rows = 2;
+  std::uint32_t tile_cols = 2;
+  float row_per_count = 0;
+  float column_per_count = 0;
+  float idle_per_count = 0;
+};
+
+/// What a program of lanes knows of a plan: what OpenCL programs have as macros.
+struct LanePlan {
+  single_precision::Stages stages{};  ///< constants in units of whole numbers, if `whole`
+  bool whole = false;                 ///< counts are whole numbers: 8-bit readings as they are
+  LanePlanes planes;
+  LaneActivation activation;
+  LaneWires wires;
+};
+
+/// Work-items of a launch, as OpenCL numbers them: two dimensions.
+struct LaneRange {
+  std::size_t across = 1;
+  std::size_t down = 1;
+};
+
+/// A frame and the memory of its results, as the entry points of kernels/frame take them.
+struct LaneFrame {
+  const void* raw = nullptr;  ///< float, or bytes if the plan is whole
+  unsigned char* calibration = nullptr;
+  unsigned char* results = nullptr;
+  single_precision::Layout layout{};
+};
+
+/// The entry points of kernels/frame, compiled for one instruction set. Each runs the work-items
+/// [first, last) of those along `down` of a range.
+struct LaneProgram {
+  const char* name = nullptr;  ///< "AVX-512", "AVX2" or "SSE2"; of other processors "baseline"
+  int lanes = 0;               ///< pillars of a block, but of whole numbers
+  int whole_lanes = 0;
+  using Run = void (*)(const LanePlan& plan, const LaneFrame& frame, LaneRange range,
+                       std::size_t first, std::size_t last);
+  Run find_wires = nullptr;
+  Run solve_frame = nullptr;
+  Run remove_pillar_leak = nullptr;
+  Run find_shear_ratios = nullptr;
+  Run correct_forces = nullptr;
+  void (*bend_tare)(const LanePlan& plan, const LaneFrame& frame,
+                    const single_precision::Curvature& change) = nullptr;
+  void (*follow_baseline)(const LanePlan& plan, const LaneFrame& frame, float rate,
+                          const single_precision::Drift& drift, std::uint32_t first_row,
+                          std::uint32_t interval) = nullptr;
+};
+
+/// The program for this processor's widest instruction set.
+[[nodiscard]] const LaneProgram& lane_program();
+
+/// All programs that this processor runs, the widest first.
+[[nodiscard]] const LaneProgram* const* lane_programs(std::size_t& count);
+
+}  // namespace pillarfield
