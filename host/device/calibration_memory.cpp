@@ -29,44 +29,18 @@ void copy(const Skin& skin, const std::vector<Value>& plane, std::byte* to, Valu
   std::ranges::copy(std::as_bytes(std::span(all)), to);
 }
 
-/// Copies the activation thresholds as readings of the plan's type.
-void copy_activation_thresholds(const SolverPlan& plan, std::byte* to) {
-  const std::vector<float> levels = activation_thresholds(plan);
+/// Copies the activation thresholds as readings of a type.
+void copy_activation_thresholds(const SolverPlan& plan, SenselType type, std::byte* to) {
+  std::vector<float> levels = activation_thresholds(plan);
+  if (levels.size() == 1) levels.resize(plan.skin.sensels(), levels.front());
   const auto never = static_cast<float>(activation_range(plan).never);
   const auto as = [&]<class Reading>(Reading) {
     copy(plan.skin, std::vector<Reading>(levels.begin(), levels.end()), to,
          static_cast<Reading>(never));
   };
-  if (plan.sensel_type == SenselType::u8) return as(std::uint8_t{});
-  if (plan.sensel_type == SenselType::u16) return as(std::uint16_t{});
+  if (type == SenselType::u8) return as(std::uint8_t{});
+  if (type == SenselType::u16) return as(std::uint16_t{});
   as(float{});
-}
-
-/// Writes a plane to zeroed memory; a plan that follows the baseline may start without a tare.
-void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
-  switch (plane) {
-    case CalibrationPlane::tare:
-      return copy(plan.skin, plan.calibration.tare, to);
-    case CalibrationPlane::gain:
-      return copy(plan.skin, plan.calibration.gain, to);
-    case CalibrationPlane::dead_zone:
-      return copy(plan.skin, plan.calibration.dead_zone, to);
-    case CalibrationPlane::noise:
-      return copy(plan.skin, plan.calibration.noise, to);
-    case CalibrationPlane::mask:
-      return copy(plan.skin, plan.calibration.mask, to, kAbsent);
-    case CalibrationPlane::bend_x:
-      return copy(plan.skin, plan.calibration.bend_x, to);
-    case CalibrationPlane::bend_y:
-      return copy(plan.skin, plan.calibration.bend_y, to);
-    case CalibrationPlane::bend_xy:
-      return copy(plan.skin, plan.calibration.bend_xy, to);
-    case CalibrationPlane::memory:
-      return;
-    case CalibrationPlane::activation:
-      break;
-  }
-  copy_activation_thresholds(plan, to);
 }
 
 /// Bytes of the states of pillars (Memory), as laid out in kernels/frame/memory_planes.h.
@@ -89,7 +63,7 @@ const char* macro_of(CalibrationPlane plane) {
   return kMacros[static_cast<std::size_t>(plane)];
 }
 
-std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const SpeedPaths& paths) {
+std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, bool has_activation) {
   const Calibration& calibration = plan.calibration;
   std::vector<CalibrationPlane> planes;
   const auto add = [&](bool wanted, CalibrationPlane plane) {
@@ -101,7 +75,7 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   add(!calibration.dead_zone.empty(), CalibrationPlane::dead_zone);
   add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
   add(!calibration.mask.empty(), CalibrationPlane::mask);
-  add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::activation);
+  add(has_activation, CalibrationPlane::activation);
   add(bent, CalibrationPlane::bend_x);
   add(bent, CalibrationPlane::bend_y);
   add(bent, CalibrationPlane::bend_xy);
@@ -109,23 +83,53 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   return planes;
 }
 
+/// Writes a plane to zeroed memory; a plan that follows the baseline may start without a tare.
+void CalibrationMemory::copy_plane(const SolverPlan& plan, CalibrationPlane plane,
+                                   std::byte* to) const {
+  switch (plane) {
+    case CalibrationPlane::tare:
+      return copy(plan.skin, plan.calibration.tare, to);
+    case CalibrationPlane::gain:
+      return copy(plan.skin, plan.calibration.gain, to);
+    case CalibrationPlane::dead_zone:
+      return copy(plan.skin, plan.calibration.dead_zone, to);
+    case CalibrationPlane::noise:
+      return copy(plan.skin, plan.calibration.noise, to);
+    case CalibrationPlane::mask:
+      return copy(plan.skin, plan.calibration.mask, to, kAbsent);
+    case CalibrationPlane::bend_x:
+      return copy(plan.skin, plan.calibration.bend_x, to);
+    case CalibrationPlane::bend_y:
+      return copy(plan.skin, plan.calibration.bend_y, to);
+    case CalibrationPlane::bend_xy:
+      return copy(plan.skin, plan.calibration.bend_xy, to);
+    case CalibrationPlane::memory:
+      return;
+    case CalibrationPlane::activation:
+      break;
+  }
+  copy_activation_thresholds(plan, is_on_host_ ? SenselType::f32 : plan.sensel_type, to);
+}
+
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
-                                     const SpeedPaths& paths)
-    : planes_(calibration_planes(plan, paths)),
+                                     std::vector<CalibrationPlane> planes)
+    : planes_(std::move(planes)),
       rows_(plan.skin.rows),
       cols_(plan.skin.cols),
       stride_(padded_cols(plan.skin)),
       plane_bytes_(page_aligned(padded_sensels(plan.skin) * sizeof(float))),
       state_bytes_(bytes_of_states(plan)),
-      has_tare_(std::ranges::count(planes_, CalibrationPlane::tare) > 0) {
+      has_tare_(std::ranges::count(planes_, CalibrationPlane::tare) > 0),
+      is_on_host_(context() == nullptr) {
   if (planes_.empty()) return;
-  const std::size_t planes = planes_.size() - (state_bytes_ > 0 ? 1 : 0);
-  const std::size_t bytes = planes * plane_bytes_ + state_bytes_;
+  const std::size_t plain = planes_.size() - (state_bytes_ > 0 ? 1 : 0);
+  const std::size_t bytes = plain * plane_bytes_ + state_bytes_;
   memory_ = allocate_large_pages(bytes);
   std::memset(memory_.get(), 0, bytes);
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     copy_plane(plan, planes_[i], memory_.get() + i * plane_bytes_);
   }
+  if (is_on_host_) return;
   const auto device = context.getInfo<CL_CONTEXT_DEVICES>().front();
   const bool shared = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
   const cl_mem_flags use = shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
@@ -140,6 +144,10 @@ cl::CommandQueue CalibrationMemory::queue() const {
 
 void CalibrationMemory::clear_states() const {
   if (state_bytes_ == 0) return;
+  if (is_on_host_) {
+    std::memset(memory_.get() + (planes_.size() - 1) * plane_bytes_, 0, state_bytes_);
+    return;
+  }
   const cl::CommandQueue commands = queue();
   commands.enqueueFillBuffer(buffer_, cl_float{0}, (planes_.size() - 1) * plane_bytes_,
                              state_bytes_);
@@ -148,6 +156,14 @@ void CalibrationMemory::clear_states() const {
 
 std::vector<float> CalibrationMemory::tare() const {
   std::vector<float> tare(rows_ * cols_);
+  if (is_on_host_) {
+    const auto* const plane = reinterpret_cast<const float*>(memory_.get());
+    for (std::size_t row = 0; row < rows_; ++row) {
+      std::copy_n(plane + row * stride_, cols_,
+                  tare.begin() + static_cast<std::ptrdiff_t>(row * cols_));
+    }
+    return tare;
+  }
   const cl::size_type row = cols_ * sizeof(float);
   queue().enqueueReadBufferRect(buffer_, CL_TRUE, {0, 0, 0}, {0, 0, 0}, {row, rows_, 1},
                                 stride_ * sizeof(float), 0, row, 0, tare.data());
@@ -155,14 +171,17 @@ std::vector<float> CalibrationMemory::tare() const {
 }
 
 void CalibrationMemory::set_tare(const SolverPlan& plan) const {
-  const cl::CommandQueue commands = queue();
   std::vector<std::byte> values(padded_sensels(plan.skin) * sizeof(float));
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     if (planes_[i] != CalibrationPlane::tare && planes_[i] != CalibrationPlane::activation) {
       continue;
     }
+    if (is_on_host_) {
+      copy_plane(plan, planes_[i], memory_.get() + i * plane_bytes_);
+      continue;
+    }
     copy_plane(plan, planes_[i], values.data());
-    commands.enqueueWriteBuffer(buffer_, CL_TRUE, i * plane_bytes_, values.size(), values.data());
+    queue().enqueueWriteBuffer(buffer_, CL_TRUE, i * plane_bytes_, values.size(), values.data());
   }
   clear_states();
 }

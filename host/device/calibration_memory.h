@@ -4,7 +4,7 @@
 
 #include "device/large_pages.h"
 #include "device/opencl.h"
-#include "pillarfield/tuning.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
 
@@ -26,15 +26,20 @@ enum class CalibrationPlane : std::uint8_t {
 
 /// Planes that the kernel of a plan reads, in memory order.
 [[nodiscard]] std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan,
-                                                               const SpeedPaths& paths);
+                                                               bool has_activation);
 
-/// The calibration planes of a plan, contiguous in device memory.
+/// The calibration planes of a plan, contiguous in the memory of the device.
 class CalibrationMemory {
  public:
-  CalibrationMemory(const cl::Context& context, const SolverPlan& plan, const SpeedPaths& paths);
+  /// A null context keeps the planes in the host's memory, with activation thresholds as float.
+  CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
+                    std::vector<CalibrationPlane> planes);
 
-  /// Null if the plan has no calibration plane.
+  [[nodiscard]] const std::vector<CalibrationPlane>& planes() const { return planes_; }
+  /// Null if the plan has no calibration plane, and without a context.
   [[nodiscard]] const cl::Buffer& buffer() const { return buffer_; }
+  /// The planes in the host's memory; null if a device keeps them in its own.
+  [[nodiscard]] std::byte* bytes() const { return memory_.get(); }
   /// Distance between planes.
   [[nodiscard]] std::size_t plane_bytes() const { return plane_bytes_; }
   /// Sensels of a row of the planes: even without pillars too, where the last may not exist.
@@ -51,6 +56,7 @@ class CalibrationMemory {
 
  private:
   [[nodiscard]] cl::CommandQueue queue() const;
+  void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) const;
 
   std::vector<CalibrationPlane> planes_;
   std::size_t rows_;
@@ -59,6 +65,7 @@ class CalibrationMemory {
   std::size_t plane_bytes_;
   std::size_t state_bytes_ = 0;  ///< behind the planes
   bool has_tare_;
+  bool is_on_host_;
   LargePages memory_;  ///< used if the device shares the host's memory
   cl::Buffer buffer_;
 };

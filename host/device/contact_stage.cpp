@@ -1,21 +1,10 @@
 #include "device/contact_stage.h"
 
-#include <algorithm>
-#include <thread>
-
 namespace pillarfield {
 namespace {
 
-/// Threads: the compute units of a device that is the host's processor.
-std::size_t threads_for(const Device::State& device) {
-  const bool is_host = device.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU;
-  const std::size_t threads = is_host ? device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()
-                                      : std::thread::hardware_concurrency();
-  return std::max<std::size_t>(threads, 1);
-}
-
 /// Planes of a result in host memory.
-FieldPlanes planes_of(const SlotMemory& memory, std::uint32_t rows, std::uint32_t cols) {
+FieldPlanes planes_of(const ResultMemory& memory, std::uint32_t rows, std::uint32_t cols) {
   FieldPlanes planes;
   planes.rows = rows;
   planes.cols = cols;
@@ -28,12 +17,10 @@ FieldPlanes planes_of(const SlotMemory& memory, std::uint32_t rows, std::uint32_
 
 }  // namespace
 
-ContactStage::ContactStage(const Device::State& device, const SolverPlan& plan)
-    : rows_(plan.skin.pillar_rows()),
-      cols_(plan.skin.pillar_cols()),
-      estimator_(plan, threads_for(device)) {}
+ContactStage::ContactStage(const SolverPlan& plan, std::size_t threads)
+    : rows_(plan.skin.pillar_rows()), cols_(plan.skin.pillar_cols()), estimator_(plan, threads) {}
 
-void ContactStage::resolve(const SlotMemory& memory) {
+void ContactStage::resolve(const ResultMemory& memory) {
   estimator_.resolve(planes_of(memory, rows_, cols_), memory.idle_blocks());
 }
 

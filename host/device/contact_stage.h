@@ -1,7 +1,6 @@
 #pragma once
 
 #include "contacts/estimator/contact_estimator.h"
-#include "device/device_state.h"
 #include "device/slot_memory.h"
 #include "pillarfield/contact_labels.h"
 
@@ -11,10 +10,10 @@ namespace pillarfield {
 /// direct solve: equal bits on all devices. All slots share it, since frames are resolved in order.
 class ContactStage {
  public:
-  ContactStage(const Device::State& device, const SolverPlan& plan);
+  ContactStage(const SolverPlan& plan, std::size_t threads);
 
   /// Estimates the ambiguous pillars of a frame whose planes lie in `memory`.
-  void resolve(const SlotMemory& memory);
+  void resolve(const ResultMemory& memory);
 
   /// The contacts of the frame last resolved.
   [[nodiscard]] FoundContacts contacts() const {

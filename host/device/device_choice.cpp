@@ -1,4 +1,4 @@
-// Selection of an OpenCL device.
+// Selection of a device.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -9,11 +9,18 @@
 
 #include "device/device_state.h"
 #include "device/kernel_cache.h"
+#include "lanes/lane_plan.h"
+#include "skin/quads.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr int kLanesOfCpu = 16;
+constexpr std::string_view kHost = "host";
+constexpr std::string_view kAnyOpenCl = "opencl";
+/// Blocks of 2 x 2 sensels up to which the host's lanes solve every plan sooner than an OpenCL
+/// device on the same processor is started (docs/performance_decisions.md).
+constexpr std::size_t kMostQuadsOnHost = 16384;
 constexpr const char* kPoclPlatform = "Portable Computing Language";
 
 const char* type_name(cl_device_type type) {
@@ -70,7 +77,8 @@ std::string mend_no_device() {
         cache.not_kept);
   }
   constexpr const char* kInstall =
-      "install an OpenCL driver, for instance the Debian package pocl-opencl-icd";
+      "install an OpenCL driver, for instance the Debian package pocl-opencl-icd, or take --device "
+      "host";
   rlimit space{};
   if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {
     return fmt::format(
@@ -124,6 +132,29 @@ const Candidate* choose(const std::vector<Candidate>& candidates, std::string_vi
   return best;
 }
 
+DeviceInfo describe_host() {
+  DeviceInfo info;
+  info.index = -1;
+  info.name = fmt::format("host, {}", lane_programs().front()->name);
+  info.type = "host";
+  info.lanes = lane_programs().front()->lanes;
+  info.shares_memory = true;
+  return info;
+}
+
+std::shared_ptr<Device::State> open_opencl(const std::vector<Candidate>& candidates,
+                                           std::string_view index_or_name) {
+  if (candidates.empty()) throw Error("OpenCL", "there is no device", mend_no_device());
+  const Candidate* const chosen = choose(candidates, index_or_name);
+  if (chosen == nullptr) {
+    throw Error("OpenCL",
+                index_or_name.empty() ? std::string("no device is suitable")
+                                      : fmt::format("no suitable device is '{}'", index_or_name),
+                fmt::format("there are: {}", enumerate(candidates)));
+  }
+  return std::make_shared<Device::State>(chosen->info, chosen->device);
+}
+
 }  // namespace
 
 std::vector<Candidate> all_devices() {
@@ -158,23 +189,30 @@ std::vector<DeviceInfo> list_devices() {
   });
 }
 
-Device open_device(std::string_view index_or_name) {
-  return with_opencl_errors("OpenCL", [&] {
+Device open_device(std::string_view wanted) {
+  if (wanted.empty()) return Device(std::make_shared<Device::Best>());
+  if (wanted == kHost) return Device(std::make_shared<Device::State>());
+  return Device(with_opencl_errors("OpenCL", [&] {
     const std::vector<Candidate> candidates = all_devices();
-    if (candidates.empty()) throw Error("OpenCL", "there is no device", mend_no_device());
-    const Candidate* const chosen = choose(candidates, index_or_name);
-    if (chosen == nullptr) {
-      throw Error("OpenCL",
-                  index_or_name.empty() ? std::string("no device is suitable")
-                                        : fmt::format("no suitable device is '{}'", index_or_name),
-                  fmt::format("there are: {}", enumerate(candidates)));
-    }
-    return Device(std::make_shared<Device::State>(chosen->info, chosen->device));
-  });
+    return open_opencl(candidates, wanted == kAnyOpenCl ? "" : wanted);
+  }));
 }
 
 Device::State::State(DeviceInfo described, cl::Device opened)
     : info(std::move(described)), device(std::move(opened)), context(device) {}
+
+Device::State::State() : info(describe_host()) {}
+
+std::shared_ptr<Device::State> Device::Best::opened() {
+  const std::scoped_lock lock(opening_);
+  if (state_ != nullptr) return state_;
+  state_ = with_opencl_errors("OpenCL", [] {
+    const std::vector<Candidate> candidates = all_devices();
+    const bool usable = choose(candidates, "") != nullptr;
+    return usable ? open_opencl(candidates, "") : std::make_shared<State>();
+  });
+  return state_;
+}
 
 cl::Program Device::State::program(const std::string& source) {
   const std::scoped_lock lock(building_);
@@ -194,6 +232,14 @@ cl::Program Device::State::program(const std::string& source) {
   return programs_.emplace(source, std::move(built)).first->second;
 }
 
-const DeviceInfo& Device::info() const { return state_->info; }
+Device::State& Device::state() const { return best_ ? *best_->opened() : *state_; }
+
+const DeviceInfo& Device::info() const { return state().info; }
+
+Device Device::for_plan(const SolverPlan& plan) const {
+  if (best_ == nullptr) return *this;
+  const bool is_small = quads(plan.skin) <= kMostQuadsOnHost;
+  return Device(is_small ? std::make_shared<State>() : best_->opened());
+}
 
 }  // namespace pillarfield

@@ -2,19 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "device/calibration_memory.h"
-#include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/quads.h"
 #include "solve/activation_thresholds.h"
 #include "solve/sensor_corrections.h"
 #include "solve/stages.h"
+#include "solve/whole_numbers.h"
 
 namespace pillarfield {
 namespace {
@@ -23,70 +20,12 @@ namespace {
 using Definitions = std::map<std::string, std::string, std::less<>>;
 
 /// A constant rounded to single precision, as exact text.
-std::string hex_float(double value) {
-  const auto rounded = static_cast<float>(value);
-  if (std::isfinite(rounded)) return fmt::format("{:a}f", rounded);
-  throw Error("solver plan", fmt::format("a constant of the kernel is {}", value),
-              "check the skin and the calibration for values that are far too large or small");
-}
-
-/// The unit of whole numbers, 1/16 count: readings are whole counts, thresholds multiples of 1/2,
-/// and the segment point divides their sums by at most 8.
-constexpr int kUnitsPerCount = 16;
-
-/// Largest threshold for whole numbers: four of them fit into 16 bits.
-constexpr double kLargestWholeThreshold = 500;
-
-/// Constants are clamped to this many counts: larger ones compare alike with readings of 8 bits.
-constexpr double kManyCounts = 1000;
-
-/// The segment point of whole-number programs: n of 1 - 1 / 2^n.
-std::optional<int> whole_segment_point(const SolverPlan& plan) {
-  for (int n = 1; n <= 3; ++n) {
-    if (plan.segment_point == 1 - std::ldexp(1.0, -n)) return n;
-  }
-  return std::nullopt;
-}
-
-/// True if the solve of a plan computes only multiples of 1/16 count, and no sensel is missing
-/// (docs/derivations/direct_solve.md, section 6).
-bool is_whole(const SolverPlan& plan) {
-  const Calibration& calibration = plan.calibration;
-  const auto threshold = static_cast<float>(plan.skin.threshold_counts);
-  const bool corrects = !calibration.tare.empty() || !calibration.gain.empty() ||
-                        !calibration.dead_zone.empty() || !calibration.mask.empty() ||
-                        !calibration.bend_x.empty() || !calibration.effects.empty() ||
-                        plan.baseline_rate || plan.skin.power_law;
-  const bool halves =
-      threshold <= kLargestWholeThreshold && 2 * threshold == std::floor(2 * threshold);
-  const bool saturates_below =
-      plan.skin.full_scale_counts && static_cast<float>(*plan.skin.full_scale_counts) <= threshold;
-  return plan.sensel_type == SenselType::u8 && plan.skin.has_pillars() &&
-         plan.estimator != Estimator::paper && !corrects && !plan.angles && !plan.uncertainty &&
-         halves && !saturates_below && whole_segment_point(plan);
-}
-
-/// A limit in counts in a program of whole numbers, rounded so that comparisons do not change.
-std::string whole_limit(double value, double (*round)(double)) {
-  const double units = kUnitsPerCount * std::min<double>(static_cast<float>(value), kManyCounts);
-  return fmt::format("{}", static_cast<int>(round(units)));
-}
+std::string hex_float(double value) { return fmt::format("{:a}f", single_constant(value)); }
 
 std::string text_of(const StageConstant& constant, const SolverPlan& plan, bool whole) {
   if (!whole) return hex_float(constant.value);
-  switch (constant.kind) {
-    case ConstantKind::exact:
-      break;
-    case ConstantKind::above:
-      return whole_limit(constant.value, std::floor);
-    case ConstantKind::from:
-      return whole_limit(constant.value, std::ceil);
-    case ConstantKind::per_count:
-      return hex_float(constant.value / kUnitsPerCount);
-    case ConstantKind::fraction:
-      return fmt::format("{}", *whole_segment_point(plan));
-  }
-  return hex_float(constant.value);
+  const double value = whole_value(constant, plan);
+  return is_whole(constant.kind) ? fmt::format("{}", static_cast<int>(value)) : hex_float(value);
 }
 
 /// The values of an array as an initialiser.
@@ -177,7 +116,8 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   if (paths.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
   if (paths.skip_idle) define_idle_range(plan, all);
   std::size_t place = 0;
-  for (const CalibrationPlane plane : calibration_planes(plan, paths)) {
+  const bool has_activation = paths.skip_idle && has_activation_plane(plan);
+  for (const CalibrationPlane plane : calibration_planes(plan, has_activation)) {
     all.emplace(macro_of(plane), fmt::format("{}", place++));
   }
   std::string source;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <future>
@@ -9,15 +10,18 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "device/host_start.h"
 #include "device/kernel_source.h"
-#include "device/slot.h"
+#include "device/lane_slot.h"
+#include "device/opencl_slot.h"
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/quads.h"
+#include "solve/activation_thresholds.h"
 #include "solve/curvature_follower.h"
 #include "solve/drift_follower.h"
 #include "solve/stages.h"
@@ -69,6 +73,7 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   }
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
+  if (device.state().is_host()) return paths;
   const std::size_t bytes = ResultLayout(plan, 0).bytes;
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   const std::size_t all = bytes * static_cast<std::size_t>(options.frames_in_flight);
@@ -101,6 +106,32 @@ std::string line_on_compiling(const DeviceInfo& device) {
 
 }  // namespace
 
+namespace {
+
+/// Threads beside a device: the compute units of one that is the host's processor.
+std::size_t threads_beside(const Device::State& device) {
+  const bool is_cpu =
+      !device.is_host() && device.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU;
+  const std::size_t threads = is_cpu ? device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()
+                                     : std::thread::hardware_concurrency();
+  return std::max<std::size_t>(threads, 1);
+}
+
+/// How the host solves a plan; nothing on an OpenCL device.
+std::optional<LaneSettings> lane_settings(const Device& device, const SolverPlan& plan, int lanes) {
+  if (!device.state().is_host()) return std::nullopt;
+  const int most = lanes != 0 ? lanes : device.info().lanes;
+  return LaneSettings(plan, lane_program(quad_cols(plan.skin), most));
+}
+
+std::vector<CalibrationPlane> planes_of(const std::optional<LaneSettings>& lanes,
+                                        const SolverPlan& plan, const SpeedPaths& paths) {
+  if (lanes) return lane_planes(plan, *lanes);
+  return calibration_planes(plan, paths.skip_idle && has_activation_plane(plan));
+}
+
+}  // namespace
+
 struct Processor::State {
   State(const Device& opened, const SolverPlan& wanted, const Options& options,
         const ProcessorTuning& tuning)
@@ -109,27 +140,24 @@ struct Processor::State {
         sensel_type(wanted.sensel_type),
         shares_memory(decide_sharing(options.memory, opened)),
         paths(decide_paths(opened, wanted, options, tuning)),
-        calibration(opened.state().context, wanted, paths),
+        lanes(lane_settings(opened, wanted, tuning.lanes)),
+        calibration(opened.state().context, wanted, planes_of(lanes, wanted, paths)),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
     order.is_needed = has_memory_on_device(wanted);
     order.each_writes = wanted.baseline_rate || wanted.calibration.effects.memory;
     order.follows_baseline = wanted.baseline_rate.has_value();
     order.interval = static_cast<cl_uint>(wanted.baseline_interval);
-    SlotSettings settings;
-    const int lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
-    settings.lanes = block_lanes(lanes, quad_cols(skin));
-    settings.paths = paths;
-    settings.program =
-        device.state().program(kernel_source(wanted, settings.lanes, settings.paths));
-    settings.shares_memory = shares_memory;
-    slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
-    for (int i = 0; i < options.frames_in_flight; ++i) {
-      slots.push_back(std::make_shared<Slot>(device.state(), wanted, settings, calibration, order));
+    if (lanes) {
+      add_lane_slots(wanted, options.frames_in_flight);
+    } else {
+      add_opencl_slots(wanted, options.frames_in_flight, tuning);
     }
     if (!wanted.calibration.bend_x.empty()) curvature.emplace(wanted);
     if (wanted.baseline_rate) drift.emplace(wanted);
-    if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
-    warm_up();
+    if (wanted.estimator == Estimator::contact) {
+      contacts.emplace(wanted, threads_beside(device.state()));
+    }
+    if (!lanes) warm_up();
     order.rate = static_cast<float>(baseline_turn_rate(wanted));
     order.frame = 0;
     if (!calibration.has_tare()) return;
@@ -139,13 +167,35 @@ struct Processor::State {
     planes.bend_x = planes.bend_y = planes.bend_xy = {};
   }
 
+  void add_lane_slots(const SolverPlan& plan, int count) {
+    if (lanes->division.bands > 1) {
+      pool = std::make_unique<ThreadPool>(threads_beside(device.state()));
+    }
+    for (int i = 0; i < count; ++i) {
+      slots.push_back(std::make_shared<LaneSlot>(plan, *lanes, calibration, order, pool.get()));
+    }
+  }
+
+  void add_opencl_slots(const SolverPlan& plan, int count, const ProcessorTuning& tuning) {
+    SlotSettings settings;
+    const int wanted_lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
+    settings.lanes = block_lanes(wanted_lanes, quad_cols(skin));
+    settings.paths = paths;
+    settings.program = device.state().program(kernel_source(plan, settings.lanes, settings.paths));
+    settings.shares_memory = shares_memory;
+    for (int i = 0; i < count; ++i) {
+      slots.push_back(
+          std::make_shared<OpenClSlot>(device.state(), plan, settings, calibration, order));
+    }
+  }
+
   void submit(const FrameView& frame);
 
   /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
   /// buffers at the first launch. The rate of the tare is still zero, and sensels end at rest.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
-    slots.front()->submit(frame.view(), curvature ? std::optional(Curvature{}) : std::nullopt);
+    slots.front()->submit(frame.view(), curvature ? std::optional(Curvature{}) : std::nullopt, {});
     slots.front()->wait();
     calibration.clear_states();
   }
@@ -155,6 +205,8 @@ struct Processor::State {
   SenselType sensel_type;
   bool shares_memory;
   SpeedPaths paths;
+  std::optional<LaneSettings> lanes;  ///< of the host
+  std::unique_ptr<ThreadPool> pool;   ///< of the host, for large frames
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
@@ -197,7 +249,8 @@ struct Processor::Start {
 
   Device device;
   bool shares_memory;
-  HostStart host;
+  std::vector<float> tare;
+  Processor host;
   std::future<std::unique_ptr<State>> compiled;
   std::exception_ptr failed = {};
 };
@@ -207,25 +260,36 @@ Processor::PinnedResult::PinnedResult(PinnedResult&&) noexcept = default;
 Processor::PinnedResult& Processor::PinnedResult::operator=(PinnedResult&&) noexcept = default;
 Processor::PinnedResult::~PinnedResult() = default;
 
-std::span<const std::byte> Processor::PinnedResult::pages() const { return state_->slot->pages(); }
+std::span<const std::byte> Processor::PinnedResult::pages() const {
+  return state_->slot->memory().pages();
+}
 
-Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options,
+Processor::Processor(const Device& given, const SolverPlan& plan, const Options& options,
                      const ProcessorTuning& tuning) {
   check_options(options, tuning);
   check(plan, "solver plan");
+  const Device device = given.for_plan(plan);
+  const auto open = [=] {
+    return with_opencl_errors(
+        device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
+  };
+  if (device.state().is_host()) {
+    state_ = open();
+    return;
+  }
   const auto compile = [=] {
     std::function<void()> notify;
     if (options.on_compiling) {
       notify = [&] { options.on_compiling(line_on_compiling(device.info())); };
     }
     const LateCall notice(kCompileNotice, notify);
-    return with_opencl_errors(
-        device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
+    return open();
   };
-  if (options.start_on_host && HostStart::serves(plan)) {
+  if (options.start_on_host && starts_on_host(plan)) {
     try {
+      Processor host(open_device("host"), plan, {.frames_in_flight = options.frames_in_flight});
       start_ = std::make_unique<Start>(Start{device, decide_sharing(options.memory, device),
-                                             HostStart(plan, options.frames_in_flight),
+                                             plan.calibration.tare, std::move(host),
                                              std::async(std::launch::async, compile)});
       start_->compiled.wait_for(kCompiledBefore);
       end_start();
@@ -251,9 +315,9 @@ void Processor::await_kernels() {
 bool Processor::submit_on_host(const FrameView& frame) {
   if (start_ == nullptr) return false;
   end_start();
-  const auto in_flight_now = static_cast<std::size_t>(in_flight());
-  if (start_->host.in_flight() > 0 && in_flight_now == start_->host.slots()) {
-    throw_all_in_flight(in_flight_now);
+  const std::size_t slots = start_->host.state_->slots.size();
+  if (start_->host.in_flight() > 0 && static_cast<std::size_t>(in_flight()) == slots) {
+    throw_all_in_flight(slots);
   }
   if (state_ != nullptr) return false;
   start_->host.submit(frame);
@@ -363,13 +427,13 @@ Curvature Processor::curvature() const {
 
 int Processor::in_flight() const {
   const std::size_t on_device = state_ ? state_->scheduler.in_flight() : 0;
-  return static_cast<int>(on_device + (start_ ? start_->host.in_flight() : 0));
+  return static_cast<int>(on_device) + (start_ ? start_->host.in_flight() : 0);
 }
 
 int Processor::pinned() const { return state_ ? static_cast<int>(state_->scheduler.pinned()) : 0; }
 
 std::vector<float> Processor::tare() const {
-  if (!state_) return start_->host.plan().calibration.tare;
+  if (!state_) return start_->tare;
   return with_opencl_errors(state_->device.info().name, [&] {
     if (!state_->calibration.has_tare()) return std::vector<float>();
     if (state_->order.left() != nullptr) state_->order.left.wait();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "device/large_pages.h"
 #include "device/opencl.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/processor.h"
@@ -56,12 +57,50 @@ struct DeviceFrame {
   std::uint64_t row_stride = 0;  ///< readings
 };
 
+/// The results of a frame in host memory.
+class ResultMemory {
+ public:
+  virtual ~ResultMemory() = default;
+  ResultMemory(const ResultMemory&) = delete;
+  ResultMemory& operator=(const ResultMemory&) = delete;
+
+  [[nodiscard]] const ResultLayout& layout() const { return layout_; }
+  /// A plane; null if the plan does not have it. Shared memory passes writes on to the device.
+  [[nodiscard]] std::byte* plane(std::size_t index) const {
+    return layout_.has[index] ? pages_ + layout_.planes[index] : nullptr;
+  }
+  [[nodiscard]] std::uint8_t* status() const {
+    return reinterpret_cast<std::uint8_t*>(pages_ + layout_.status);
+  }
+  /// The block of whole pages that holds all planes; it does not move.
+  [[nodiscard]] std::span<const std::byte> pages() const { return {pages_, layout_.bytes}; }
+  /// The flags of idle blocks; none if they stay on the device.
+  [[nodiscard]] IdleBlocks idle_blocks() const;
+
+ protected:
+  explicit ResultMemory(const ResultLayout& layout) : layout_(layout) {}
+
+  ResultLayout layout_;
+  std::byte* pages_ = nullptr;
+  bool has_flags_ = false;  ///< the flags follow the pages
+};
+
+/// Results that the host itself writes.
+class HostMemory final : public ResultMemory {
+ public:
+  explicit HostMemory(const ResultLayout& layout);
+
+  /// Results, idle flags and scratch memory.
+  [[nodiscard]] std::byte* bytes() const { return pages_; }
+
+ private:
+  LargePages memory_;
+};
+
 /// Transfers one frame to the device and its result back. The device owns the memory between
 /// upload() and download(), the host otherwise.
-class SlotMemory {
+class SlotMemory : public ResultMemory {
  public:
-  virtual ~SlotMemory() = default;
-
   /// Makes the frame's readings and memory for its results available to the next commands on
   /// `queue`.
   virtual DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) = 0;
@@ -72,29 +111,13 @@ class SlotMemory {
   /// Returns the memory to the device, before both end: PoCL leaks a buffer that is still mapped.
   virtual void release(const cl::CommandQueue& queue) { static_cast<void>(queue); }
 
-  [[nodiscard]] const ResultLayout& layout() const { return layout_; }
   /// Results and idle flags, which the kernel writes; the flags are zero at first.
   [[nodiscard]] const cl::Buffer& results() const { return results_; }
-  /// A plane in host memory; null if the plan does not have it. Shared memory passes writes on to
-  /// the device.
-  [[nodiscard]] std::byte* plane(std::size_t index) const {
-    return layout_.has[index] ? pages_ + layout_.planes[index] : nullptr;
-  }
-  [[nodiscard]] std::uint8_t* status() const {
-    return reinterpret_cast<std::uint8_t*>(pages_ + layout_.status);
-  }
-  /// The block of whole pages that holds all planes in host memory; it does not move.
-  [[nodiscard]] std::span<const std::byte> pages() const { return {pages_, layout_.bytes}; }
-  /// The flags of idle blocks; none if they stay on the device.
-  [[nodiscard]] IdleBlocks idle_blocks() const;
 
  protected:
-  explicit SlotMemory(ResultLayout layout) : layout_(layout) {}
+  using ResultMemory::ResultMemory;
 
-  ResultLayout layout_;
   cl::Buffer results_;
-  std::byte* pages_ = nullptr;
-  bool shares_flags_ = false;  ///< the flags follow the host's pages
 };
 
 /// Zero copy: the kernel reads the caller's memory and writes memory that the caller reads.

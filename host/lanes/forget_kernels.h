@@ -30,6 +30,7 @@
 #undef PF_BASELINE
 #undef PF_RING
 #undef PF_WIRE_LANES
+#undef PF_WIRE_SCALAR
 #undef PF_LOAD_WIRES
 #undef PF_STORE_WIRES
 #undef PF_NEWLY_IDLE

@@ -14,6 +14,7 @@
 // Vectors are passed between functions that are all inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
 
 namespace pillarfield {
 namespace {
@@ -129,13 +130,13 @@ void for_each_item(const LanePlan& plan, const LaneFrame& frame, LaneRange range
   }
 }
 
-#define PF_DEFINE_RUN(name)                                                                \
-  void name(const LanePlan& plan, const LaneFrame& frame, LaneRange range, size_t first,   \
-            size_t last) {                                                                 \
-    for_each_item<Numbers>(                                                                \
-        plan, frame, range, first, last, [&](Numbers& program, const Numbers::Layout& l) { \
+#define PF_DEFINE_RUN(name)                                                                        \
+  void name(const LanePlan& plan, const LaneFrame& frame, LaneRange range, size_t first,           \
+            size_t last) {                                                                         \
+    for_each_item<Numbers>(                                                                        \
+        plan, frame, range, first, last, [&](Numbers& program, const Numbers::Layout& l) {         \
           program.name(static_cast<const float*>(frame.raw), frame.calibration, frame.results, l); \
-        });                                                                                \
+        });                                                                                        \
   }
 PF_DEFINE_RUN(find_wires)
 PF_DEFINE_RUN(remove_pillar_leak)
@@ -147,11 +148,11 @@ PF_DEFINE_RUN(solve_frame)
 void solve_any_frame(const LanePlan& plan, const LaneFrame& frame, LaneRange range, size_t first,
                      size_t last) {
   if (!plan.whole) return solve_frame(plan, frame, range, first, last);
-  for_each_item<WholeNumbers>(
-      plan, frame, range, first, last, [&](WholeNumbers& program, const WholeNumbers::Layout& l) {
-        program.solve_frame(static_cast<const uchar*>(frame.raw), frame.calibration, frame.results,
-                            l);
-      });
+  for_each_item<WholeNumbers>(plan, frame, range, first, last,
+                              [&](WholeNumbers& program, const WholeNumbers::Layout& l) {
+                                program.solve_frame(static_cast<const uchar*>(frame.raw),
+                                                    frame.calibration, frame.results, l);
+                              });
 }
 
 void bend_tare(const LanePlan& plan, const LaneFrame& frame,
@@ -174,7 +175,7 @@ void follow_baseline(const LanePlan& plan, const LaneFrame& frame, float rate,
 
 extern const LaneProgram PF_LANE_PROGRAM;
 const LaneProgram PF_LANE_PROGRAM = {
-    PF_LANE_NAME,      PF_NUMBER_LANES,   PF_WHOLE_LANES, find_wires, solve_any_frame,
+    PF_LANE_NAME,       PF_NUMBER_LANES,   PF_WHOLE_LANES, find_wires, solve_any_frame,
     remove_pillar_leak, find_shear_ratios, correct_forces, bend_tare,  follow_baseline};
 
 }  // namespace pillarfield

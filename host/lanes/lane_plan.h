@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "solve/pillar_maths.h"
 
@@ -68,7 +69,7 @@ struct LaneFrame {
 /// The entry points of kernels/frame, compiled for one instruction set. Each runs the work-items
 /// [first, last) of those along `down` of a range.
 struct LaneProgram {
-  const char* name = nullptr;  ///< "AVX-512", "AVX2" or "SSE2"; of other processors "baseline"
+  const char* name = nullptr;  ///< of the instruction set: "AVX-512"
   int lanes = 0;               ///< pillars of a block, but of whole numbers
   int whole_lanes = 0;
   using Run = void (*)(const LanePlan& plan, const LaneFrame& frame, LaneRange range,
@@ -85,10 +86,11 @@ struct LaneProgram {
                           std::uint32_t interval) = nullptr;
 };
 
-/// The program for this processor's widest instruction set.
-[[nodiscard]] const LaneProgram& lane_program();
+/// The programs that this processor runs, those with the most lanes first.
+[[nodiscard]] std::span<const LaneProgram* const> lane_programs();
 
-/// All programs that this processor runs, the widest first.
-[[nodiscard]] const LaneProgram* const* lane_programs(std::size_t& count);
+/// The one with the most lanes, at most `most`, that a row of so many blocks of 2 x 2 sensels
+/// fills.
+[[nodiscard]] const LaneProgram& lane_program(std::uint32_t quad_cols, int most);
 
 }  // namespace pillarfield

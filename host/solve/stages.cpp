@@ -1,10 +1,14 @@
 #include "solve/stages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 
+#include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/sensor_corrections.h"
@@ -41,6 +45,18 @@ bool has_memory_on_device(const SolverPlan& plan) {
   return std::ranges::any_of(stages_of(plan), [](const Stage& stage) {
     return stage.has_memory && stage.place != StagePlace::host;
   });
+}
+
+bool corrects_forces(const SolverPlan& plan) {
+  const SensorEffects& effects = plan.calibration.effects;
+  return effects.arm_mm || (effects.pillar_leak && (plan.angles || plan.uncertainty));
+}
+
+float single_constant(double value) {
+  const auto rounded = static_cast<float>(value);
+  if (std::isfinite(rounded)) return rounded;
+  throw Error("solver plan", fmt::format("a constant of the kernel is {}", value),
+              "check the skin and the calibration for values that are far too large or small");
 }
 
 std::vector<StageConstant> stage_constants(const SolverPlan& plan) {

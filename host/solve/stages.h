@@ -49,6 +49,13 @@ struct StageConstant {
 /// True if frames must be solved in their order on the device.
 [[nodiscard]] bool has_memory_on_device(const SolverPlan& plan);
 
+/// True if the forces of a plan are corrected by those of the pillars around, or what is derived
+/// from them follows such a correction.
+[[nodiscard]] bool corrects_forces(const SolverPlan& plan);
+
+/// A constant in single precision, as kernels take it. Throws Error if it is not finite.
+[[nodiscard]] float single_constant(double value);
+
 /// The stages that a plan names, without their constants, in the precision of `Stages`:
 /// single_precision::Stages or double_precision::Stages.
 template <class Stages>

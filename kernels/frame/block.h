@@ -1,6 +1,6 @@
 /* What a work-item of solve_frame.cl reads and writes. */
 
-#if defined(PF_LEAK) && PF_LANES > 1
+#if defined(PF_LEAK) && !defined(PF_SCALAR)
 #define PF_RING
 /* The pillar rows around one: neighbours.h. */
 typedef struct {

@@ -4,7 +4,7 @@
 
 /* Values of PF_LANES pillars of a row from column `col` on; zero outside. */
 PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
-#if PF_LANES == 1
+#ifdef PF_SCALAR
   return col >= 0 && (uint)col < cols ? row[col] : 0.0f;
 #else
   if (col >= 0 && (uint)col + PF_LANES <= cols) return PF_LOAD_WHOLE(float, row + col);

@@ -19,7 +19,7 @@
     return PF_IN_RANGE(type, reading) ? summed : none;                  \
   }
 PF_DEFINE_SUMMED(summed_reading, float)
-#if PF_LANES > 1
+#ifndef PF_SCALAR
 PF_DEFINE_SUMMED(summed_readings, Real)
 #endif
 
@@ -39,7 +39,7 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
 #ifdef PF_MASK
   global const uchar* const good = PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset;
 #endif
-#if PF_LANES > 1
+#ifndef PF_SCALAR
   for (; col + PF_LANES <= cols; col += PF_LANES) {
     Real valid = PF_CONSTANT(Real, 1.0f);
 #ifdef PF_MASK

@@ -59,7 +59,7 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
  * threshold. */
 PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
                        global const PF_SENSEL* activation, size_t activation_stride) {
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_READING(place, i) (place)[i]
 #else
 #define PF_READING(place, i) PF_LOAD_WHOLE(PF_SENSEL, (place) + (i)*PF_LANES)
@@ -71,7 +71,7 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
 #endif
 #define PF_ACTIVE(row, i) \
   PF_IS_ACTIVE(PF_READING(raw + row * row_stride, i), PF_THRESHOLD_AT(row, i))
-#if PF_LANES == 1
+#ifdef PF_SCALAR
   return !(PF_ACTIVE(0, 0) || PF_ACTIVE(0, 1) || PF_ACTIVE(1, 0) || PF_ACTIVE(1, 1));
 #elif defined(PF_ACTIVATION) && !defined(PF_RANGE)
   /* One threshold for all sensels, and no NaN: comparing the largest reading suffices. */

@@ -37,7 +37,7 @@ typedef struct {
 } TileRange;
 
 /* Readings in their own type, which is narrower, if all are valid numbers. */
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_SENSELS_AT(place) (*(place))
 #define PF_REALS_OF(readings) (PF_CONSTANT(Real, readings))
 #else
@@ -48,7 +48,7 @@ typedef struct {
 typedef Real SenselLanes;
 #define PF_READINGS_AT(place) PF_REALS_OF(PF_SENSELS_AT(place))
 #else
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 typedef PF_SENSEL SenselLanes;
 #else
 typedef PF_LANE_TYPE(PF_SENSEL) SenselLanes;
@@ -82,7 +82,7 @@ PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes
 }
 
 PF_INLINE TileRange range_of_lanes(LaneRange range) {
-#if PF_LANES == 1
+#ifdef PF_SCALAR
   const TileRange result = {(float)range.largest, (float)range.distance};
 #else
   float largest[PF_LANES];

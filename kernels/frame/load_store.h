@@ -23,7 +23,7 @@ typedef RealPair CountsPair;
 /* True where a comparison holds in any lane. */
 #define PF_ANY(mask) any_bits(PF_JOIN(convert_char, PF_LANES)(mask))
 
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_LANE_NUMBERS 0.0f
 #elif PF_LANES == 2
 #define PF_LANE_NUMBERS (Real)(0, 1)
@@ -37,7 +37,7 @@ typedef RealPair CountsPair;
 
 /* Unaligned vectors. Drivers split vload and vstore (PoCL 3.1: bytes one by one, 16 floats into
  * three accesses), but not a member of a packed structure. */
-#if PF_LANES > 1
+#ifndef PF_SCALAR
 #define PF_DEFINE_PACKED(type)             \
   typedef struct __attribute__((packed)) { \
     PF_LANE_TYPE(type) value;              \
@@ -51,7 +51,7 @@ PF_DEFINE_PACKED(float)
 #endif
 
 /* load_<name>(row): sensels under PF_LANES pillars, as Real; readings as Counts. */
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_DEFINE_LOAD(name, type, Pair, split)        \
   PF_INLINE Pair load_##name(global const type* row) { \
     Pair pair;                                         \
@@ -124,7 +124,7 @@ PF_INLINE CountsPair load_readings(global const uchar* row) {
 PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 #endif
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 PF_INLINE RealPair load_private(const float* row) {
   const RealPair pair = {row[0], row[1]};
   return pair;
@@ -140,7 +140,7 @@ PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
  * level, for blocks that are solved next; PF_PREFETCH_FAR into the second, which allows more
  * requests in flight, for blocks that are likely idle. Addresses past the end of a plane are
  * harmless. Only PoCL is certain to have the builtin. */
-#if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
+#if !defined(PF_SCALAR) && defined(POCL_DEVICE_ADDRESS_BITS)
 #define PF_PREFETCH_SPAN(row, count, locality)                             \
   for (size_t byte_ = 0; byte_ < (count) * sizeof(*(row)); byte_ += 64) {  \
     __builtin_prefetch((const void*)((size_t)(row) + byte_), 0, locality); \
@@ -164,7 +164,7 @@ PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES
 
 /* store_<name>(pair, row, lanes): writes values in the layout that load_<name> reads; an integer
  * type takes whole values. */
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_DEFINE_STORE(name, type)                                           \
   PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) { \
     row[0] = (type)pair.left;                                                 \
@@ -197,7 +197,7 @@ PF_DEFINE_STORE(readings, PF_SENSEL)
 
 /* With PF_STREAM, full blocks bypass the caches, for results that exceed them; such blocks are
  * aligned to their size. */
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_STORE_BLOCK(results, plane) *(plane) = (results)
 #elif defined(PF_STREAM) && defined(POCL_DEVICE_ADDRESS_BITS)
 #define PF_STORE_BLOCK(results, plane) __builtin_nontemporal_store(results, (global Real*)(plane))
@@ -209,7 +209,7 @@ PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
   if (are_all(lanes)) {
     PF_STORE_BLOCK(value, plane);
   } else {
-#if PF_LANES > 1
+#ifndef PF_SCALAR
     float values[PF_LANES];
     PF_VSTORE(value, 0, values);
     for (uint i = lanes.first; i < lanes.end; ++i) plane[i] = values[i];
@@ -219,7 +219,7 @@ PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
 
 #ifdef PF_SENSELS
 /* Writes the values of one row of sensels under PF_LANES pillars, those of `sensels`. */
-#if PF_LANES == 1
+#ifdef PF_SCALAR
 #define PF_DEFINE_STORE_SENSELS(name, Value, type, as, store)                             \
   PF_INLINE void store_##name(Value left, Value right, global type* row, Lanes sensels) { \
     if (sensels.first == 0) row[0] = (type)left;                                          \
@@ -251,7 +251,7 @@ PF_DEFINE_STORE_SENSELS(sensel_status, Bits, uchar, PF_JOIN(as_uchar, PF_LANES),
 #endif
 
 PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
-#if PF_LANES == 1
+#ifdef PF_SCALAR
   *plane = (uchar)value;
 #else
   const PF_LANE_TYPE(uchar) bytes = PF_JOIN(as_uchar, PF_LANES)(value);
@@ -267,7 +267,7 @@ PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
 
 /* Status bytes of PF_LANES pillars from column `col` on; bytes outside the row are zero. */
 PF_INLINE Bits load_status(global const uchar* row, int col, uint cols) {
-#if PF_LANES == 1
+#ifdef PF_SCALAR
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else
   if (col >= 0 && (uint)col + PF_LANES <= cols) {

@@ -68,7 +68,7 @@ PF_INLINE RealPair split_lanes(Real low, Real high, std::integer_sequence<int, i
 template <int... i>
 PF_INLINE RealPair alternate_lanes(Real left, Real right, std::integer_sequence<int, i...>) {
   return {PF_SHUFFLE(left, right, (i / 2 + i % 2 * PF_LANES)...),
-          PF_SHUFFLE(left, right, ((i + PF_LANES) / 2 + i % 2 * PF_LANES)...)};
+          PF_SHUFFLE(left, right, ((i + PF_LANES) / 2 + (i + PF_LANES) % 2 * PF_LANES)...)};
 }
 #undef PF_SHUFFLE
 

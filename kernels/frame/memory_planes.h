@@ -18,7 +18,7 @@ PF_INLINE MemoryModel memory_model(void) {
  * lane, those of other blocks' lanes unused; with one lane the words of a row of pillars do. */
 PF_INLINE global Word* word_at(Calibration calibration, uint word, uint row, Block block) {
   global uint* const words = (global uint*)PF_PLANE_OF(calibration, uint, (size_t)PF_MEMORY_PLANE);
-#if PF_LANES == 1
+#ifdef PF_SCALAR
   return words + ((size_t)row * PF_MEMORY_WORDS + word) * block.blocks + block.at;
 #else
   const size_t number = (size_t)row * block.blocks + block.at;

@@ -133,7 +133,7 @@ PF_INLINE void write_sensels(Block block, Input input, Output output) {
 PF_INLINE Solution solve_block(Block block, Input input) {
   const Calibration calibration = input.calibration;
   const Pillar pillar = corrected_block(block, input);
-#if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE))
+#if !defined(PF_SCALAR) && (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE))
   const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
                        is_invalid(pillar.s4);
   if (!any_lane(invalid)) {

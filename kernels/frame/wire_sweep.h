@@ -20,12 +20,13 @@ typedef struct {
 } RowWires;
 
 /* PF_WIRE_PARTS sensels at once: vectors of the device, or one by one. */
-#if defined(__cplusplus) && !defined(PF_LANES)
+#if defined(PF_SCALAR) || (defined(__cplusplus) && !defined(PF_LANES))
+#define PF_WIRE_SCALAR
 #define PF_WIRE_LANES 1
 #else
 #define PF_WIRE_LANES PF_LANES
 #endif
-#if PF_WIRE_LANES == 1
+#ifdef PF_WIRE_SCALAR
 #define PF_LOAD_WIRES(place) (*(place))
 #define PF_STORE_WIRES(value, place) *(place) = (value)
 #else
@@ -39,7 +40,7 @@ typedef struct __attribute__((packed, may_alias)) {
 #define PF_WIRE_GROUPS (PF_WIRE_PARTS / PF_WIRE_LANES)
 
 /* Sum of lanes, by pairs. */
-#if PF_WIRE_LANES == 1
+#ifdef PF_WIRE_SCALAR
 PF_INLINE float sum_of_lanes(Real lanes) { return lanes; }
 #elif defined(__cplusplus)
 PF_INLINE float sum_of_lanes(Real lanes) {

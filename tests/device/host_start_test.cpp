@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
 #include "tests/device/same_bits.h"
@@ -28,7 +29,7 @@ SolverPlan unseen_plan() {
 }
 
 Processor starting(const SolverPlan& plan, int slots) {
-  return {test_device(), plan, {.frames_in_flight = slots, .start_on_host = true}};
+  return {open_device("opencl"), plan, {.frames_in_flight = slots, .start_on_host = true}};
 }
 
 void expect_solved(const ForceFieldView& forces, const SolverPlan& plan, const RandomFrame& frame) {
@@ -117,11 +118,11 @@ TEST(HostStart, AProcessorMayEndOrMoveWhileItCompiles) {
 }
 
 TEST(HostStart, ServesPlansWhoseFramesTheHostSolvesAlone) {
-  EXPECT_TRUE(HostStart::serves(unseen_plan()));
+  EXPECT_TRUE(starts_on_host(unseen_plan()));
   const auto serves = [](auto change) {
     SolverPlan plan = unseen_plan();
     change(plan);
-    return HostStart::serves(plan);
+    return starts_on_host(plan);
   };
   EXPECT_FALSE(serves([](SolverPlan& plan) { plan.angles = true; }));
   EXPECT_FALSE(serves([](SolverPlan& plan) { plan.baseline_rate = 0.1; }));

@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(FurtherPaths, SpeedPathTest,
                                          SpeedPath{SenselType::f32, 16}),
                          name_of_path);
 
-/// Idle blocks are skipped: a value written into their results stays.
+/// Idle blocks are skipped, by the host always: a value written into their results stays.
 TEST(SpeedPaths, AnIdleBlockIsNotWrittenAgain) {
   if (!test_device().info().shares_memory) GTEST_SKIP() << "the device does not share memory";
   SolverPlan plan = bare_plan(8, 2 * 64, SenselType::u8);
@@ -155,7 +155,8 @@ TEST(SpeedPaths, AnIdleBlockIsNotWrittenAgain) {
     const ForceFieldView forces = processor.receive();
     const_cast<float&>(forces.normal[5]) = 42;  // Breaks the contract, to detect a write.
     processor.submit(frame.view());
-    EXPECT_EQ(processor.receive().normal[5], skip ? 42.0F : 0.0F);
+    const bool skips = skip || test_device().info().type == "host";
+    EXPECT_EQ(processor.receive().normal[5], skips ? 42.0F : 0.0F);
   }
 }
 

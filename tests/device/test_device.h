@@ -2,17 +2,22 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <optional>
 
 #include "pillarfield/processor.h"
 
 namespace pillarfield {
 
-/// One device for all tests of a program, so that kernels are compiled once. It is closed before
-/// the process ends: drivers must not be called while their statics are destroyed.
+/// One device for all tests of a program, so that kernels are compiled once: that of the
+/// environment variable PILLARFIELD_TEST_DEVICE, or the best OpenCL device. It is closed before the
+/// process ends: drivers must not be called while their statics are destroyed.
 class DeviceForTests : public testing::Environment {
  public:
-  void SetUp() override { device = open_device(); }
+  void SetUp() override {
+    const char* const wanted = std::getenv("PILLARFIELD_TEST_DEVICE");
+    device = open_device(wanted != nullptr ? wanted : "opencl");
+  }
   void TearDown() override { device.reset(); }
   static inline std::optional<Device> device;
 };

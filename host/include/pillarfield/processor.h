@@ -24,13 +24,13 @@ enum class Memory : std::uint8_t {
   staged,     ///< copies to and from buffers of the device
 };
 
-/// Properties of an OpenCL device, printed by `pillarfield info --devices`.
+/// Properties of a device, printed by `pillarfield info --devices`.
 struct DeviceInfo {
-  int index = 0;  ///< for open_device()
+  int index = 0;  ///< for open_device(); -1: the host without OpenCL
   std::string name;
   std::string platform;
   std::string version;         ///< of OpenCL and its driver: "OpenCL 3.0 PoCL HSTR: ..."
-  std::string type;            ///< "CPU", "GPU", "accelerator" or "other"
+  std::string type;            ///< "CPU", "GPU", "accelerator", "other", or "host"
   int lanes = 1;               ///< pillars that a work-item solves at once
   bool shares_memory = false;  ///< uses the host's memory, so Memory::shared is possible
   std::string unsuitable;      ///< why open_device() skips it; empty if it is suitable
@@ -52,26 +52,42 @@ struct DeviceInfo {
 /// A device and the programs compiled for it so far. Copies share both.
 class Device {
  public:
+  /// Of a device that was not named, opens the best OpenCL device, as open_device() says.
   [[nodiscard]] const DeviceInfo& info() const;
+
+  /// The device that solves the frames of a plan: this one, if it was named. Else the host for a
+  /// skin of up to 16,384 pillars (or 2 x 2 sensels), without opening OpenCL, and the best OpenCL
+  /// device for a larger one; the host if there is no such device. Throws Error in the cases of
+  /// list_devices().
+  [[nodiscard]] Device for_plan(const SolverPlan& plan) const;
 
   /// @cond internal
   struct State;
+  class Best;
   explicit Device(std::shared_ptr<State> state) : state_(std::move(state)) {}
-  [[nodiscard]] State& state() const { return *state_; }
+  explicit Device(std::shared_ptr<Best> best) : best_(std::move(best)) {}
+  [[nodiscard]] State& state() const;
   /// @endcond
 
  private:
   std::shared_ptr<State> state_;
+  std::shared_ptr<Best> best_;  ///< of a device that was not named
 };
 
-/// Opens a device by its index or by a part of its name (any case). An empty argument opens the
-/// best suitable device; GPUs come before CPUs. Throws Error, which lists every device and why it
-/// was skipped, if none matches, and in the cases of list_devices().
-[[nodiscard]] Device open_device(std::string_view index_or_name = {});
+/// Opens a device:
+///
+///     ""        the host for small skins, else the best OpenCL device: see Device::for_plan()
+///     "host"    the host: the kernels as vectors of the processor, without OpenCL and its compiler
+///     "opencl"  the best suitable OpenCL device; GPUs come before CPUs
+///     else      an OpenCL device by its index or by a part of its name (any case)
+///
+/// Throws Error, which lists every OpenCL device and why it was skipped, if none matches, and in
+/// the cases of list_devices(); with an empty argument when the device is first needed.
+[[nodiscard]] Device open_device(std::string_view wanted = {});
 
 struct ProcessorTuning;  // tuning.h
 
-/// Solves frames on an OpenCL device according to a SolverPlan.
+/// Solves frames on a device according to a SolverPlan.
 ///
 ///     Processor processor(open_device(), plan);
 ///     processor.submit(frame.view());
@@ -90,8 +106,8 @@ class Processor {
   struct Options {
     Memory memory = Memory::automatic;
     int frames_in_flight = 2;  ///< slots, 1 to 64
-    /// While kernels are compiled, which takes seconds where the driver's cache does not hold them,
-    /// submit() solves on the host instead, in the calling thread and with the same bits, so that
+    /// While the kernels of an OpenCL device are compiled, which takes seconds where the driver's
+    /// cache does not hold them, submit() solves on the host instead, with the same bits, so that
     /// forces come at once; pin() finds no frame, and set_tare() waits for the kernels. Has no
     /// effect with angles, estimators other than `direct`, and plans whose frames leave
     /// something to the next ones (a followed baseline, a bent skin, hysteresis, creep).
@@ -121,9 +137,10 @@ class Processor {
     std::unique_ptr<State> state_;
   };
 
-  /// Compiles the kernels, or finds them compiled, and allocates all memory: seconds the first
-  /// time, milliseconds later. Throws Error if the plan or the options are out of range or the
-  /// device fails.
+  /// Allocates all memory for the device that Device::for_plan() chooses. On an OpenCL device,
+  /// compiles the kernels, or finds them compiled: seconds the first time, milliseconds later. On
+  /// the host there is nothing to compile, and submit() solves the frame before it returns. Throws
+  /// Error if the plan or the options are out of range or the device fails.
   Processor(const Device& device, const SolverPlan& plan, const Options& options);
   Processor(const Device& device, const SolverPlan& plan);
   /// For tests and benchmarks; include pillarfield/tuning.h.

@@ -21,7 +21,8 @@ enum class Stores : std::uint8_t {
 
 /// Optimisations. They change the speed, never a bit of the result.
 struct SpeedPaths {
-  /// Skip blocks of idle pillars that were idle too when their slot was last written.
+  /// Skip blocks of idle pillars that were idle too when their slot was last written. The host
+  /// always does.
   bool skip_idle = true;
   Stores stores = Stores::automatic;
 };

@@ -1,0 +1,62 @@
+#include "device/slot_layout.h"
+
+#include "device/kernel_source.h"
+#include "skin/quads.h"
+
+namespace pillarfield {
+namespace {
+
+std::size_t tiles_of(std::size_t quads, std::size_t tile) { return (2 * quads + tile - 1) / tile; }
+
+/// Floats of the rings of kernels/frame/neighbours.h.
+std::size_t ring_floats(const SolverPlan& plan, const Division& division) {
+  if (!plan.calibration.effects.sensel_leak || !division.has_rings) return 0;
+  constexpr std::size_t kRows = 3;  // PF_RING_ROWS
+  const std::uint32_t cols = quad_cols(plan.skin);
+  const std::size_t flags = kRows * blocks_of_row(cols, static_cast<std::uint32_t>(division.lanes));
+  return division.bands *
+         (4 * kRows * (std::size_t{cols} + 2) + (flags + sizeof(float) - 1) / sizeof(float));
+}
+
+}  // namespace
+
+SlotLayout::SlotLayout(const SolverPlan& plan, const Division& division, bool skips_idle,
+                       const CalibrationMemory& calibration)
+    : results(plan, skips_idle ? division.lanes : 0) {
+  const SensorEffects& effects = plan.calibration.effects;
+  std::size_t wires = 0;  // floats of the vectors of kernels/frame/wire_vectors.h
+  if (effects.wires) {
+    tiles_across = tiles_of(quad_cols(plan.skin), effects.wires->tile_cols);
+    tiles_down = tiles_of(quad_rows(plan.skin), effects.wires->tile_rows);
+    wires = 2 * (3 * quad_rows(plan.skin) * tiles_across + quad_cols(plan.skin) * tiles_down);
+  }
+  layout = {.row_stride = 0,
+            .rows = quad_rows(plan.skin),
+            .cols = quad_cols(plan.skin),
+            .sensel_rows = plan.skin.rows,
+            .sensel_cols = plan.skin.cols,
+            .plane_stride = calibration.stride(),
+            .plane_bytes = calibration.plane_bytes(),
+            .result_bytes = results.plane_bytes,
+            .status = results.status,
+            .touched = results.status,
+            .idle = results.bytes,
+            .ring = 0,
+            .wires = 0,
+            .frame = 0,
+            .forces = 0,
+            .ratios = 0};
+  const auto scratch = [&](std::size_t bytes) {
+    const std::size_t begin = results.all_bytes();
+    results.scratch += bytes;
+    return begin;
+  };
+  layout.forces = scratch(effects.pillar_leak ? 3 * results.plane_bytes : 0);
+  layout.ratios = scratch(effects.arm_mm ? 4 * results.plane_bytes : 0);
+  layout.ring = scratch(ring_floats(plan, division) * sizeof(float));
+  layout.wires = scratch(wires * sizeof(float));
+  const bool marks_touched = plan.baseline_rate && !plan.skin.has_pillars();
+  if (marks_touched) layout.touched = scratch(quads(plan.skin));
+}
+
+}  // namespace pillarfield
