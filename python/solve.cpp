@@ -152,7 +152,7 @@ bool solve_part_of(Frames& frames, const SolverPlan& plan, const std::string& so
   if (contacts) set_sensor(options.contacts.emplace(), plan);
   SignalCheck check_signals;
   options.stop = [&] { return check_signals(), false; };
-  const Device device = device_named(device_name);
+  const Device device = device_named(device_name).for_plan(plan);
   ForcePart part;
   part.index = index;
   part.count = count;

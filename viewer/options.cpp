@@ -237,7 +237,8 @@ void add_files(CLI::App& app, Options& options) {
 
 void add_devices(CLI::App& app, Options& options) {
   cli::Group devices(&app, "Devices");
-  devices.text("--device", options.device, "DEVICE", "OpenCL device that solves [the best]");
+  devices.text("--device", options.device, "DEVICE",
+               "Device that solves: host, opencl, or one of OpenCL [host for small skins]");
   devices.text("--gpu", options.gpu, "DEVICE",
                "Vulkan device that draws, by a part of its name [the best]");
   devices.flag("--copy", options.copy_fields, "Always copy fields to the Vulkan device");

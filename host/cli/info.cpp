@@ -227,14 +227,16 @@ Json facts_of(const std::string& file, const InfoOptions& given) {
 
 void print_device_error() {
   try {
-    static_cast<void>(open_device());
+    static_cast<void>(open_device("opencl"));
   } catch (const Error& error) {
     fmt::print("{}\n", error.what());
   }
 }
 
 void print_devices(bool json) {
-  const std::vector<DeviceInfo> devices = list_devices();
+  std::vector<DeviceInfo> devices = list_devices();
+  const bool has_opencl = !devices.empty();
+  devices.insert(devices.begin(), open_device("host").info());
   if (json) {
     Json list = Json::array();
     for (const DeviceInfo& device : devices) {
@@ -252,12 +254,15 @@ void print_devices(bool json) {
     fmt::print("{}\n", json_text(list));
     return;
   }
-  if (devices.empty()) print_device_error();
   for (const DeviceInfo& device : devices) {
-    fmt::print("{:>3}  {} ({}, {}; {} lanes, {})  {}\n", device.index, device.name, device.type,
-               device.platform, device.lanes, device.shares_memory ? "zero copy" : "staged",
+    const bool is_host = device.index < 0;
+    fmt::print("{:>4}  {} ({}; {} lanes, {})  {}\n",
+               is_host ? "host" : std::to_string(device.index), device.name,
+               is_host ? "without OpenCL" : device.type + ", " + device.platform, device.lanes,
+               device.shares_memory ? "zero copy" : "staged",
                device.unsuitable.empty() ? "suitable" : "passed over: " + device.unsuitable);
   }
+  if (!has_opencl) print_device_error();
 }
 
 /// Prints the stages and the kernel source for frames of the scene.

@@ -273,7 +273,7 @@ void solve(const SolveOptions& given) {
       open_frames_with_warnings(options.input, frame_options(options.plan), options.quiet);
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);
-  const Device device = open_device(options.device);
+  const Device device = open_device(options.device).for_plan(plan);
   RangeOptions range;
   range.checkpoints = checkpoints_of(options.part);
   range.processor = {.frames_in_flight = kFramesInFlight,

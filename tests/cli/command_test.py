@@ -246,10 +246,16 @@ class Work(CommandTest):
 
     def test_devices_are_listed(self):
         devices = run_json("info", "--devices")
-        self.assertTrue(any(device["unsuitable"] == "" for device in devices))
+        self.assertEqual((devices[0]["type"], devices[0]["index"]), ("host", -1))
+        self.assertTrue(any(device["unsuitable"] == "" for device in devices[1:]))
         run("simulate", self.scene, "-o", self.recording)
         line = self.assert_fails("solve", self.recording, "-o", self.forces, "--device",
-                                 "no such device", names=["no such device", devices[0]["name"]])
+                                 "no such device", names=["no such device", devices[1]["name"]])
+        for wanted, kind in (("host", "host"), ("opencl", devices[1]["type"])):
+            solved = run_json("solve", self.recording, "-o", self.forces, "--overwrite",
+                              "--device", wanted)
+            self.assertIn(solved["device"], [device["name"] for device in devices
+                                             if device["type"] == kind])
         self.assertIn("suitable", line)
 
 

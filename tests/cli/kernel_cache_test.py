@@ -44,7 +44,7 @@ class KernelCache(CommandTest):
 
     def solve(self, *more, **changes):
         """Solves in the environment `changes`."""
-        command = [PROGRAM, "solve", self.recording, "-o", self.output(), *more]
+        command = [PROGRAM, "solve", self.recording, "--device", "opencl", "-o", self.output(), *more]
         return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False,
                               env=environment(**changes))
 
@@ -107,7 +107,8 @@ class KernelCache(CommandTest):
 
     def test_an_interrupt_does_not_disturb_the_compiler(self):
         cache = self.directory("interrupted")
-        process = subprocess.Popen([PROGRAM, "solve", self.recording, "-o", self.output()], text=True,
+        process = subprocess.Popen([PROGRAM, "solve", self.recording, "--device", "opencl", "-o",
+                                    self.output()], text=True,
                                    stderr=subprocess.PIPE, stdout=subprocess.PIPE,
                                    env=environment(POCL_CACHE_DIR=cache))
         # Handlers of the compiler would remove the file that it is writing.
@@ -121,7 +122,7 @@ class KernelCache(CommandTest):
     def messages(self, *more, **changes):
         """Messages of solving on a terminal."""
         status, _, messages = on_terminal(
-            [PROGRAM, "solve", self.recording, "-o", self.output(), *more],
+            [PROGRAM, "solve", self.recording, "--device", "opencl", "-o", self.output(), *more],
             env=environment(**changes))
         self.assertEqual(status, 0, messages)
         return messages
@@ -129,7 +130,7 @@ class KernelCache(CommandTest):
     @unittest.skipIf("ASAN_OPTIONS" in os.environ, "AddressSanitizer needs much address space")
     def test_a_limited_address_space_is_reported(self):
         limit = 200 << 20
-        for command in (["solve", self.recording, "-o", self.folder / "a.npy"],
+        for command in (["solve", self.recording, "--device", "opencl", "-o", self.folder / "a.npy"],
                         ["info", "--devices"]):
             result = subprocess.run(
                 [PROGRAM, *command], capture_output=True, text=True, check=False,

@@ -5,7 +5,7 @@ import pathlib
 import re
 import sys
 
-LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simulation", "compare",
+LAYERS = ["kernels", "base", "skin", "solve", "lanes", "contacts", "calibration", "simulation", "compare",
           "device", "io", "streams", "pipeline", "cli"]
 # Public headers without a source file of their name.
 HEADER_MODULES = {"version": "base", "indenter": "simulation", "closed_form_contact": "simulation",

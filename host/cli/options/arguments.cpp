@@ -154,7 +154,8 @@ void add_info(CLI::App& parent, Work& work) {
   CLI::Option* const file =
       input.text("FILE", options->file, "FILE",
                  "Frames as of solve, force fields, calibration or scene to describe");
-  CLI::Option* const devices = input.flag("--devices", options->devices, "List OpenCL devices");
+  CLI::Option* const devices =
+      input.flag("--devices", options->devices, "List devices: the host and those of OpenCL");
   CLI::Option* const kernel =
       input.text("--kernel", options->kernel, "SCENE",
                  "Print the stages of a scene and the OpenCL C compiled for it");

@@ -91,8 +91,10 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
 
 void add_device(CLI::App* command, std::string& name) {
   Group device(command, "Device");
-  device.text("--device", name, "DEVICE",
-              "OpenCL device, by index or part of its name [the best]; see info --devices");
+  device.text(
+      "--device", name, "DEVICE",
+      "host, opencl, or an OpenCL device by index or part of its name [host for small skins, "
+      "else the best of OpenCL]; see info --devices");
   add_former_option(command, "--memory", "'--memory' has no effect any more: the device decides");
 }
 

@@ -99,7 +99,7 @@ void stream(const StreamOptions& options) {
   const std::unique_ptr<FrameStream> source = opened_source(options);
   if (!source) return;  // Interrupted before a frame came.
   const SolverPlan plan = plan_of(options, *source);
-  const Device device = open_device(options.device);
+  const Device device = open_device(options.device).for_plan(plan);
   Processor processor(device, plan,
                       {.frames_in_flight = options.frames_in_flight,
                        .start_on_host = !options.summary,
