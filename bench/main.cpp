@@ -39,8 +39,8 @@ Usage: pillarfield-bench [OPTIONS]
   Further options are those of Google Benchmark 1.7: --benchmark_out=FILE, --benchmark_color=BOOL,
   --benchmark_counters_tabular=BOOL, --benchmark_enable_random_interleaving=BOOL, ...
 
-Cases: limit/ size/ contact/ regions/ type/ output/ estimator/ lanes/ stage/ sensor/ latency/
-       throughput/ baseline/ intrinsics/ field/ choice/ render/
+Cases: limit/ size/ contact/ regions/ type/ lanes/ stage/ sensor/ latency/ throughput/
+       baseline/ intrinsics/ field/ choice/ render/
 
 Try:  pillarfield-bench --benchmark_filter=size/
       pillarfield-bench --benchmark_filter=baseline/ --seconds=5

@@ -584,14 +584,13 @@ def packets():
     frame = bytes(range(35))
     rows = [packet(bytes(28), 1, kind=3, sequence=n, part=part, parts=5, first=part, count=1)
             for n in range(3) for part in (0, 2, 1, 4, 3)]
-    block = struct.pack("<II", 0, 0) + bytes(128)
     marked = b"\0\xaa\x55".ljust(35)
     return {
         "seed_frames": b"".join(packet(frame, sequence=n) for n in range(4)),
         "seed_rows": b"".join(rows),
         "seed_late_rows": b"".join(rows[5:9] + rows[10:] + rows[9:11]),
-        "seed_blocks": b"".join([packet(block, 2, kind=2, sequence=n, count=1, checked=True) for n in range(3)]
-                                + [packet(b"", 2, kind=2, sequence=3), packet(b"", 3, kind=2, sequence=4)]),
+        "seed_checked": b"".join([packet(frame, sequence=n, checked=True) for n in range(3)]
+                                 + [packet(b"", 3, sequence=3)]),
         "seed_flexitac": flexitac([frame] * 10 + [marked] * 12 + [frame] * 2),
         "hostile_flexitac_loss": flexitac([frame] * 12 + [marked] * 3)[:-80] + flexitac([marked] * 12 + [frame] * 4),
         "hostile_flexitac_marks": b"\xaa\x55" * 400,
@@ -599,8 +598,6 @@ def packets():
         "hostile_claims_bytes": packet(frame, rows=4096, cols=4096, bytes=2**24),
         "hostile_no_parts": packet(frame, parts=0) + packet(frame),
         "hostile_row_beyond": packet(frame) + packet(bytes(7), 1, first=2**32 - 1, count=1),
-        "hostile_block_beyond": packet(frame) + packet(struct.pack("<II", 1, 0) + bytes(64), 2, count=1),
-        "hostile_blocks": packet(frame) + packet(b"", 2, count=2**32 - 1, bytes=2**32 - 72),
         "hostile_checksum": packet(frame) + packet(frame, sequence=1, checked=True)[:-1] + b"x",
         "hostile_cut_short": packet(frame)[:80] + packet(frame, sequence=1),
         "hostile_magic": b"PFR1" * 100 + packet(frame),

@@ -7,9 +7,10 @@
 namespace pillarfield::bench {
 
 BareSolve bare_solve(const SolverPlan& plan) {
-  if (plan.sensel_type != SenselType::u8 || plan.estimator != Estimator::direct ||
-      !plan.calibration.empty() || plan.skin.full_scale_counts || plan.skin.power_law ||
-      plan.parity_tolerance_counts || plan.baseline_rate || plan.angles || plan.uncertainty ||
+  if (!plan.skin.has_pillars() || plan.sensel_type != SenselType::u8 ||
+      plan.estimator != Estimator::direct || !plan.calibration.empty() ||
+      plan.skin.full_scale_counts || plan.skin.power_law || plan.parity_tolerance_counts ||
+      plan.baseline_rate || plan.angles || plan.uncertainty ||
       plan.segment_point != kSegmentPoint) {
     throw Error("baseline", "the plan is not the bare direct solve of uint8 frames",
                 "use a plan without stages");

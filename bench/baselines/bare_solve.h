@@ -15,7 +15,7 @@ struct BareSolve {
   float normal_scale = 0;  ///< N per count
 };
 
-/// Throws Error where the plan has another type, estimator, stage, result or segment point.
+/// Throws Error where the plan has another layout, type, estimator, stage, result or segment point.
 BareSolve bare_solve(const SolverPlan& plan);
 
 /// Result planes [pillar rows, pillar cols].

@@ -9,7 +9,7 @@ namespace pillarfield::bench {
 
 void add_limit_cases(const Session& session);       ///< limit/
 void add_size_cases(const Session& session);        ///< size/, contact/, regions/
-void add_plan_cases(const Session& session);        ///< type/, output/, estimator/, lanes/, stage/
+void add_plan_cases(const Session& session);        ///< type/, lanes/, stage/, sensor/
 void add_time_cases(const Session& session);        ///< latency/, throughput/
 void add_baseline_cases(const Session& session);    ///< baseline/
 void add_intrinsics_cases(const Session& session);  ///< intrinsics/

@@ -55,16 +55,8 @@ Measurement time_memcpy(const Session& session) {
 void add_limit_cases(const Session& session) {
   for (const std::uint32_t side : {100U, kSquareMetre, 1000U}) {
     const SolverPlan plan = bare_plan(side);
-    add_case(fmt::format("limit/copy/{}/none", plan.skin.pillars()),
+    add_case(fmt::format("limit/copy/{}", plan.skin.pillars()),
              [&session, plan] { return time_copies(session, plan); });
-  }
-  for (const char* const stage : {"mask", "tare", "baseline", "angles", "uncertainty", "all"}) {
-    add_case(fmt::format("limit/copy/{}/{}", bare_plan(kSquareMetre).skin.pillars(), stage),
-             [&session, stage] {
-               SolverPlan plan = bare_plan(kSquareMetre);
-               add_stage(plan, stage);
-               return time_copies(session, plan);
-             });
   }
   add_case("limit/empty_launch", [&session] { return time_empty_launch(session); });
   add_case("limit/memcpy", [&session] { return time_memcpy(session); });

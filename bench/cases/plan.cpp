@@ -22,23 +22,8 @@ SolverPlan plan_with(std::string_view stage) {
 }  // namespace
 
 void add_plan_cases(const Session& session) {
-  for (const auto& [name, type] :
-       {std::pair{"u8", SenselType::u8}, {"u16", SenselType::u16}, {"f32", SenselType::f32}}) {
-    add_plan_case(session, fmt::format("type/{}", name), bare_plan(kSquareMetre, type));
-  }
-
-  SolverPlan both = plan_with("angles");
-  add_stage(both, "uncertainty");
-  add_plan_case(session, "output/forces", plan_with("none"));
-  add_plan_case(session, "output/angles", plan_with("angles"));
-  add_plan_case(session, "output/uncertainty", plan_with("uncertainty"));
-  add_plan_case(session, "output/all", both);
-
-  for (const Estimator estimator : {Estimator::direct, Estimator::paper}) {
-    SolverPlan plan = plan_with("none");
-    plan.estimator = estimator;
-    add_plan_case(session, fmt::format("estimator/{}", name_of(estimator)), plan);
-  }
+  add_plan_case(session, "type/u16", bare_plan(kSquareMetre, SenselType::u16));
+  add_plan_case(session, "type/f32", bare_plan(kSquareMetre, SenselType::f32));
   for (const int lanes : {1, 2, 4, 8, 16}) {
     add_plan_case(session, fmt::format("lanes/{}", lanes), plan_with("none"), {.lanes = lanes});
   }

@@ -73,7 +73,7 @@ def solve(raw, estimator, counts_per_newton=1.0, threshold_counts=0.0, dead_zone
     outputs = ["angles"] if noise_counts is None else ["angles", "uncertainty"]
     forces = pf.solve(frame[None], calibration=calibration, estimator=estimator, outputs=outputs,
                       noise_counts=noise_counts, counts_per_newton=counts_per_newton,
-                      threshold_counts=threshold_counts)
+                      threshold_counts=threshold_counts, layout="pillars")
     names = ["theta", "phi", "magnitude", "status"]
     found = {name: np.asarray(getattr(forces, name), float if name != "status" else None)[0, 0] for name in names}
     if noise_counts is not None:

@@ -1,4 +1,5 @@
-"""Every include of host/ names its own or a lower layer (ARCHITECTURE.md, Layers)."""
+"""Every include of host/ names its own or a lower layer, and no include of the product names the laboratory
+(ARCHITECTURE.md, Layers)."""
 
 import os
 import pathlib
@@ -7,6 +8,7 @@ import sys
 
 LAYERS = ["kernels", "base", "skin", "solve", "lanes", "contacts", "calibration", "simulation", "compare",
           "device", "io", "streams", "pipeline", "cli"]
+PRODUCT = ["host", "kernels", "python", "shaders", "viewer"]
 # Public headers without a source file of their name.
 HEADER_MODULES = {"version": "base", "indenter": "simulation", "closed_form_contact": "simulation",
                   "scene": "simulation", "friction": "solve", "host_solve": "solve",
@@ -41,10 +43,21 @@ def upward_includes(host):
     return found
 
 
+def includes_of_the_laboratory(source):
+    """A program of users is built without lab, bench, tests and fuzz."""
+    for path in sorted(path for folder in PRODUCT for path in (source / folder).rglob("*.*")):
+        if path.suffix in (".h", ".cpp", ".cl", ".glsl"):
+            text = path.read_text(encoding="utf-8")
+            for included in re.findall(r'#include "((?:lab|bench|tests|fuzz)/[^"]+)"', text):
+                yield f"{path.relative_to(source)} includes {included}"
+
+
 def main():
-    host = pathlib.Path(os.environ["PILLARFIELD_SOURCE"]) / "host"
+    source = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
+    host = source / "host"
     unknown = {p.name for p in host.iterdir() if p.is_dir()} - set(LAYERS) - {"include"}
-    found = upward_includes(host) + [f"host/{name} is in no layer" for name in unknown]
+    found = [*upward_includes(host), *includes_of_the_laboratory(source),
+             *(f"host/{name} is in no layer" for name in unknown)]
     print("\n".join(found))
     return 1 if found else 0
 

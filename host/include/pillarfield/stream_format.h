@@ -13,10 +13,9 @@ enum PillarfieldReadingType { PILLARFIELD_U8 = 1, PILLARFIELD_U16 = 2, PILLARFIE
 
 /* What follows a packet's header. */
 enum PillarfieldContent {
-  PILLARFIELD_FRAME = 0,  /* all readings, row by row from the top left */
-  PILLARFIELD_ROWS = 1,   /* `count` whole rows from row `first` on */
-  PILLARFIELD_BLOCKS = 2, /* `count` blocks: a uint32_t block number, 4 zero bytes, 64 readings */
-  PILLARFIELD_END = 3     /* nothing: the sensor stops */
+  PILLARFIELD_FRAME = 0, /* all readings, row by row from the top left */
+  PILLARFIELD_ROWS = 1,  /* `count` whole rows from row `first` on */
+  PILLARFIELD_END = 3    /* nothing: the sensor stops */
 };
 
 /* Added to `content`: the packet ends with a uint32_t, counted in `bytes`, the CRC-32 (of zlib,
@@ -24,13 +23,8 @@ enum PillarfieldContent {
  * their own. */
 #define PILLARFIELD_CHECKED 0x100u
 
-/* Blocks are 8 x 8 sensels, numbered row by row; those at the right and lower border of the skin
- * may reach beyond it, where their readings are ignored. */
-#define PILLARFIELD_BLOCK_SIDE 8u
-
 /* The header of every packet: 64 bytes, then `bytes` of readings. A frame is one packet or several
- * with the same `sequence`, in any order. Sensels that no packet of contents `BLOCKS` names keep
- * their readings: such frames name only blocks that changed. */
+ * with the same `sequence`, in any order. */
 typedef struct PillarfieldPacket {
   uint32_t magic;    /* PILLARFIELD_PACKET_MAGIC */
   uint16_t content;  /* PillarfieldContent */
@@ -43,7 +37,7 @@ typedef struct PillarfieldPacket {
   uint32_t part;     /* of this packet in its frame, from 0 */
   uint32_t parts;    /* packets of the frame, at least 1 */
   uint32_t first;    /* ROWS: the first row */
-  uint32_t count;    /* ROWS: rows; BLOCKS: blocks */
+  uint32_t count;    /* ROWS: how many */
   uint32_t patch;    /* 0 */
   uint32_t bytes;    /* after this header */
 } PillarfieldPacket;

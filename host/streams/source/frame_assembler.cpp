@@ -47,10 +47,6 @@ using namespace std::chrono_literals;
 
 }  // namespace
 
-std::size_t FrameAssembler::Slot::marks_of(const FrameShape& shape) {
-  return std::max(shape.rows, shape.blocks());
-}
-
 FrameAssembler::FrameAssembler(const FrameShape& shape, PacketOrder order)
     : shape_(shape),
       window_(static_cast<std::uint64_t>(order)),
@@ -64,7 +60,7 @@ void FrameAssembler::add(const Packet& packet) {
   const PillarfieldPacket& header = packet.header;
   const bool is_last_number = header.sequence == std::numeric_limits<std::uint64_t>::max();
   const auto shape = shape_of(header);
-  const bool intact = shape && is_intact(packet, *shape);
+  const bool intact = shape && is_intact(packet);
   if (is_last_number || !intact || shape != shape_) {
     if (intact && shape != shape_) other_ = shape;
     ++counts_.invalid;
@@ -151,7 +147,7 @@ FrameAssembler::Slot* FrameAssembler::slot_of(std::uint64_t sequence) {
 FrameAssembler::Slot& FrameAssembler::new_slot(const PillarfieldPacket& header) {
   const auto found = std::ranges::find_if(slots_, [](const Slot& slot) { return !slot.used; });
   if (found == slots_.end()) throw Error("stream", "frames were not taken", "call pop()");
-  std::ranges::fill(found->marks, std::uint8_t{0});
+  std::ranges::fill(found->rows_came, std::uint8_t{0});
   found->header = header;
   found->parts_left = header.parts;
   found->order = 0;
@@ -163,29 +159,14 @@ FrameAssembler::Slot& FrameAssembler::new_slot(const PillarfieldPacket& header) 
 
 void FrameAssembler::store(Slot& slot, const Packet& packet) {
   const PillarfieldPacket& header = packet.header;
-  const auto readings = slot.readings.bytes();
+  const bool rows = content_of(header) == PILLARFIELD_ROWS;
+  const std::size_t first = rows ? header.first : 0;
+  const std::size_t count = rows ? header.count : shape_.rows;
   --slot.parts_left;
   slot.arrived = packet.arrived;
-  if (content_of(header) != PILLARFIELD_BLOCKS) {
-    const bool rows = content_of(header) == PILLARFIELD_ROWS;
-    const std::size_t first = rows ? header.first : 0;
-    const std::size_t count = rows ? header.count : shape_.rows;
-    std::memcpy(&readings[first * shape_.row_bytes()], packet.bytes.data(),
-                count * shape_.row_bytes());
-    std::fill_n(slot.marks.begin() + static_cast<std::ptrdiff_t>(first), count, std::uint8_t{1});
-    return;
-  }
-  const std::size_t size = size_of(shape_.type);
-  for (std::uint32_t i = 0; i < header.count; ++i) {
-    const std::byte* const block = &packet.bytes[i * shape_.block_bytes()];
-    const std::uint32_t number = block_number(block);
-    slot.marks[number] = 1;
-    const SenselBlock place = sensels_of_block(shape_, number);
-    for (std::uint32_t row = 0; row < place.rows; ++row) {
-      std::memcpy(&readings[(place.first_row + row) * shape_.row_bytes() + place.first_col * size],
-                  block + kBlockHead + row * size * PILLARFIELD_BLOCK_SIDE, place.cols * size);
-    }
-  }
+  std::memcpy(&slot.readings.bytes()[first * shape_.row_bytes()], packet.bytes.data(),
+              count * shape_.row_bytes());
+  std::fill_n(slot.rows_came.begin() + static_cast<std::ptrdiff_t>(first), count, std::uint8_t{1});
 }
 
 void FrameAssembler::measure_interval(std::uint64_t sequence, Time arrived) {
@@ -272,38 +253,15 @@ bool FrameAssembler::pop(StreamedFrame& frame) {
 
 /// Brings `latest_` up to date.
 void FrameAssembler::merge(Slot& slot, std::vector<SenselBlock>& missing) {
-  switch (content_of(slot.header)) {
-    case PILLARFIELD_FRAME:
-      return std::swap(latest_, slot.readings);
-    case PILLARFIELD_ROWS:
-      return merge_rows(slot, missing);
-    default:
-      return merge_blocks(slot);
-  }
-}
-
-void FrameAssembler::merge_rows(const Slot& slot, std::vector<SenselBlock>& missing) {
+  if (content_of(slot.header) == PILLARFIELD_FRAME) return std::swap(latest_, slot.readings);
   for (std::uint32_t row = 0; row < shape_.rows; ++row) {
-    if (slot.marks[row] != 0) {
+    if (slot.rows_came[row] != 0) {
       const std::size_t start = row * shape_.row_bytes();
       std::memcpy(&latest_.bytes()[start], &slot.readings.bytes()[start], shape_.row_bytes());
-    } else if (row > 0 && slot.marks[row - 1] == 0) {
+    } else if (row > 0 && slot.rows_came[row - 1] == 0) {
       ++missing.back().rows;
     } else {
       missing.push_back({row, 1, 0, shape_.cols});
-    }
-  }
-}
-
-void FrameAssembler::merge_blocks(const Slot& slot) {
-  const std::size_t size = size_of(shape_.type);
-  for (std::uint32_t block = 0; block < shape_.blocks(); ++block) {
-    if (slot.marks[block] == 0) continue;
-    const SenselBlock place = sensels_of_block(shape_, block);
-    for (std::uint32_t row = 0; row < place.rows; ++row) {
-      const std::size_t start =
-          (place.first_row + row) * shape_.row_bytes() + place.first_col * size;
-      std::memcpy(&latest_.bytes()[start], &slot.readings.bytes()[start], place.cols * size);
     }
   }
 }

@@ -119,12 +119,11 @@ class FrameAssembler {
  private:
   struct Slot {
     explicit Slot(const FrameShape& shape)
-        : readings(shape.type, shape.rows, shape.cols), marks(marks_of(shape)) {}
-    static std::size_t marks_of(const FrameShape& shape);
+        : readings(shape.type, shape.rows, shape.cols), rows_came(shape.rows) {}
 
     FrameBuffer readings;
-    std::vector<std::uint8_t> marks;  ///< rows or blocks that came
-    PillarfieldPacket header = {};    ///< of its last packet
+    std::vector<std::uint8_t> rows_came;
+    PillarfieldPacket header = {};  ///< of its last packet
     std::uint32_t parts_left = 0;
     Time arrived{0};
     std::uint64_t order = 0;  ///< of delivery; 0: under way
@@ -145,8 +144,6 @@ class FrameAssembler {
   void release_complete();
   void give_up_before(std::uint64_t sequence);
   void merge(Slot& slot, std::vector<SenselBlock>& missing);
-  void merge_rows(const Slot& slot, std::vector<SenselBlock>& missing);
-  void merge_blocks(const Slot& slot);
 
   FrameShape shape_;
   std::optional<FrameShape> other_;

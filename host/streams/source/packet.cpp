@@ -9,7 +9,6 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::uint32_t kSide = PILLARFIELD_BLOCK_SIDE;
 constexpr std::size_t kChecksumBytes = 4;
 
 bool is_checked(const PillarfieldPacket& header) {
@@ -26,9 +25,6 @@ std::optional<std::size_t> reading_bytes(const PillarfieldPacket& header, const 
       if (header.count < 1 || header.count > shape.rows) return std::nullopt;
       if (header.first > shape.rows - header.count) return std::nullopt;
       return header.count * shape.row_bytes();
-    case PILLARFIELD_BLOCKS:
-      if (header.count > shape.blocks()) return std::nullopt;
-      return header.count * shape.block_bytes();
     case PILLARFIELD_END:
       return 0;
   }
@@ -40,15 +36,6 @@ std::uint32_t checksum_of(const PillarfieldPacket& header, std::span<const std::
   const auto* const rest = reinterpret_cast<const Bytef*>(bytes.data());
   const uLong sum = crc32(0, head, sizeof header);
   return static_cast<std::uint32_t>(crc32_z(sum, rest, bytes.size()));
-}
-
-bool names_blocks_of_frame(const Packet& packet, const FrameShape& shape) {
-  for (std::uint32_t i = 0; i < packet.header.count; ++i) {
-    std::uint32_t number_and_zero[2];
-    std::memcpy(number_and_zero, &packet.bytes[i * shape.block_bytes()], sizeof number_and_zero);
-    if (number_and_zero[0] >= shape.blocks() || number_and_zero[1] != 0) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -66,31 +53,11 @@ std::optional<SenselType> reading_type(std::uint32_t type) {
   }
 }
 
-std::uint32_t FrameShape::block_cols() const { return (cols + kSide - 1) / kSide; }
-
-std::uint32_t FrameShape::blocks() const { return (rows + kSide - 1) / kSide * block_cols(); }
-
-std::uint32_t block_number(const std::byte* block) {
-  std::uint32_t number = 0;
-  std::memcpy(&number, block, sizeof number);
-  return number;
-}
-
-std::size_t FrameShape::block_bytes() const { return kBlockHead + size_of(type) * kSide * kSide; }
-
-std::size_t FrameShape::most_packet_bytes() const {
-  return std::max(bytes(), blocks() * block_bytes()) + kChecksumBytes;
-}
+std::size_t FrameShape::most_packet_bytes() const { return bytes() + kChecksumBytes; }
 
 bool is_size_allowed(const FrameShape& shape) {
   return std::min(shape.rows, shape.cols) >= 2 && std::max(shape.rows, shape.cols) <= kMaxSensels &&
          std::size_t{shape.rows} * shape.cols <= PILLARFIELD_MAX_SENSELS;
-}
-
-SenselBlock sensels_of_block(const FrameShape& shape, std::uint32_t block) {
-  const std::uint32_t row = block / shape.block_cols() * kSide;
-  const std::uint32_t col = block % shape.block_cols() * kSide;
-  return {row, std::min(kSide, shape.rows - row), col, std::min(kSide, shape.cols - col)};
 }
 
 PillarfieldContent content_of(const PillarfieldPacket& header) {
@@ -120,15 +87,13 @@ std::string mismatch_words(const FrameShape& came, const FrameShape& expected) {
                      expected.cols);
 }
 
-bool is_intact(const Packet& packet, const FrameShape& shape) {
+bool is_intact(const Packet& packet) {
   if (packet.bytes.size() != packet.header.bytes) return false;
-  if (is_checked(packet.header)) {
-    const auto readings = packet.bytes.first(packet.bytes.size() - kChecksumBytes);
-    std::uint32_t checksum = 0;
-    std::memcpy(&checksum, packet.bytes.last(kChecksumBytes).data(), kChecksumBytes);
-    if (checksum != checksum_of(packet.header, readings)) return false;
-  }
-  return content_of(packet.header) != PILLARFIELD_BLOCKS || names_blocks_of_frame(packet, shape);
+  if (!is_checked(packet.header)) return true;
+  const auto readings = packet.bytes.first(packet.bytes.size() - kChecksumBytes);
+  std::uint32_t checksum = 0;
+  std::memcpy(&checksum, packet.bytes.last(kChecksumBytes).data(), kChecksumBytes);
+  return checksum == checksum_of(packet.header, readings);
 }
 
 }  // namespace pillarfield

@@ -20,10 +20,6 @@ struct FrameShape {
 
   [[nodiscard]] std::size_t row_bytes() const { return cols * size_of(type); }
   [[nodiscard]] std::size_t bytes() const { return rows * row_bytes(); }
-  [[nodiscard]] std::uint32_t block_cols() const;
-  [[nodiscard]] std::uint32_t blocks() const;
-  /// Bytes of a block in a packet, its number included.
-  [[nodiscard]] std::size_t block_bytes() const;
   /// The most bytes that follow the header of a packet.
   [[nodiscard]] std::size_t most_packet_bytes() const;
   bool operator==(const FrameShape&) const = default;
@@ -31,15 +27,6 @@ struct FrameShape {
 
 /// Whether rows and columns are those of a skin, and no more than PILLARFIELD_MAX_SENSELS in all.
 [[nodiscard]] bool is_size_allowed(const FrameShape& shape);
-
-/// Bytes before the readings of a block: its number, and zeros.
-inline constexpr std::size_t kBlockHead = 8;
-
-/// The number of a block at the begin of its bytes.
-[[nodiscard]] std::uint32_t block_number(const std::byte* block);
-
-/// The sensels of a block that are on the skin.
-[[nodiscard]] SenselBlock sensels_of_block(const FrameShape& shape, std::uint32_t block);
 
 /// A packet as received; nothing in it is trusted. `bytes` is valid until the next one is received.
 struct Packet {
@@ -61,8 +48,8 @@ struct Packet {
 /// expected".
 [[nodiscard]] std::string mismatch_words(const FrameShape& came, const FrameShape& expected);
 
-/// Whether the packet, whose header has a shape, is as long as the header says, has the right
-/// checksum, and names only blocks of the frame.
-[[nodiscard]] bool is_intact(const Packet& packet, const FrameShape& shape);
+/// Whether the packet, whose header has a shape, is as long as the header says and has the right
+/// checksum.
+[[nodiscard]] bool is_intact(const Packet& packet);
 
 }  // namespace pillarfield

@@ -80,7 +80,7 @@ std::optional<std::size_t> PacketParser::valid_bytes(const Packet& packet) {
   const std::size_t all = kHeaderBytes + packet.bytes.size();
   if ((packet.header.content & PILLARFIELD_CHECKED) != 0) {
     checked_ += all;
-    return is_intact(packet, *shape_of(packet.header)) ? all : kMagic.size();
+    return is_intact(packet) ? all : kMagic.size();
   }
   const std::string_view bytes = text();
   for (std::size_t place = kHeaderBytes;; ++place) {

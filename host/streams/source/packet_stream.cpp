@@ -62,7 +62,7 @@ bool FirstPackets::has_size(const FrameShape& shape) {
 
 bool FirstPackets::add(const Packet& packet) {
   const auto shape = shape_of(packet.header);
-  if (!shape || !is_intact(packet, *shape) || !has_size(*shape)) {
+  if (!shape || !is_intact(packet) || !has_size(*shape)) {
     ++invalid_;
     return false;
   }

@@ -35,7 +35,7 @@ void feed(FlexitacParser& parser, const std::string& bytes, std::mt19937& random
     fed += size;
     while (parser.next(packet)) {
       ASSERT_EQ(shape_of(packet.header), kBoard);
-      ASSERT_TRUE(is_intact(packet, kBoard));
+      ASSERT_TRUE(is_intact(packet));
       const auto* const readings = reinterpret_cast<const char*>(packet.bytes.data());
       parsed.frames.emplace_back(readings, packet.bytes.size());
       parsed.sequences.push_back(packet.header.sequence);

@@ -86,50 +86,13 @@ TEST(FrameAssembler, DeliversAWholeFrameAtOnce) {
   }
 }
 
-TEST(FrameAssembler, BlocksChangeOnlyTheirSensels) {
-  AssemblerRun run(kShape);  // 3 x 2 blocks, 4 of them beyond the border
-  run.add(frame_packet(kShape, 0));
-  run.add(block_packet(kShape, 1, {3, 4}));
-  run.add(block_packet(kShape, 2, {}));
-  const std::string before = readings_of(kShape, 0);
-  const std::string after = readings_of(kShape, 1);
-  ASSERT_EQ(run.sequences, (Sequences{0, 1, 2}));
-  for (std::uint32_t row = 0; row < kShape.rows; ++row) {
-    for (std::uint32_t col = 0; col < kShape.cols; ++col) {
-      const std::uint32_t block = row / 8 * 2 + col / 8;
-      const std::size_t place = (std::size_t{row} * kShape.cols + col) * 2;
-      const std::string& source = block == 3 || block == 4 ? after : before;
-      ASSERT_EQ(run.readings[1].substr(place, 2), source.substr(place, 2)) << row << ' ' << col;
-    }
-  }
-  EXPECT_EQ(run.readings[2], run.readings[1]);
-  EXPECT_EQ(run.health().incomplete, 0);
-}
-
-TEST(FrameAssembler, ALostPartOfBlocksIsCountedAndHealedByARefresh) {
+TEST(FrameAssembler, RefusesChangedBlocksOfEarlierVersions) {
   AssemblerRun run(kShape);
   run.add(frame_packet(kShape, 0));
-  SentPacket half = block_packet(kShape, 1, {0});
-  half.header.parts = 2;
-  run.add(half);
-  run.add(block_packet(kShape, 2, {5}));
-  run.add(block_packet(kShape, 3, {0, 1, 2, 3, 4, 5}));
-  EXPECT_EQ(run.sequences, (Sequences{0, 1, 2, 3}));
-  EXPECT_EQ(run.missing, (std::vector<std::size_t>{0, 0, 0, 0}));
-  EXPECT_EQ(run.health().incomplete, 1);
-  EXPECT_EQ(run.readings[3], readings_of(kShape, 3));
-}
-
-TEST(FrameAssembler, RefusesBlocksBeyondTheFrame) {
-  AssemblerRun run(kShape);
-  run.add(frame_packet(kShape, 0));
-  SentPacket packet = block_packet(kShape, 1, {5});
-  packet.readings[0] = 6;
+  SentPacket packet = {header_of(kShape, 1), {}};
+  packet.header.content = 2;
   run.add(packet);
-  packet = block_packet(kShape, 1, {5});
-  packet.readings[4] = 1;  // one of the four zero bytes
-  run.add(packet);
-  EXPECT_EQ(run.health().invalid, 2);
+  EXPECT_EQ(run.health().invalid, 1);
   EXPECT_EQ(run.sequences, (Sequences{0}));
 }
 
@@ -285,10 +248,9 @@ TEST(FrameAssembler, DiscardForgetsWithoutCounting) {
 TEST(FrameAssembler, AllocatesNothingForAFrame) {
   std::vector<SentPacket> packets;
   for (std::uint64_t i = 0; i < 50; ++i) {
-    packets.push_back(frame_packet(kShape, 4 * i));
-    packets.push_back(row_packets(kShape, 4 * i + 1, 20)[7]);
-    packets.push_back(row_packets(kShape, 4 * i + 2, 2)[1]);
-    packets.push_back(block_packet(kShape, 4 * i + 3, {0, 5}));
+    packets.push_back(frame_packet(kShape, 3 * i));
+    packets.push_back(row_packets(kShape, 3 * i + 1, 20)[7]);
+    packets.push_back(row_packets(kShape, 3 * i + 2, 2)[1]);
   }
   FrameAssembler assembler(kShape, PacketOrder::not_kept);
   StreamedFrame frame(kShape.type, AssemblerRun::skin_of(kShape));

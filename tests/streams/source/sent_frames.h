@@ -74,32 +74,6 @@ inline std::vector<SentPacket> row_packets(const FrameShape& shape, std::uint64_
   return packets;
 }
 
-/// A packet of the given blocks of a frame.
-inline SentPacket block_packet(const FrameShape& shape, std::uint64_t sequence,
-                               const std::vector<std::uint32_t>& blocks) {
-  const std::string all = readings_of(shape, sequence);
-  const std::size_t size = size_of(shape.type);
-  SentPacket packet = {header_of(shape, sequence), {}};
-  packet.header.content = PILLARFIELD_BLOCKS;
-  packet.header.count = static_cast<std::uint32_t>(blocks.size());
-  for (const std::uint32_t block : blocks) {
-    const std::uint32_t number_and_zero[2] = {block, 0};
-    packet.readings.append(reinterpret_cast<const char*>(number_and_zero), 8);
-    const SenselBlock place = sensels_of_block(shape, block);
-    for (std::uint32_t row = 0; row < 8; ++row) {
-      std::string line(8 * size, '\x7f');  // beyond the skin
-      if (row < place.rows) {
-        line.replace(0, place.cols * size, all,
-                     (place.first_row + row) * shape.row_bytes() + place.first_col * size,
-                     place.cols * size);
-      }
-      packet.readings += line;
-    }
-  }
-  packet.header.bytes = static_cast<std::uint32_t>(packet.readings.size());
-  return packet;
-}
-
 /// Adds the checksum.
 inline SentPacket checked(SentPacket packet) {
   packet.header.content |= PILLARFIELD_CHECKED;
