@@ -162,6 +162,7 @@ std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path
   forces.source = info.source;
   forces.contacts = info.options;
   forces.layout = info.layout;
+  forces.pressure_unit = info.pressure_unit;
   return format_of(path, OutputKind::contacts).create(path, forces, replace);
 }
 

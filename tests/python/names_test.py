@@ -166,6 +166,10 @@ class Values(unittest.TestCase):
         self.assertFalse(forces.has_pillars)
         np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
         np.testing.assert_allclose(forces.pressure_kpa, frames / 10 / 4 * 1000, rtol=1e-6)
+        np.testing.assert_allclose(forces.pressure("psi") * 6.894757, forces.pressure_kpa, rtol=1e-6)
+        np.testing.assert_allclose(forces.pressure("mmHg") * 0.1333224, forces.pressure_kpa, rtol=1e-6)
+        with self.assertRaisesRegex(pf.Error, "'bar' is not a unit.*mmHg"):
+            forces.pressure("bar")
         for name in ("shear_x", "theta", "region"):
             with self.assertRaisesRegex(pf.Error, "without pillars"):
                 getattr(forces, name)

@@ -135,8 +135,12 @@ float nice_float(float value) {
 
 }  // namespace
 
-const QuantityInfo& info_of(Quantity quantity) {
-  return kInfos.at(static_cast<std::size_t>(quantity));
+QuantityInfo info_of(Quantity quantity, const PressureUnit& unit) {
+  QuantityInfo info = kInfos.at(static_cast<std::size_t>(quantity));
+  if (quantity != Quantity::pressure) return info;
+  info.unit = unit.name;
+  info.factor = 1 / unit.kpa;
+  return info;
 }
 
 std::optional<Quantity> quantity_named(std::string_view name) {

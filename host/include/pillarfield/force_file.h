@@ -12,6 +12,7 @@
 #include "pillarfield/force_parts.h"
 #include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/sensor_effects.h"
 #include "pillarfield/solver_plan.h"
@@ -36,6 +37,7 @@ struct ForceFileInfo {
   std::optional<Surface> surface = {};      ///< of the skin; HDF5 only
   std::optional<ForcePart> part = {};       ///< it holds one part of the frames; HDF5 only
   SkinLayout layout = SkinLayout::pillars;  ///< without pillars: normal force alone
+  PressureUnit pressure_unit = kPressureUnits.front();  ///< of contacts in CSV and JSON
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };
 

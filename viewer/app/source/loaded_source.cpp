@@ -17,8 +17,9 @@ namespace {
 RenderSettings live_settings(const Options& options, const SourceInfo& source, double scale) {
   constexpr float kFirstRangeN = 1;
   RenderSettings settings = chosen_settings(options, source, scale);
-  settings.range = options.range ? in_unit_of(*options.range, options.quantity)
-                                 : fitting_range(options.quantity, kFirstRangeN);
+  settings.range = options.range
+                       ? in_unit_of(*options.range, options.quantity, options.pressure_unit)
+                       : fitting_range(options.quantity, kFirstRangeN);
   settings.full_force_n = settings.full_shear_n = static_cast<double>(kFirstRangeN) / 2;
   return settings;
 }
