@@ -138,6 +138,7 @@ ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
   info.source = source;
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
+  info.pressure = plan.pressure;
   info.effects = plan.calibration.effects;
   info.surface = plan.skin.surface;
   info.layout = plan.skin.layout;

@@ -182,6 +182,14 @@ class Values(unittest.TestCase):
         forces.save(WORK / "sensels.h5", overwrite=True)
         read = pf.open(WORK / "sensels.h5")[:]
         np.testing.assert_array_equal(read.normal, forces.normal)
+        with h5py.File(WORK / "sensels.h5") as file:
+            self.assertNotIn("pressure", file["force"])
+        pf.solve(frames, skin=skin, outputs=["pressure"]).save(WORK / "pressure.h5", overwrite=True)
+        with h5py.File(WORK / "pressure.h5") as file:
+            stored = file["force/pressure"]
+            self.assertEqual((sorted(file["force"]), stored.attrs["unit"].decode()),
+                             (["normal", "pressure", "status", "time"], "kPa"))
+            np.testing.assert_array_equal(stored, pf.open(WORK / "pressure.h5")[:].pressure_kpa)
         self.assertFalse(read.has_pillars)
         self.assertEqual(pf.ForceField(None, None, np.ones((2, 3))).has_pillars, False)
 

@@ -190,8 +190,7 @@ const ShownField& field_with(Quantity quantity, const ShownField& field) {
 }
 
 float kpa_per_newton(const Skin& skin) {
-  constexpr double kKpaOfMpa = 1000;  // N/mm² is MPa.
-  return static_cast<float>(kKpaOfMpa / (skin.element_pitch_mm() * skin.element_pitch_mm()));
+  return pillarfield::kpa_per_newton(skin.element_pitch_mm());
 }
 
 float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {

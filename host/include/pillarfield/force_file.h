@@ -29,6 +29,7 @@ struct ForceFileInfo {
   std::string source;        ///< name of the file of frames
   bool angles = false;       ///< holds magnitude, theta and phi
   bool uncertainty = false;  ///< holds the planes of Uncertainty
+  bool pressure = false;     ///< holds the pressure, which follows from normal force and pitch
   std::optional<ContactOptions> contacts =
       {};  ///< holds contacts, found with these options; HDF5 only
   /// SolverPlan::segment_point; HDF5 only. Unset: not stated.

@@ -17,4 +17,9 @@ struct PressureUnit {
 inline constexpr std::array<PressureUnit, 3> kPressureUnits = {
     {{"kPa", "kpa", 1}, {"psi", "psi", 6.894757293168}, {"mmHg", "mmhg", 0.133322387415}}};
 
+/// Pressure of a newton on an element of this pitch, kPa.
+[[nodiscard]] constexpr float kpa_per_newton(double element_pitch_mm) {
+  return static_cast<float>(1000 / (element_pitch_mm * element_pitch_mm));  // N/mm² is MPa.
+}
+
 }  // namespace pillarfield
