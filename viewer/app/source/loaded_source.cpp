@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/layout_note.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
@@ -45,6 +46,10 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
                          .stop = stop,
                          .say = [&](const std::string& words) { waiting += ": " + words; }});
   if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
+  if (!options.plain.layout && options.calibration.empty()) {
+    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name),
+               layout_note(opened.player->info().skin));
+  }
   loaded.curves = std::move(opened.curves);
   loaded.settings = live_settings(options, opened.player->info(), scale);
   loaded.player = std::move(opened.player);
