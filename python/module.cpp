@@ -1,6 +1,7 @@
 // The compiled half of the package: values and calls, NumPy arrays in and out.
 
 #include "pillarfield/error.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/version.h"
 #include "python/bindings.h"
 
@@ -27,6 +28,13 @@ void* refuse_to_allocate(std::size_t) {
   throw py::type_error("the object was not constructed: call its class, not __new__()");
 }
 
+/// kPa of each unit of pressure by its name.
+py::dict pressure_units() {
+  py::dict units;
+  for (const auto& unit : pillarfield::kPressureUnits) units[part_text(unit.name)] = unit.kpa;
+  return units;
+}
+
 void require_construction(const py::module_& module) {
   for (const auto& [name, item] : module.attr("__dict__").cast<py::dict>()) {
     if (!PyType_Check(item.ptr())) continue;
@@ -40,6 +48,7 @@ void require_construction(const py::module_& module) {
 PYBIND11_MODULE(_core, module) {
   using namespace pillarfield::python;
   module.attr("__version__") = pillarfield::kVersion;
+  module.attr("pressure_units") = pressure_units();
   py::register_local_exception_translator(translate);
   bind_skin(module);
   bind_calibration(module);

@@ -36,7 +36,7 @@ calibration: Calibration, or the path of its file
 scene: Scene, or the path of its file; its constants and options replace those of skin
 layout: 'pillars' or 'sensels'; replaces that of skin and calibration
 estimator: 'direct', 'paper' or 'contact'
-outputs: of 'angles' and 'uncertainty', beside the forces
+outputs: of 'angles' and 'uncertainty', beside the forces, and 'pressure', which files of them then hold
 friction: friction coefficient if it is known to 3 %, 0.1..9.9
 friction_bound: its upper bound, 0.1..100
 friction_prior: (median, spread of the logarithm) of the friction
@@ -80,7 +80,7 @@ std::vector<std::string> outputs_of(const py::handle& given) {
   for (const std::string& output : outputs) {
     if (std::ranges::find(kPlanOutputs, output) == std::end(kPlanOutputs)) {
       throw Error("Plan", fmt::format("'{}' is not an output", output),
-                  "give a list of 'angles' and 'uncertainty'");
+                  "give a list of 'angles', 'uncertainty' and 'pressure'");
     }
   }
   outputs.emplace_back("forces");  // An empty list replaces the outputs of a scene.

@@ -67,8 +67,8 @@ Surface surface_of(const Options& options, const SourceInfo& source) {
 
 }  // namespace
 
-Range in_unit_of(const Range& shown, Quantity quantity) {
-  const auto factor = static_cast<float>(info_of(quantity).factor);
+Range in_unit_of(const Range& shown, Quantity quantity, const PressureUnit& unit) {
+  const auto factor = static_cast<float>(info_of(quantity, unit).factor);
   return {shown.low / factor, shown.high / factor};
 }
 
@@ -116,6 +116,7 @@ RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
   require_available(options.quantity, source);
   RenderSettings settings;
   settings.quantity = options.quantity;
+  settings.pressure_unit = options.pressure_unit;
   settings.map = options.map.value_or(default_map(info_of(options.quantity).scale));
   settings.theme = options.theme;
   settings.surface = surface_of(options, source);
@@ -131,8 +132,9 @@ RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
 
 RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
   RenderSettings settings = chosen_settings(options, producer.info(), scale);
-  settings.range = options.range ? in_unit_of(*options.range, options.quantity)
-                                 : range_that_fits(producer, options.quantity);
+  settings.range = options.range
+                       ? in_unit_of(*options.range, options.quantity, options.pressure_unit)
+                       : range_that_fits(producer, options.quantity);
   settings.relief_full_n = static_cast<double>(range_that_fits(producer, Quantity::normal).high);
   if (!producer.info().skin.has_pillars()) return settings;  // No arrows.
   settings.full_force_n = full_arrow(producer, Quantity::magnitude);

@@ -29,6 +29,7 @@ struct Options {
   bool statistics = false;  ///< printed when the window closes
 
   Quantity quantity = Quantity::normal;
+  PressureUnit pressure_unit = kPressureUnits.front();
   std::optional<Range> range;  ///< unset: fitted to the source
   std::optional<ColourMap> map;
   Theme theme = Theme::dark;
@@ -66,7 +67,7 @@ struct Options {
                                              double scale);
 
 /// A range from the displayed unit to that of the value.
-[[nodiscard]] Range in_unit_of(const Range& shown, Quantity quantity);
+[[nodiscard]] Range in_unit_of(const Range& shown, Quantity quantity, const PressureUnit& unit);
 
 /// Settings of the first picture from the options, with defaults fitted to up to 16 evenly spaced
 /// frames; the view is not set. Throws Error where the source lacks the quantity.

@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/number_text.h"
 #include "calibration/finding_list.h"
 #include "calibration/steps.h"
+#include "pillarfield/doctor.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/pillar_sensels.h"
@@ -29,6 +31,12 @@ struct Others {
   std::size_t opposite;
 };
 constexpr std::array<Others, 4> kOthers = {{{1, 3, 2}, {0, 2, 3}, {1, 3, 0}, {0, 2, 1}}};
+
+[[noreturn]] void refuse_still(const FrameStatistics& statistics) {
+  throw Error(statistics.name(),
+              fmt::format("no sensel moved in its {} frames", statistics.frames()),
+              "record while pressing all over the skin, for example with a rolling ball");
+}
 
 }  // namespace
 
@@ -180,11 +188,7 @@ FaultResult FaultFinder::result() const {
   Classifier classifier(*this, found, result);
   for_each_pillar(plan_.skin,
                   [&](auto, auto, const auto& sensels) { classifier.classify(sensels); });
-  if (classifier.moving() == 0) {
-    throw Error(statistics_.name(),
-                fmt::format("no sensel moved in its {} frames", statistics_.frames()),
-                "record while pressing all over the skin, for example with a rolling ball");
-  }
+  if (classifier.moving() == 0) refuse_still(statistics_);
   result.calibration = calibration_;
   result.calibration.planes.mask = found.mask_plane();
   result.findings = found.findings();
@@ -194,19 +198,89 @@ FaultResult FaultFinder::result() const {
 
 namespace {
 
-SkinCalibration run_faults(StepWork& work) {
-  FaultOptions options;
-  options.least_frames =
-      static_cast<std::uint32_t>(work.number("min-frames", options.least_frames));
-  options.still_factor = work.number("still", options.still_factor);
-  options.moving_factor = work.number("moving", options.moving_factor);
+FaultResult faults_by_parity(const StepWork& work, const FaultOptions& options) {
   const StepFrames& first = work.files.front();
   const WireCorrection correct = work.correction(first, WireUse::loaded);
   FaultFinder finder(first.name(), correct.skin(), correct.type(), work.before, options);
   for (const StepFrames& file : work.files) {
     work.for_each(file, [&](const FrameView& frame, double) { finder.add(frame); });
   }
-  const FaultResult result = finder.result();
+  return finder.result();
+}
+
+/// The fault of the sensels of a finding; unset where they may be sound.
+std::optional<SenselFault> sensel_fault(ArrayFault fault) {
+  switch (fault) {
+    case ArrayFault::absent:
+    case ArrayFault::dead:
+    case ArrayFault::dead_row:
+    case ArrayFault::dead_column:
+      return SenselFault::unresponsive;
+    case ArrayFault::stuck:
+      return SenselFault::stuck;
+    case ArrayFault::saturated:
+      return SenselFault::saturated;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The sensels of a finding: its own, or all of its dead lines.
+std::vector<SenselPlace> sensels_of(const ArrayFinding& finding, const Skin& skin) {
+  std::vector<SenselPlace> places = finding.sensels;
+  const bool is_row = finding.fault == ArrayFault::dead_row;
+  for (const std::uint32_t line : finding.lines) {
+    for (std::uint32_t along = 0; along < (is_row ? skin.cols : skin.rows); ++along) {
+      places.push_back(is_row ? SenselPlace{line, along} : SenselPlace{along, line});
+    }
+  }
+  return places;
+}
+
+/// Without pillars there is no parity: masks what the doctor finds.
+FaultResult faults_by_neighbours(const StepWork& work, const FaultOptions& options) {
+  for (const char* const name : {"still", "moving"}) {
+    if (work.numbers(name).empty()) continue;
+    throw Error(name, "it is of parity, which needs pillars", "leave it out");
+  }
+  const StepFrames& first = work.files.front();
+  const WireCorrection correct = work.correction(first, WireUse::loaded);
+  Doctor doctor(first.name(), correct.skin(), correct.type());
+  FrameStatistics statistics(first.name(), correct.skin(), correct.type());
+  for (const StepFrames& file : work.files) {
+    work.for_each(file, [&](const FrameView& frame, double) {
+      statistics.add(frame);
+      doctor.add(frame, std::numeric_limits<double>::quiet_NaN());
+    });
+  }
+  require_frames(statistics, options.least_frames);
+  const Diagnosis seen = doctor.result();
+  if (seen.contact_frames == 0) refuse_still(statistics);
+  FindingList found(work.before.planes.mask, statistics);
+  for (const ArrayFinding& finding : seen.findings) {
+    const auto fault = sensel_fault(finding.fault);
+    if (!fault) continue;
+    for (const auto& [row, col] : sensels_of(finding, statistics.skin())) {
+      const std::size_t sensel = std::size_t{row} * statistics.skin().cols + col;
+      if (!found.good(sensel)) continue;
+      found.mask(sensel,
+                 statistics.sensels()[sensel].readings > 0 ? *fault : SenselFault::not_a_number);
+    }
+  }
+  FaultResult result = {work.before, found.findings(), seen.untouched, statistics.frames()};
+  result.calibration.planes.mask = found.mask_plane();
+  return result;
+}
+
+SkinCalibration run_faults(StepWork& work) {
+  FaultOptions options;
+  options.least_frames =
+      static_cast<std::uint32_t>(work.number("min-frames", options.least_frames));
+  options.still_factor = work.number("still", options.still_factor);
+  options.moving_factor = work.number("moving", options.moving_factor);
+  const bool has_pillars = work.files.front().skin.has_pillars();
+  const FaultResult result =
+      has_pillars ? faults_by_parity(work, options) : faults_by_neighbours(work, options);
   const SkinCalibration& calibration = result.calibration;
   const std::size_t sensels = std::size_t{calibration.rows} * calibration.cols;
   StepReport& report = work.report;
@@ -214,24 +288,29 @@ SkinCalibration run_faults(StepWork& work) {
                                 calibration.cols, counted(result.frames, "frame"));
   report.add(calibration, result.findings);
   report.facts["untested"] = result.untested;
-  report.notes.push_back(
-      fmt::format("Untested: {} of {} sensels, never predicted to change; --json lists them",
-                  grouped(result.untested.size()), grouped(sensels)));
-  work.parameters = fmt::format("least_frames = {}, still_factor = {}, moving_factor = {}",
-                                options.least_frames, options.still_factor, options.moving_factor);
+  report.notes.push_back(fmt::format("Untested: {} of {} sensels, never {}; --json lists them",
+                                     grouped(result.untested.size()), grouped(sensels),
+                                     has_pillars ? "predicted to change" : "touched"));
+  work.parameters = fmt::format("least_frames = {}", options.least_frames);
+  if (has_pillars) {
+    work.parameters += fmt::format(", still_factor = {}, moving_factor = {}", options.still_factor,
+                                   options.moving_factor);
+  }
   return calibration;
 }
 
 }  // namespace
 
 StepKind faults_step() {
-  StepKind step = {"faults", "Find dead, stuck and saturated sensels by parity, and mask them.",
+  StepKind step = {"faults",
+                   "Find dead, stuck and saturated sensels by parity, or without pillars by their "
+                   "neighbours, and mask them.",
                    "FRAMES", "Frames in which all of the skin is pressed", run_faults};
-  step.only = SkinLayout::pillars;
   step.arguments = {
-      StepArgument::whole("min-frames",
-                          "Smallest number of frames in which parity predicts a sensel [30]",
-                          {2, 1e9}),
+      StepArgument::whole(
+          "min-frames",
+          "Smallest number of frames, and of those in which parity predicts a sensel [30]",
+          {2, 1e9}),
       StepArgument::number("still", "RATIO",
                            "Largest range of a constant reading, in multiples of its noise [10]",
                            {1e-6, 1e6}),

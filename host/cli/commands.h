@@ -9,6 +9,7 @@
 #include "cli/options/plan_options.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 
@@ -45,6 +46,7 @@ struct SolveOptions : WriteOptions {
   std::string device;         ///< for open_device()
   std::string contacts_file;  ///< empty: none
   ContactOptions contacts;
+  PressureUnit pressure_unit = kPressureUnits.front();  ///< of the table of contacts
   PartOptions part;
 };
 

@@ -322,6 +322,7 @@ void compare(const CompareOptions& options) {
       forces.read(index, solved);
       recording->read_truth(first + index, truth);
       if (sensel_coverage) sensel_coverage->add(solved, truth);
+      comparison.add(solved.view(), truth.view());
       if (!has_pillars) {
         // The comparison of vectors, whose shear is exact.
         for (ForceField* field : {&solved, &truth}) {
@@ -329,7 +330,6 @@ void compare(const CompareOptions& options) {
           field->shear_y.assign(field->elements(), 0);
         }
       }
-      comparison.add(solved.view(), truth.view());
       resultants.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);

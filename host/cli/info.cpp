@@ -148,6 +148,7 @@ Json facts_of_forces(const std::string& file, const InfoOptions& options) {
                 {"device", info.device},
                 {"source", info.source},
                 {"angles", info.angles},
+                {"pressure", info.pressure},
                 {"uncertainty", info.uncertainty},
                 {"contacts", info.contacts.has_value()},
                 {"warnings", reader.warnings()}});

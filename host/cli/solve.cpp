@@ -39,6 +39,10 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
   if (file.empty()) return std::nullopt;
   check(options.contacts, "the command line");
   if (!options.output.empty() && name_same_file(file, options.output)) {
+    if (options.pressure_unit != kPressureUnits.front()) {
+      throw Error(file, fmt::format("pressures in HDF5 are in {}", kPressureUnits.front().name),
+                  "write the contacts to a .csv or .json, or leave out --pressure-unit");
+    }
     if (is_hdf5_name(options.output)) return std::nullopt;
     throw Error(file, "forces and contacts cannot share this file",
                 "name another file for contacts");
@@ -212,7 +216,8 @@ void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveS
   }
   if (table) {
     files.push_back(create_contact_sink(
-        table->path, {info.element_pitch_mm, info.source, options.contacts, info.layout},
+        table->path,
+        {info.element_pitch_mm, info.source, options.contacts, info.layout, options.pressure_unit},
         options.replace));
   }
   std::vector<ForceSink*> sinks = {&job.counter, &job.check};

@@ -123,7 +123,10 @@ struct Sums {
   }
 };
 
+bool has_pillars(const ForceFieldView& field) { return !field.shear_x.empty(); }
+
 Force force_of(const ForceFieldView& field, std::size_t pillar) {
+  if (!has_pillars(field)) return {0, 0, field.normal[pillar]};
   return {field.shear_x[pillar], field.shear_y[pillar], field.normal[pillar]};
 }
 
@@ -163,6 +166,7 @@ void check_planes(const ForceFieldView& field, const char* which) {
   const std::size_t pillars = std::size_t{field.rows} * field.cols;
   for (const auto& plane : {field.shear_x, field.shear_y, field.normal}) {
     if (plane.size() == pillars) continue;
+    if (plane.empty() && !has_pillars(field) && field.normal.size() == pillars) continue;
     throw Error(which, "lack a plane of force", "give shear_x, shear_y and normal");
   }
 }
@@ -170,6 +174,10 @@ void check_planes(const ForceFieldView& field, const char* which) {
 void check_pair(const ForceFieldView& solved, const ForceFieldView& truth) {
   check_planes(solved, "solved forces");
   check_planes(truth, "true forces");
+  if (has_pillars(solved) != has_pillars(truth)) {
+    throw Error("solved forces", "and the truth are not both of pillars",
+                "solve with the layout of the truth");
+  }
   const std::size_t pillars = truth.normal.size();
   if (solved.rows != truth.rows || solved.cols != truth.cols || solved.status.size() != pillars) {
     throw Error("solved forces",
@@ -184,6 +192,13 @@ void check_pair(const ForceFieldView& solved, const ForceFieldView& truth) {
         fmt::format("have a NaN at row {}, column {}", pillar / truth.cols, pillar % truth.cols),
         "compare with a truth that is whole");
   }
+}
+
+/// The usable sensels of the ideal model.
+std::uint8_t ideal_usable_bits(const ForceFieldView& truth, std::size_t pillar) {
+  const Force expected = force_of(truth, pillar);
+  if (has_pillars(truth)) return usable_bits(ideal_readings(expected, 1));
+  return expected.normal > 0 ? status::kSensel1 : 0;
 }
 
 }  // namespace
@@ -202,7 +217,7 @@ void Comparison::add(const ForceFieldView& solved, const ForceFieldView& truth) 
   for (std::size_t pillar = 0; pillar < truth.normal.size(); ++pillar) {
     const Force expected = force_of(truth, pillar);
     const Force found = force_of(solved, pillar);
-    const std::uint8_t usable = usable_bits(ideal_readings(expected, 1));
+    const std::uint8_t usable = ideal_usable_bits(truth, pillar);
     PillarErrors errors =
         usable == 0 ? errors_at_rest(found, expected) : errors_of(found, expected);
     errors.status_mismatch |= (solved.status[pillar] & status::kUsable) != usable;

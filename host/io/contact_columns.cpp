@@ -187,9 +187,26 @@ QuantityColumns quantity_columns(const ContactOptions& options) {
 
 std::span<const ContactColumn<EndedContact>> ended_columns() { return kEnded; }
 
+namespace {
+
 template <class Row>
-std::string text_of(const ContactColumn<Row>& column, const Row& row, const char* unset) {
-  const double value = column.get(row);
+bool is_pressure(const ContactColumn<Row>& column) {
+  return column.unit == kPressureUnits.front().name;
+}
+
+}  // namespace
+
+template <class Row>
+std::string name_of(const ContactColumn<Row>& column, const PressureUnit& unit) {
+  std::string name = column.name;
+  if (!is_pressure(column)) return name;
+  return name.replace(name.rfind('_') + 1, std::string::npos, unit.suffix);
+}
+
+template <class Row>
+std::string text_of(const ContactColumn<Row>& column, const Row& row, const char* unset,
+                    const PressureUnit& unit) {
+  const double value = column.get(row) / (is_pressure(column) ? unit.kpa : 1);
   switch (column.kind) {
     case ColumnKind::word:
       return column.word(value);
@@ -211,11 +228,15 @@ std::string words_of(const ContactColumn<Row>& column) {
   return words;
 }
 
+template std::string name_of(const ContactColumn<TrackedContact>&, const PressureUnit&);
 template std::string text_of(const ContactColumn<TrackedContact>&, const TrackedContact&,
-                             const char*);
+                             const char*, const PressureUnit&);
+template std::string name_of(const ContactColumn<ContactQuantities>&, const PressureUnit&);
 template std::string text_of(const ContactColumn<ContactQuantities>&, const ContactQuantities&,
-                             const char*);
-template std::string text_of(const ContactColumn<EndedContact>&, const EndedContact&, const char*);
+                             const char*, const PressureUnit&);
+template std::string name_of(const ContactColumn<EndedContact>&, const PressureUnit&);
+template std::string text_of(const ContactColumn<EndedContact>&, const EndedContact&, const char*,
+                             const PressureUnit&);
 template std::string words_of(const ContactColumn<TrackedContact>&);
 template std::string words_of(const ContactColumn<ContactQuantities>&);
 template std::string words_of(const ContactColumn<EndedContact>&);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/pressure_unit.h"
 
 namespace pillarfield {
 
@@ -46,11 +47,15 @@ using QuantityColumns = std::span<const ContactColumn<ContactQuantities>>;
 /// The columns id, merged_into, first_time_s, last_time_s.
 [[nodiscard]] std::span<const ContactColumn<EndedContact>> ended_columns();
 
-/// Formats a value with the fewest digits that read back as the same double; words have no quotes.
-/// Returns `unset` if the value is unset.
+/// The name of a column whose pressures are in `unit`: "mean_pressure_psi".
+template <class Row>
+[[nodiscard]] std::string name_of(const ContactColumn<Row>& column, const PressureUnit& unit);
+
+/// Formats a value, a pressure in `unit`, with the fewest digits that read back as the same double;
+/// words have no quotes. Returns `unset` if the value is unset.
 template <class Row>
 [[nodiscard]] std::string text_of(const ContactColumn<Row>& column, const Row& row,
-                                  const char* unset);
+                                  const char* unset, const PressureUnit& unit);
 
 /// The words of a column in the order of their indices: "none, given, ...".
 template <class Row>

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibration/wire_correction.h"
+#include "io/layout_note.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tare.h"
@@ -136,8 +137,8 @@ void RisingTimes::add(std::span<const double> times_s) {
   }
 }
 
-std::string FileSource::layout_note() const {
-  return skin_.has_pillars()
+std::string layout_note(const Skin& skin) {
+  return skin.has_pillars()
              ? "2 x 2 sensels are a pillar with shear (--layout sensels: each by itself)"
              : "each sensel by itself, without shear (--layout pillars: 2 x 2 are a pillar)";
 }

@@ -50,9 +50,6 @@ class FileSource : public FrameSource {
   void take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
                      FrameBuffer& frame) const;
 
-  /// The layout of a file that states none, and how to have the other one.
-  [[nodiscard]] std::string layout_note() const;
-
   /// Adds the size_warnings(), and one of a file without frames.
   void warn_of_size();
 

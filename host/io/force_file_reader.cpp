@@ -42,7 +42,7 @@ struct OpenForces {
   std::vector<std::string> warnings;
 };
 
-/// Angles and interval ends are not read, since they follow from the other planes.
+/// Angles, interval ends and pressure are not read, since they follow from the other planes.
 bool is_read(const ResultPlane& plane) {
   return plane.set == PlaneSet::forces || plane.set == PlaneSet::uncertainty;
 }
@@ -66,6 +66,7 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   info.layout = read_layout();
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
+  info.pressure = hdf5::exists(file, force_format::kPressure);
   open_planes(version >= force_format::kSparseSince);
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);

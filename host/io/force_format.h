@@ -31,6 +31,7 @@ inline constexpr const char* kForce = "/force";
 inline constexpr const char* kTime = "/force/time";
 inline constexpr const char* kStatus = "/force/status";
 inline constexpr const char* kMagnitude = "/force/magnitude";
+inline constexpr const char* kPressure = "/force/pressure";
 inline constexpr const char* kUncertainty = "/uncertainty";
 
 /// Attributes of a part.

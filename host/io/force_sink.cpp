@@ -138,6 +138,7 @@ ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
   info.source = source;
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
+  info.pressure = plan.pressure;
   info.effects = plan.calibration.effects;
   info.surface = plan.skin.surface;
   info.layout = plan.skin.layout;
@@ -162,6 +163,7 @@ std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path
   forces.source = info.source;
   forces.contacts = info.options;
   forces.layout = info.layout;
+  forces.pressure_unit = info.pressure_unit;
   return format_of(path, OutputKind::contacts).create(path, forces, replace);
 }
 

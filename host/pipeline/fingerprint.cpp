@@ -63,6 +63,7 @@ void add(Hash& hash, const SolverPlan& plan) {
   hash.add(plan.baseline_rate);
   hash.add(std::uint64_t(plan.baseline_interval));
   hash.add(plan.frame_interval_s);
+  hash.add(std::uint64_t{plan.pressure});
   hash.add(plan.skin.sensel_pitch_mm);
   hash.add(plan.skin.counts_per_newton);
   add(hash, plan.friction);

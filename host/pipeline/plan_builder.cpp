@@ -62,11 +62,12 @@ void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
   if (outputs.empty()) return;
   plan.angles = std::ranges::find(outputs, "angles") != outputs.end();
   plan.uncertainty = std::ranges::find(outputs, "uncertainty") != outputs.end();
+  plan.pressure = std::ranges::find(outputs, "pressure") != outputs.end();
 }
 
 /// Enables all outputs, and of pillars the parity test; an earlier tolerance stays.
 void enable_everything(SolverPlan& plan) {
-  plan.uncertainty = true;
+  plan.uncertainty = plan.pressure = true;
   if (!plan.skin.has_pillars()) return;
   plan.angles = true;
   if (plan.parity_tolerance_counts) return;

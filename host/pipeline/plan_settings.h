@@ -57,6 +57,6 @@ inline constexpr PlanSetting kPlanSettings[] = {
 };
 
 /// "angles" and "uncertainty", beside the forces.
-inline constexpr const char* kPlanOutputs[] = {"angles", "uncertainty"};
+inline constexpr const char* kPlanOutputs[] = {"angles", "uncertainty", "pressure"};
 
 }  // namespace pillarfield

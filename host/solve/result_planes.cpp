@@ -14,11 +14,14 @@ static_assert([] {
 #undef PF_PLANE
 
 const char* ResultPlane::group() const {
-  return set == PlaneSet::forces || set == PlaneSet::angles ? "force" : "uncertainty";
+  const bool in_force =
+      set == PlaneSet::forces || set == PlaneSet::angles || set == PlaneSet::pressure;
+  return in_force ? "force" : "uncertainty";
 }
 
 std::string ResultPlane::field() const {
-  return index < kNamedPlanes ? name : std::string(group()) + "_" + name;
+  return index < kNamedPlanes || set == PlaneSet::pressure ? name
+                                                           : std::string(group()) + "_" + name;
 }
 
 const char* name_of(Uncertainty plane) {

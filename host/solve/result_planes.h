@@ -13,13 +13,13 @@
 namespace pillarfield {
 
 /// Planes that a plan requests together, or a file holds together.
-enum class PlaneSet : std::uint8_t { forces, angles, uncertainty, component_ends };
+enum class PlaneSet : std::uint8_t { forces, angles, uncertainty, component_ends, pressure };
 
 /// A plane of floats of a result, with its name in files.
 struct ResultPlane {
   PlaneSet set;
   const char* name;   ///< "shear_x", "theta_low", ...
-  const char* unit;   ///< "n" or "rad"
+  const char* unit;   ///< "n", "rad" or "kpa"
   std::size_t index;  ///< in kResultPlanes
 
   /// "force" or "uncertainty": its group in files with groups.
@@ -46,21 +46,23 @@ inline constexpr auto kResultPlanes = [] {
       ResultPlane{PlaneSet::component_ends, "shear_y_high", "n", 0},
       ResultPlane{PlaneSet::component_ends, "normal_low", "n", 0},
       ResultPlane{PlaneSet::component_ends, "normal_high", "n", 0},
+      ResultPlane{PlaneSet::pressure, "pressure", "kpa", 0},
   };
   for (std::size_t i = 0; i < planes.size(); ++i) planes[i].index = i;
   return planes;
 }();
 
-inline constexpr std::size_t kSolvedPlanes = kResultPlanes.size() - kComponentEnds;
+inline constexpr std::size_t kSolvedPlanes = kResultPlanes.size() - kComponentEnds - 1;
 inline constexpr std::size_t kNamedPlanes = kSolvedPlanes - kUncertaintyPlanes;
 inline constexpr std::size_t kForcePlanes = 3;
 
-/// True if a plan or file with these options has a plane. Without pillars only normal force, its
-/// deviation and the ends of its interval exist.
+/// True if a plan or file with these options has a plane other than pressure. Without pillars only
+/// normal force, its deviation and the ends of its interval exist.
 constexpr bool has_plane(SkinLayout layout, bool angles, bool uncertainty,
                          const ResultPlane& plane) {
   if (layout == SkinLayout::sensels && !std::string_view(plane.name).starts_with("normal"))
     return false;
+  if (plane.set == PlaneSet::pressure) return false;
   return plane.set == PlaneSet::forces || (plane.set == PlaneSet::angles ? angles : uncertainty);
 }
 

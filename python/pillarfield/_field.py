@@ -158,9 +158,20 @@ class ForceField:
 
         Raises Error without a skin.
         """
+        return self.pressure()
+
+    def pressure(self, unit: str = "kPa") -> Floats:
+        """Normal force over the area of a pillar, or of a sensel, float32, in the unit.
+
+        unit: 'kPa', 'psi' or 'mmHg'. Raises Error without a skin.
+        """
         if self._skin is None:
-            raise Error("ForceField.pressure_kpa", "the skin is unknown", "solve with skin=Skin(...)")
-        return self.normal * np.float32(1000 / self._skin.element_pitch_mm**2)
+            raise Error("ForceField.pressure", "the skin is unknown", "solve with skin=Skin(...)")
+        kpa: Optional[float] = _core.pressure_units.get(unit)
+        if kpa is None:
+            raise Error("ForceField.pressure", f"'{unit}' is not a unit of pressure",
+                        f"give {' or '.join(_core.pressure_units)}")
+        return self.normal * np.float32(1000 / kpa / self._skin.element_pitch_mm**2)
 
     @property
     def shear_x(self) -> Floats:

@@ -64,7 +64,8 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
 
     source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'
         of a FlexiTac board, or '-' for standard input
-    skin: constants of the skin; rows and columns come from the frames
+    skin: constants of the skin; rows and columns come from the frames; without its layout 'sensels',
+        or that of a FlexiTac board, 2 x 2 sensels are a pillar
     serial_baud: of 'serial:'
 
     Raises Error for another source or one that cannot be opened. What a sensor sends never raises:

@@ -133,7 +133,7 @@ def shear(loads: Sequence[tuple[Any, tuple[float, float]]], before: Before, *, s
 
 def faults(moving: Sequence[Any], before: Before, *, skin: Skin = None, axes: Axes = "",
            least_frames: int = 30) -> Step:
-    """Masks sensels that are dead, stuck or saturated while their pillars move.
+    """Masks sensels that are dead, stuck or saturated while their pillars, or neighbours, move.
 
     moving: frames, one or more, of a skin touched everywhere. Raises Error if nothing moves.
     """

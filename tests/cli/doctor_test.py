@@ -184,6 +184,41 @@ class DoctorTest(CommandTest):
                           ("column order", list(range(8, 16)))])
         self.assertEqual(report["findings"][0]["sensels"], [[9, 6], [11, 27]])
 
+    def with_all_faults(self, seed):
+        """Readings of a pad with eight faults, and for each whether a report names it."""
+        pad, random = Pad(seed, (12, 20, 30)[seed % 3]).sweep(), np.random.default_rng(seed)
+        row, col, first = (int(random.integers(1, size)) for size in (ROWS - 2, COLS - 2, COLS - 7))
+        dead = random.random((ROWS, COLS)) < 0.03
+        pad.load[:, dead] = 0
+        pad.load[:, row:row + 2] = pad.load[:, row:row + 2].mean(axis=1, keepdims=True)
+        pad.offset[row + 1] = pad.offset[row]
+        pad.load = (pad.load + 0.05 * pad.load.max(1, keepdims=True) + 0.05 * pad.load.max(2, keepdims=True))
+        pad.load[:, :, col] = 0
+        order = np.r_[0:first, first + 6:first - 1:-1, first + 7:COLS]
+        dead[row:row + 2] = dead[row] & dead[row + 1]
+        dead[:, col] = False
+        drift = float(random.choice([-1, 1]) * random.uniform(8, 20))
+
+        def found(report):
+            lines = {(finding["fault"], *finding.get("lines", [])) for finding in report["findings"]}
+            orders = [finding["order"] for finding in faults_of(report, "column order")]
+            ghosts = [any(3 < finding["figure"] < 7 for finding in faults_of(report, name))
+                      for name in ("row crosstalk", "column crosstalk")]
+            places = [(int(a), int(b)) for a, b in np.argwhere(dead[:, order])]
+            return [("shorted rows", row, row + 1) in lines,
+                    ("dead column", order.tolist().index(col)) in lines, self.mostly(places, report, "dead"),
+                    report["polarity"] == "falls", orders == [np.argsort(order).tolist()], *ghosts,
+                    abs(report["drift_counts_per_minute"]["median"] / drift - 1) < 0.2]
+        return pad.readings(falling=True, drift=drift)[:, :, order], found
+
+    def test_pads_with_all_faults(self):
+        found = []
+        for seed in range(2000, 2012):
+            readings, found_in = self.with_all_faults(seed)
+            found += found_in(self.examine(readings))
+        self.assertEqual(len(found), 96)
+        self.assertGreaterEqual(sum(found), 0.95 * len(found))
+
     def test_absent_stuck_and_saturated_sensels(self):
         readings = Pad(5).sweep().readings()
         readings[:, 2, 3:5] = 0
@@ -213,6 +248,8 @@ class DoctorTest(CommandTest):
         self.assertIsNone(report["rate_hz"])
         self.assertIn("--rate HZ", report["next"])
         self.assert_fails("doctor", self.folder / "pad.npy", "--axes", "columns,rows", names=["2 axes"])
+        np.save(self.folder / "pad.npy", np.full((20, 4, 5), np.nan, "f4"))
+        self.assert_fails("doctor", self.folder / "pad.npy", "-q", names=["all of its values are NaN"])
         np.save(self.folder / "pad.npy", readings[:9])
         self.assert_fails("doctor", self.folder / "pad.npy", "-q", names=["has 9 frames", "at least 10"])
 

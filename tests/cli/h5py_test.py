@@ -120,13 +120,13 @@ class RecordingsOfH5py(CommandTest):
         write_recording(recording, raw, 5, 320)
         for ending in ("h5", "npy", "csv"):
             run("solve", recording, "-o", self.folder / f"forces.{ending}", "--outputs",
-                "forces,angles,uncertainty", "--noise", "1.5")
+                "forces,angles,uncertainty,pressure", "--noise", "1.5")
         array = np.load(self.folder / "forces.npy")
         table = np.genfromtxt(self.folder / "forces.csv", delimiter=",", names=True)
         places = tuple(table[name].astype(int) for name in ("frame", "row", "col"))
         columns = {"shear_x": "shear_x_n", "shear_y": "shear_y_n", "normal": "normal_n",
                    "status": "status", "magnitude": "magnitude_n", "theta": "theta_rad",
-                   "phi": "phi_rad"}
+                   "phi": "phi_rad", "pressure": "pressure_kpa"}
         forces, angles = ("shear_x", "shear_y", "normal"), ("theta", "phi")
         uncertainty = dict.fromkeys(forces, "n")
         for name in (*forces, "magnitude", *angles):
@@ -143,6 +143,10 @@ class RecordingsOfH5py(CommandTest):
                 np.testing.assert_array_equal(array[name], expected)
                 np.testing.assert_array_equal(table[f"{name}_{unit}"].astype(np.float32),
                                               expected[places])
+            pitch_mm = file.attrs["pillar_pitch_mm"]
+            np.testing.assert_allclose(file["/force/pressure"][:], file["/force/normal"][:] * 1e3 / pitch_mm**2,
+                                       rtol=1e-6)
+            self.assertEqual(file["/force/pressure"].attrs["unit"].decode(), "kPa")
             status = file["/force/status"][:]
             self.assertEqual(file.attrs["estimator"].decode(), "direct")
         self.assertEqual(len(table), np.count_nonzero(status))

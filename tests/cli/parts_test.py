@@ -46,7 +46,7 @@ class PartsFolder(CommandTest):
 
 class PartsTest(PartsFolder):
     def test_joined_parts_equal_the_serial_solve(self):
-        plans = (("--outputs", "angles,uncertainty", "--noise", 0.5), (),
+        plans = (("--outputs", "angles,uncertainty,pressure", "--noise", 0.5), (),
                  (*CARRYING, "--checkpoint-every", 3, "--warm-up", 2))
         for plan in plans:
             serial = self.folder / "serial.h5"

@@ -143,6 +143,16 @@ class PlainData(CommandTest):
         self.assertAlmostEqual(float(total["peak_pressure_kpa"]), 240, places=4)
         self.assertAlmostEqual(float(total["centre_of_pressure_x_mm"]), 5 * (13 / 3 - 4), places=4)
         self.assertAlmostEqual(float(total["centre_of_pressure_y_mm"]), 5 * (2.5 - 2 - 2 / 3), places=4)
+        for unit, pascal in (("psi", 6894.757), ("mmHg", 133.3224)):
+            run("solve", self.path("a.npy"), "--contacts", self.path("c.csv"), "--axes", "frames,rows,columns",
+                "--rate", 10, "--counts-per-newton", 10, "--pitch-mm", 5, "--overwrite", "--pressure-unit", unit)
+            head, _, line = self.path("c.csv").read_text().splitlines()[:3]
+            total = dict(zip(head.split(","), line.split(",")))
+            self.assertAlmostEqual(float(total[f"peak_pressure_{unit.lower()}"]) * pascal / 240e3, 1, places=5)
+            self.assertAlmostEqual(float(total[f"mean_pressure_{unit.lower()}"]) * pascal / 120e3, 1, places=5)
+            self.assertNotIn("kpa", head)
+        self.assert_fails("solve", self.path("a.npy"), "-o", self.path("f.h5"), "--contacts", self.path("f.h5"),
+                          "--pressure-unit", "psi", names=["HDF5", "kPa", ".csv"])
 
     def test_archives(self):
         other = np.ones((5, 6, 8))

@@ -261,6 +261,18 @@ class Network(StreamTest):
         errors = process.communicate(timeout=PATIENCE_S)[1]
         self.assertEqual((process.returncode, errors.count("20 x 16, 12 x 16 expected")), (0, 1))
 
+    def test_one_line_tells_the_layout(self):
+        frames = b"".join(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, 4, 6, 0, number, number * 10**7, 0, 1, 0, 0,
+                                      0, 24) + bytes(24) for number in range(20))
+        for options, words in (((), "2 x 2 sensels are a pillar with shear (--layout sensels"),
+                               (("--layout", "sensels"), None), (("--layout", "pillars"), None)):
+            process = self.started("-", *options, stdin=subprocess.PIPE)
+            process.stdin.buffer.write(frames)
+            errors = process.communicate(timeout=PATIENCE_S)[1]
+            self.assertEqual(process.returncode, 0)
+            self.assertEqual(errors.count("--layout"), words is not None, errors)
+            self.assertIn(words or "", errors)
+
     def test_web_pages_must_be_allowed(self):
         process = self.started(self.scene, "--repeat", "--to", "foxglove:0", "--json",
                                "--allow-origin", "https://app.foxglove.dev", "--health-interval",

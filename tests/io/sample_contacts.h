@@ -65,7 +65,8 @@ template <class Row>
 std::string cells_of(std::span<const ContactColumn<Row>> columns, const Row& row,
                      const char* unset = "unset") {
   std::string cells;
-  for (const auto& column : columns) cells += "," + text_of(column, row, unset);
+  for (const auto& column : columns)
+    cells += "," + text_of(column, row, unset, kPressureUnits.front());
   return cells;
 }
 

@@ -163,11 +163,31 @@ class Sensels(unittest.TestCase):
         total = pf.solve(other, calibration=step.calibration).normal.sum((1, 2))
         np.testing.assert_allclose(total, 30, rtol=0.05)
 
+    def test_faults_are_masked(self):
+        rows, cols = np.mgrid[0:15, 0:33]
+        turn = np.arange(0, 30, 0.015)
+        places = zip(turn / 2, 16 + 16.5 * np.sin(turn * 2.1))
+        load = np.array([np.exp(-((rows - row)**2 + (cols - col)**2) / 3) for row, col in places])
+        load[:, :, 20] = load[:, 4, 7] = load[:, 11, 30] = 0
+        frames = np.round(self.tare + 150 * load * self.gain + RANDOM.normal(0, 0.6, load.shape))
+        frames[:, 8, 12] = np.round(self.tare[8, 12] + 40)
+        step = pf.calibrate.faults([frames[:900], frames[900:]], self.tared, skin=self.skin)
+        faulty = np.zeros((15, 33), bool)
+        faulty[:, 20] = faulty[4, 7] = faulty[11, 30] = faulty[8, 12] = True
+        np.testing.assert_array_equal(step.calibration.mask == 0, faulty)
+        self.assertEqual([(each.row, each.col) for each in step.facts["findings"] if each.fault == "stuck"], [(8, 12)])
+        again = pf.calibrate.faults([frames], step.calibration, skin=self.skin)
+        self.assertEqual(again.facts["findings"], [])
+        np.testing.assert_array_equal(again.calibration.mask, step.calibration.mask)
+        status = pf.solve(frames[:3], calibration=step.calibration, skin=self.skin).status
+        np.testing.assert_array_equal((status & pf.Status.INCONSISTENT) != 0, np.broadcast_to(faulty, status.shape))
+        with self.assertRaisesRegex(pf.Error, "no sensel moved"):
+            pf.calibrate.faults([noisy(self.tare)], self.tared, skin=self.skin)
+
     def test_steps_of_pillars_are_refused(self):
         still = noisy(self.tare)
         for call in (lambda: pf.calibrate.shear([(still, (1.0, 0.0))], self.tared),
-                     lambda: pf.calibrate.arm([still], self.tared),
-                     lambda: pf.calibrate.faults([still], self.tared)):
+                     lambda: pf.calibrate.arm([still], self.tared)):
             with self.assertRaisesRegex(pf.Error, "needs pillars"):
                 call()
         pillars = pf.calibrate.tare(still, skin=pf.Skin(15, 33)).calibration

@@ -207,6 +207,23 @@ class Scenes(unittest.TestCase):
         with self.assertRaises(pf.Error):
             pf.compare(solved[:3], simulation.truth)
 
+    def test_comparison_of_sensels_with_the_truth(self):
+        rng = np.random.default_rng(4)
+        truth = rng.uniform(0, 2, (5, 4, 6)) * (rng.uniform(size=(5, 4, 6)) < 0.4)
+        error = rng.normal(0, 0.01, truth.shape) * (truth > 0)
+        error[0, 0] = 0.5
+        true, solved = (pf.ForceField(None, None, plane, status=plane > 0) for plane in (truth, truth + error))
+        errors = pf.compare(solved, true)
+        loaded = truth > 0
+        self.assertEqual(list(errors.regions), [pf.Region.NONE])
+        self.assertEqual(errors.loaded.pillars, np.count_nonzero(loaded))
+        self.assertAlmostEqual(errors.loaded.rms_n, np.sqrt(np.mean(error[loaded] ** 2)), 6)
+        self.assertEqual(errors.loaded.status_mismatches, 0)
+        self.assertEqual(errors.regions[pf.Region.NONE].pillars, np.count_nonzero(~loaded))
+        self.assertEqual(errors.regions[pf.Region.NONE].status_mismatches, np.count_nonzero(error[~loaded]))
+        with self.assertRaisesRegex(pf.Error, "not both of pillars"):
+            pf.compare(pf.ForceField(truth, truth, truth), true)
+
 
 class Pictures(unittest.TestCase):
     def test_colours_are_those_of_the_viewer(self):

@@ -166,6 +166,10 @@ class Values(unittest.TestCase):
         self.assertFalse(forces.has_pillars)
         np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
         np.testing.assert_allclose(forces.pressure_kpa, frames / 10 / 4 * 1000, rtol=1e-6)
+        np.testing.assert_allclose(forces.pressure("psi") * 6.894757, forces.pressure_kpa, rtol=1e-6)
+        np.testing.assert_allclose(forces.pressure("mmHg") * 0.1333224, forces.pressure_kpa, rtol=1e-6)
+        with self.assertRaisesRegex(pf.Error, "'bar' is not a unit.*mmHg"):
+            forces.pressure("bar")
         for name in ("shear_x", "theta", "region"):
             with self.assertRaisesRegex(pf.Error, "without pillars"):
                 getattr(forces, name)
@@ -178,6 +182,14 @@ class Values(unittest.TestCase):
         forces.save(WORK / "sensels.h5", overwrite=True)
         read = pf.open(WORK / "sensels.h5")[:]
         np.testing.assert_array_equal(read.normal, forces.normal)
+        with h5py.File(WORK / "sensels.h5") as file:
+            self.assertNotIn("pressure", file["force"])
+        pf.solve(frames, skin=skin, outputs=["pressure"]).save(WORK / "pressure.h5", overwrite=True)
+        with h5py.File(WORK / "pressure.h5") as file:
+            stored = file["force/pressure"]
+            self.assertEqual((sorted(file["force"]), stored.attrs["unit"].decode()),
+                             (["normal", "pressure", "status", "time"], "kPa"))
+            np.testing.assert_array_equal(stored, pf.open(WORK / "pressure.h5")[:].pressure_kpa)
         self.assertFalse(read.has_pillars)
         self.assertEqual(pf.ForceField(None, None, np.ones((2, 3))).has_pillars, False)
 

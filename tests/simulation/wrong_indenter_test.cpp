@@ -56,6 +56,17 @@ TEST(IndenterOfAScene, EveryKeyIsRead) {
   EXPECT_EQ(scene.indenters[2].edge_radius_mm, 1);
 }
 
+/// Friction may be left out where nothing feels shear.
+TEST(IndenterOfAScene, OnlyPillarsNeedFriction) {
+  const std::string ball =
+      "[[indenter]]\nshape = \"sphere\"\nradius_mm = 9\nposition_mm = [0, 0]\nload_n = 1\n";
+  const std::string size = "[skin]\nsensels = [8, 8]\n";
+  EXPECT_EQ(parsed_scene(ball + size + "layout = \"sensels\"").indenters[0].friction, 0);
+  EXPECT_EQ(core_test::message_of([&] { static_cast<void>(parsed_scene(ball + size)); }),
+            "folder/s.toml:1: key 'friction' in [[indenter]] is missing; allowed: a number in "
+            "[0, 10]");
+}
+
 /// A scene is read without its height maps, a simulator is not made without them.
 TEST(IndenterOfAScene, HeightMapsAreOpenedBySimulatorsAlone) {
   const Scene scene = parsed_scene(scene_text(

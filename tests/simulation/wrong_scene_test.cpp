@@ -38,8 +38,8 @@ void expect_message(const std::string& text, const std::string& message) {
 TEST(WrongScene, SkinSensorTimeAndSolver) {
   const std::vector<WrongScene> table = {
       {"sise = 3",
-       "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, direction_sweep, "
-       "contact, indenter, skin, sensor, surface, time, solver"},
+       "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, skin, "
+       "direction_sweep, contact, indenter, sensor, surface, time, solver"},
       {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",

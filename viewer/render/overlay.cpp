@@ -152,7 +152,7 @@ void write_bar(const Canvas& canvas, const Layout& layout) {
     }
   }
   canvas.rectangle(bar, canvas.faint_colour);
-  const double factor = info_of(settings.quantity).factor;
+  const double factor = info_of(settings.quantity, settings.pressure_unit).factor;
   const double low = settings.range.low * factor;
   const double high = settings.range.high * factor;
   const int most = std::max(static_cast<int>(bar.height / (25 * canvas.unit())), 3);
@@ -278,8 +278,8 @@ void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& 
 }
 
 void write_bar_title(const Canvas& canvas, const Layout& layout) {
-  const QuantityInfo& info = info_of(canvas.settings.quantity);
-  const std::string unit = *info.unit == '\0' ? "" : fmt::format(", {}", info.unit);
+  const QuantityInfo info = info_of(canvas.settings.quantity, canvas.settings.pressure_unit);
+  const std::string unit = info.unit.empty() ? "" : fmt::format(", {}", info.unit);
   canvas.text(layout.bar.x, layout.bar.y - 26 * canvas.unit(),
               fmt::format("{}{}", info.title, unit));
 }

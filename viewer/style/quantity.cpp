@@ -135,8 +135,12 @@ float nice_float(float value) {
 
 }  // namespace
 
-const QuantityInfo& info_of(Quantity quantity) {
-  return kInfos.at(static_cast<std::size_t>(quantity));
+QuantityInfo info_of(Quantity quantity, const PressureUnit& unit) {
+  QuantityInfo info = kInfos.at(static_cast<std::size_t>(quantity));
+  if (quantity != Quantity::pressure) return info;
+  info.unit = unit.name;
+  info.factor = 1 / unit.kpa;
+  return info;
 }
 
 std::optional<Quantity> quantity_named(std::string_view name) {
@@ -186,8 +190,7 @@ const ShownField& field_with(Quantity quantity, const ShownField& field) {
 }
 
 float kpa_per_newton(const Skin& skin) {
-  constexpr double kKpaOfMpa = 1000;  // N/mm² is MPa.
-  return static_cast<float>(kKpaOfMpa / (skin.element_pitch_mm() * skin.element_pitch_mm()));
+  return pillarfield::kpa_per_newton(skin.element_pitch_mm());
 }
 
 float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "pillarfield/pressure_unit.h"
 #include "viewer/source/field_producer.h"
 
 namespace pillarfield::viewer {
@@ -31,13 +32,14 @@ inline constexpr int kQuantities = 13;
 enum class Scale : std::uint8_t { sequential, diverging, cyclic, classes };
 
 struct QuantityInfo {
-  const char* name;   ///< on the command line: "shear_x"
-  const char* title;  ///< in the picture: "Shear x"
-  const char* unit;   ///< displayed unit: "N", "°", "counts", ""
-  double factor;      ///< displayed number over value: 180/pi for angles, else 1
+  const char* name;       ///< on the command line: "shear_x"
+  const char* title;      ///< in the picture: "Shear x"
+  std::string_view unit;  ///< displayed unit: "N", "°", "counts", ""
+  double factor;  ///< displayed number over value: 180/pi for angles, 1/kPa for pressure, else 1
   Scale scale;
 };
-[[nodiscard]] const QuantityInfo& info_of(Quantity quantity);
+[[nodiscard]] QuantityInfo info_of(Quantity quantity,
+                                   const PressureUnit& unit = kPressureUnits.front());
 [[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
 
 /// Values of `status`; the worst applies.

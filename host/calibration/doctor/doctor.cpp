@@ -32,6 +32,13 @@ std::vector<std::uint8_t> constant_sensels(const FrameStatistics& statistics) {
   return constant;
 }
 
+void require_readings(const FrameStatistics& statistics) {
+  const auto is_empty = [](const SenselStatistics& sensel) { return sensel.readings == 0; };
+  if (!std::ranges::all_of(statistics.sensels(), is_empty)) return;
+  throw Error(statistics.name(), "has no readings: all of its values are NaN",
+              "give frames of numbers");
+}
+
 /// The largest signal of each sensel.
 std::vector<float> largest_signals(const Examination& seen) {
   std::vector<float> largest(seen.kept.sensels());
@@ -69,6 +76,7 @@ void Doctor::add(const FrameView& frame, double time_s) {
 Diagnosis Doctor::result() {
   const FrameStatistics& statistics = state_->statistics;
   require_frames(statistics, kLeastDoctorFrames);
+  require_readings(statistics);
   const Skin& skin = statistics.skin();
   Diagnosis found;
   found.rows = skin.rows;

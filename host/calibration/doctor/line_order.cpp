@@ -190,14 +190,18 @@ LineOrder order_of(const LineLoads& loads, const LinePath& path, std::size_t lin
 }
 
 /// Marks the places of lines that resemble a neighbour too little to be sure of it, and those of
-/// and beside lines whose place is not known.
+/// and beside lines whose place is not known. Lines with dead ones between them need not resemble.
 void note_doubts(const LineSimilarities& similar, const LineLoads& loads, const LinePath& path,
                  const LineOrder& order, std::vector<std::uint8_t>& doubtful) {
   std::vector<std::uint8_t> lines(order.lines.size());
+  std::vector<std::size_t> places(order.lines.size());
+  for (std::size_t place = 0; place < places.size(); ++place) places[order.lines[place]] = place;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (similar(path[i], path[i + 1]) >= kLeastSimilar) continue;
-    lines[loads.lines[path[i]]] = 1;
-    lines[loads.lines[path[i + 1]]] = 1;
+    const std::uint32_t line = loads.lines[path[i]];
+    const std::uint32_t next = loads.lines[path[i + 1]];
+    if (similar(path[i], path[i + 1]) >= kLeastSimilar || places[next] > places[line] + 1) continue;
+    lines[line] = 1;
+    lines[next] = 1;
   }
   for (std::size_t place = 0; place < lines.size(); ++place) {
     const std::uint32_t line = order.lines[place];

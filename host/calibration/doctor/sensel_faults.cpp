@@ -23,13 +23,15 @@ constexpr std::uint32_t kVisibleFrames = 100;
 /// added to it for each part of crosstalk.
 constexpr double kDeadResponse = 0.12;
 constexpr double kDeadCrosstalk = 3;
-constexpr double kMostDeadResponse = 0.35;
+constexpr double kMostDeadResponse = 0.42;
 /// The same where no small contact was swept over the array: large ones have edges and holes.
 constexpr double kSilentResponse = 0.04;
 /// Frames in which the neighbours of a sensel must be loaded, and the least precision of the
 /// response.
 constexpr std::uint32_t kLeastEvidence = 6;
 constexpr double kLeastPrecision = 0.025;
+/// Deviations by which a response of less precision must be below that of a dead sensel.
+constexpr double kSureDead = 4;
 /// Load of neighbours that tests a sensel, relative to the usual largest signal and to the noise.
 constexpr double kTestShare = 0.2;
 constexpr double kSweepShare = 0.08;
@@ -49,9 +51,14 @@ struct SenselResponse {
     squares += expected * expected;
   }
   [[nodiscard]] bool is_tested(double noise) const {
-    return frames >= kLeastEvidence && noise < kLeastPrecision * std::sqrt(squares);
+    return frames >= kLeastEvidence && deviation(noise) < kLeastPrecision;
+  }
+  [[nodiscard]] bool is_below(double most, double noise) const {
+    if (is_tested(noise)) return ratio() < most;
+    return frames >= kLeastEvidence && ratio() + kSureDead * deviation(noise) < most;
   }
   [[nodiscard]] double ratio() const { return products / squares; }
+  [[nodiscard]] double deviation(double noise) const { return noise / std::sqrt(squares); }
 };
 
 /// The verdicts on sensels: kinds of ArrayFault, where there are any.
@@ -170,7 +177,7 @@ class SenselVerdicts {
     return responses_[sensel].is_tested(noise(sensel));
   }
   [[nodiscard]] bool is_dead(std::size_t sensel) const {
-    return is_tested(sensel) && responses_[sensel].ratio() < dead_response_;
+    return responses_[sensel].is_below(dead_response_, noise(sensel));
   }
 
   void report_lines(LineAxis axis, ArrayFault fault, Diagnosis& found) {

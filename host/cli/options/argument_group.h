@@ -78,9 +78,10 @@ class Group {
 
   /// Adds an option that sets `target` to the value of a word; `former` is a former name of `word`.
   template <class Value, class Target>
-  void choice(const std::string& name, Target& target,
-              const std::vector<std::pair<std::string, Value>>& choices, const char* description,
-              const std::string& former = "", const std::string& word = "") {
+  CLI::Option* choice(const std::string& name, Target& target,
+                      const std::vector<std::pair<std::string, Value>>& choices,
+                      const char* description, const std::string& former = "",
+                      const std::string& word = "") {
     std::vector<std::string> words(choices.size());
     std::ranges::transform(choices, words.begin(), &std::pair<std::string, Value>::first);
     const auto assign = [=, &target](const std::string& given) {
@@ -88,7 +89,7 @@ class Group {
       const std::string& current = given == former ? word : given;
       target = std::ranges::find(choices, current, &std::pair<std::string, Value>::first)->second;
     };
-    command_->add_option_function<std::string>(name, assign, description)
+    return command_->add_option_function<std::string>(name, assign, description)
         ->type_name(fmt::format("{}", fmt::join(words, "|")))
         ->check(one_of(words, former))
         ->group(heading_);

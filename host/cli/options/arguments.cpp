@@ -110,6 +110,7 @@ void add_solve(CLI::App& parent, Work& work) {
       .number("--contact-reach", found.reach_mm, "MM",
               "Largest movement of a contact between frames [10]")
       ->needs(file);
+  add_pressure_unit(contacts, options->pressure_unit)->needs(file);
   add_parts(command, options->part);
   add_device(command, options->device);
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);

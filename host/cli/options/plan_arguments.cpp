@@ -67,10 +67,12 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
       "ambiguous pillars from the friction of their contact [direct]",
       "field", "contact");
   solver
-      .text("--outputs", settings.outputs, "WORDS",
-            "Planes to compute, separated by commas: forces; angles adds magnitude, theta and "
-            "phi; uncertainty adds standard deviations and intervals [forces]")
-      ->check(one_of({"forces", "angles", "uncertainty"}))
+      .text(
+          "--outputs", settings.outputs, "WORDS",
+          "Planes to compute, separated by commas: forces; angles adds magnitude, theta and "
+          "phi; uncertainty adds standard deviations and intervals; pressure adds it to files, kPa "
+          "[forces]")
+      ->check(one_of({"forces", "angles", "uncertainty", "pressure"}))
       ->delimiter(',');
   add_settings(solver, "Solver", settings);
   solver.flag("--everything", settings.everything,

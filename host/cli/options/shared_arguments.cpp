@@ -124,4 +124,10 @@ void add_constants(CLI::App* command, ReadOptions& options) {
   add(&PlanSettings::full_scale_counts, options.full_scale_counts);
 }
 
+CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit) {
+  std::vector<std::pair<std::string, PressureUnit>> choices;
+  for (const PressureUnit& each : kPressureUnits) choices.emplace_back(each.name, each);
+  return group.choice<PressureUnit>("--pressure-unit", unit, choices, "Unit of pressures [kPa]");
+}
+
 }  // namespace pillarfield::cli

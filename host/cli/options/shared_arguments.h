@@ -36,6 +36,8 @@ void add_sensor(CLI::App* command, PlanOptions& plan);
 void add_solver(CLI::App* command, PlanOptions& plan);
 void add_contacts(CLI::App* command, ContactOptions& options);
 void add_device(CLI::App* command, std::string& name);
+/// Adds --pressure-unit.
+CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit);
 
 /// Adds a command; its options live as long as the work.
 template <class Options>

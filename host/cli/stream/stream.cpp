@@ -11,7 +11,9 @@
 #include "cli/progress.h"
 #include "cli/stream/replay.h"
 #include "cli/stream/session.h"
+#include "cli/warnings.h"
 #include "io/file_kind.h"
+#include "io/layout_note.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
@@ -77,6 +79,16 @@ SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
   return plan;
 }
 
+/// Tells what is taken of a sensor's frames, which do not say what stands on the sensels.
+void tell_layout(const StreamOptions& options, const FrameStream& source, const Skin& skin) {
+  const PlanOptions& given = options.plan;
+  const bool is_stated = given.read.layout || !given.calibration.empty() || !given.scene.empty();
+  if (options.quiet || is_stated || !is_live_source(options.source)) return;
+  print_file_warnings(options.source,
+                      {fmt::format("Read frames of {} x {}, {}; {}", skin.rows, skin.cols,
+                                   name_of(source.sensel_type()), layout_note(skin))});
+}
+
 LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, const Device& device) {
   LiveSinkInfo info = live_sink_info(plan, device.info().name, options.source, options.contacts);
   info.replace = options.replace;
@@ -99,6 +111,7 @@ void stream(const StreamOptions& options) {
   const std::unique_ptr<FrameStream> source = opened_source(options);
   if (!source) return;  // Interrupted before a frame came.
   const SolverPlan plan = plan_of(options, *source);
+  tell_layout(options, *source, plan.skin);
   const Device device = open_device(options.device).for_plan(plan);
   Processor processor(device, plan,
                       {.frames_in_flight = options.frames_in_flight,

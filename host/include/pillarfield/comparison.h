@@ -31,9 +31,10 @@ class Comparison {
   Comparison(Comparison&&) noexcept;
   Comparison& operator=(Comparison&&) noexcept;
 
-  /// Adds a frame. The true region follows from the ideal model's readings; one of at most 1e-6 of
+  /// Adds a frame, of pillars or of sensels without shear, which have no regions but loaded and
+  /// Region::none. The true region follows from the ideal model's readings; one of at most 1e-6 of
   /// its pillar's largest counts as zero. A solved NaN counts as an infinite error. Throws Error if
-  /// sizes differ or the truth is not finite.
+  /// sizes or layouts differ or the truth is not finite.
   void add(const ForceFieldView& solved, const ForceFieldView& truth);
 
   /// The errors in one true region.

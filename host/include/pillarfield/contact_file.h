@@ -7,6 +7,7 @@
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/pressure_unit.h"
 
 namespace pillarfield {
 
@@ -16,6 +17,7 @@ struct ContactFileInfo {
   std::string source;  ///< name of the file of frames
   ContactOptions options;
   SkinLayout layout = SkinLayout::pillars;
+  PressureUnit pressure_unit = kPressureUnits.front();
 };
 
 /// Creates a sink of contacts alone in the format of the extension of `path` (docs/formats.md;

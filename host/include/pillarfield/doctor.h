@@ -131,7 +131,8 @@ class Doctor {
   /// Adds a frame of the skin's size and type; NaN is a frame without a time.
   void add(const FrameView& frame, double time_s);
 
-  /// Judges the frames so far, once: takes the kept frames. Throws Error for fewer than 10 frames.
+  /// Judges the frames so far, once: takes the kept frames. Throws Error for fewer than 10 frames
+  /// and for frames of NaN alone.
   [[nodiscard]] Diagnosis result();
 
  private:

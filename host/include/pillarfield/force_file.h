@@ -12,6 +12,7 @@
 #include "pillarfield/force_parts.h"
 #include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/sensor_effects.h"
 #include "pillarfield/solver_plan.h"
@@ -28,6 +29,7 @@ struct ForceFileInfo {
   std::string source;        ///< name of the file of frames
   bool angles = false;       ///< holds magnitude, theta and phi
   bool uncertainty = false;  ///< holds the planes of Uncertainty
+  bool pressure = false;     ///< holds the pressure, which follows from normal force and pitch
   std::optional<ContactOptions> contacts =
       {};  ///< holds contacts, found with these options; HDF5 only
   /// SolverPlan::segment_point; HDF5 only. Unset: not stated.
@@ -36,6 +38,7 @@ struct ForceFileInfo {
   std::optional<Surface> surface = {};      ///< of the skin; HDF5 only
   std::optional<ForcePart> part = {};       ///< it holds one part of the frames; HDF5 only
   SkinLayout layout = SkinLayout::pillars;  ///< without pillars: normal force alone
+  PressureUnit pressure_unit = kPressureUnits.front();  ///< of contacts in CSV and JSON
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };
 

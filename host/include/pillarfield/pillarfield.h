@@ -63,6 +63,7 @@
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/host_solve.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/sensor_effects.h"
 #include "pillarfield/skin.h"

@@ -41,7 +41,8 @@ struct PlanSettings {
   std::vector<double> friction_prior;  ///< empty, or median and spread
   std::optional<Estimator> estimator;
   std::optional<SkinLayout> layout;
-  std::vector<std::string> outputs;  ///< "forces", "angles", "uncertainty"; empty: unset
+  std::vector<std::string>
+      outputs;  ///< "forces", "angles", "uncertainty", "pressure"; empty: unset
   bool unrelated_frames = false;
   bool everything = false;  ///< all outputs, the parity test and a followed baseline
 };

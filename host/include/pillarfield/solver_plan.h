@@ -59,6 +59,7 @@ struct SolverPlan {
   bool angles = false;       ///< also compute magnitude, theta and phi
   bool uncertainty = false;  ///< also compute the planes of Uncertainty; needs the noise of the
                              ///< sensels, and an estimator other than `paper`
+  bool pressure = false;     ///< files of the forces hold the pressure too
 };
 
 /// Throws Error, naming `where`, if a member is out of range or two members exclude each other.

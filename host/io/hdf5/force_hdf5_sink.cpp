@@ -93,6 +93,7 @@ void Hdf5Sink::create_datasets(const SolvedFrame* first) {
     planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, info_.rows, info_.cols, &fill, tiling,
                          info_.frames);
   }
+  write_pressure_unit(file_, info_);
   constexpr std::uint8_t kIdle = 0;
   status_ = {file_,  force_format::kStatus, H5T_STD_U8LE, info_.rows, info_.cols, &kIdle,
              tiling, info_.frames};

@@ -9,6 +9,7 @@
 #include "io/hdf5/file.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield {
@@ -71,6 +72,13 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
   const ElementGrid pillars = {info.rows, info.cols, info.element_pitch_mm};
   check(*info.surface, pillars, path.c_str());
   write_surface(file, *info.surface, pillars);
+}
+
+void write_pressure_unit(const hdf5::File& file, const ForceFileInfo& info) {
+  if (!info.pressure) return;
+  const hdf5::Handle pressure = hdf5::open_object(file, force_format::kPressure);
+  hdf5::write_attribute(file, pressure.get(), force_format::kUnit,
+                        std::string(kPressureUnits.front().name));
 }
 
 std::optional<ForcePart> read_part(const hdf5::File& file) {

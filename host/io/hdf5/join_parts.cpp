@@ -47,6 +47,7 @@ void require_part(const FoundParts& found, std::uint64_t index, const ForceFileR
   part.index = first.part->index;
   const bool fits = part == *first.part && info.rows == first.rows && info.cols == first.cols &&
                     info.angles == first.angles && info.uncertainty == first.uncertainty &&
+                    info.pressure == first.pressure &&
                     info.contacts.has_value() == first.contacts.has_value();
   if (!fits) {
     throw Error(file,
@@ -130,6 +131,7 @@ class Joined {
     for (const ResultPlane& plane : planes_of(info_)) {
       copy_plane<float>(path_of(plane).c_str(), H5T_IEEE_F32LE);
     }
+    write_pressure_unit(file_, info_);
     copy_plane<std::uint8_t>(force_format::kStatus, H5T_STD_U8LE);
     if (info_.contacts) write_contacts();
     hdf5::close(file_);

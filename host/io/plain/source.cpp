@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/hdf5/stored_frames.h"
+#include "io/layout_note.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 
@@ -142,7 +143,7 @@ double ArraySource::read(std::uint64_t index, FrameBuffer& frame) {
 
 std::string ArraySource::read_as() const {
   return fmt::format("{} frame{} of {} x {}, {}; {}", frames_, frames_ == 1 ? "" : "s", skin_.rows,
-                     skin_.cols, name_of(array_->type()), layout_note());
+                     skin_.cols, name_of(array_->type()), layout_note(skin_));
 }
 
 }  // namespace

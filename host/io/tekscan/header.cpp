@@ -8,6 +8,7 @@
 
 #include "io/tekscan/parser.h"
 #include "pillarfield/error.h"
+#include "pillarfield/pressure_unit.h"
 
 namespace pillarfield {
 namespace {
@@ -45,15 +46,9 @@ constexpr Unit kLengths[] = {{"mm", 1},           {"millimeter", 1}, {"millimete
                              {"centimeters", 10}, {"in", 25.4},      {"inch", 25.4},
                              {"inches", 25.4},    {"\"", 25.4}};
 constexpr Unit kAreas[] = {{"mm2", 1}, {"cm2", 100}, {"m2", 1e6}, {"in2", 645.16}};
-constexpr Unit kPressures[] = {{"kpa", 1e-3},
-                               {"mpa", 1},
-                               {"pa", 1e-6},
-                               {"psi", 6.894757293168e-3},
-                               {"mmhg", 1.33322387e-4},
-                               {"n/cm2", 1e-2},
-                               {"kg/cm2", 9.80665e-2},
-                               {"g/cm2", 9.80665e-5},
-                               {"bar", 1e-1}};
+constexpr Unit kPressures[] = {
+    {"mpa", 1},   {"pa", 1e-6}, {"n/cm2", 1e-2}, {"kg/cm2", 9.80665e-2}, {"g/cm2", 9.80665e-5},
+    {"bar", 1e-1}};
 constexpr Unit kForces[] = {{"n", 1},
                             {"newton", 1},
                             {"newtons", 1},
@@ -76,6 +71,14 @@ template <std::size_t count>
 std::optional<double> size_of_unit(const Unit (&units)[count], std::string_view text) {
   const auto* const known = std::ranges::find(units, unit_name(text), &Unit::name);
   return known == std::end(units) ? std::nullopt : std::optional(known->size);
+}
+
+/// A pressure, MPa.
+std::optional<double> size_of_pressure(std::string_view text) {
+  const auto* const shown =
+      std::ranges::find(kPressureUnits, unit_name(text), &PressureUnit::suffix);
+  if (shown != kPressureUnits.end()) return shown->kpa * 1e-3;
+  return size_of_unit(kPressures, text);
 }
 
 /// A number above zero and its unit, as "0.127 centimeters".
@@ -138,7 +141,7 @@ void TekscanHeader::parse_line(std::string_view line, const std::string& place) 
     end_frame = require_number<std::uint64_t>(place, key, value, 0);
   } else if (key == "UNITS") {
     units_given = true;
-    mpa_per_unit = size_of_unit(kPressures, value);
+    mpa_per_unit = size_of_pressure(value);
     newtons_per_unit = size_of_unit(kForces, value);
     if (lower_case(value) != "raw" && !is_calibrated()) {
       refuse(place, key, value, "it must be raw, kPa, psi, mmHg or N; export it again");

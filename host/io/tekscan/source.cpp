@@ -7,6 +7,7 @@
 
 #include "io/file_source.h"
 #include "io/frame_source.h"
+#include "io/layout_note.h"
 #include "io/tekscan/parser.h"
 #include "pillarfield/error.h"
 #include "skin/pillar_sensels.h"
@@ -57,7 +58,7 @@ Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
   } else {
     take_counts(data.header, options);
   }
-  warnings_.push_back("The export states no pillars: " + layout_note() + ".");
+  warnings_.push_back("The export states no pillars: " + layout_note(skin_) + ".");
   take_times(data, options);
   take_mask(data);
   warn_of_header(data.header);

@@ -26,6 +26,7 @@ class ContactCsvSink final : public ForceSink {
   std::filesystem::path path_;
   TextPart file_;
   QuantityColumns columns_;
+  PressureUnit unit_;
   std::string frame_cells_;  // "frame,time,", shared by all lines of a frame
   std::uint64_t frames_ = 0;
 };
@@ -34,15 +35,16 @@ ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, const ForceFil
                                Replace replace)
     : path_(path),
       file_(path, OutputKind::contacts, replace),
-      columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))) {
+      columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))),
+      unit_(info.pressure_unit) {
   file_.write(kContactCsvHead);
-  for (const auto& column : columns_) file_.write(fmt::format(",{}", column.name));
+  for (const auto& column : columns_) file_.write(fmt::format(",{}", name_of(column, unit_)));
   file_.write("\n");
 }
 
 void ContactCsvSink::add_quantities(const ContactQuantities& quantities) {
   for (const auto& column : columns_) {
-    file_.write(fmt::format(",{}", text_of(column, quantities, "")));
+    file_.write(fmt::format(",{}", text_of(column, quantities, "", unit_)));
   }
   file_.write("\n");
 }

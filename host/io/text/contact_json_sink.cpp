@@ -35,12 +35,13 @@ std::string json_string(std::string_view text) {
 
 /// `"name":value` for each column, separated by commas.
 template <class Row>
-std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& row) {
+std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& row,
+                       const PressureUnit& unit) {
   std::string members;
   for (const auto& column : columns) {
-    const std::string value = text_of(column, row, "null");
+    const std::string value = text_of(column, row, "null", unit);
     const bool is_word = column.kind == ColumnKind::word;
-    members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", column.name,
+    members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", name_of(column, unit),
                            is_word ? json_string(value) : value);
   }
   return members;
@@ -60,13 +61,15 @@ class JsonSink final : public ForceSink {
   std::filesystem::path path_;
   TextPart file_;
   QuantityColumns columns_;
+  PressureUnit unit_;
   std::uint64_t frames_ = 0;
 };
 
 JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
     : path_(path),
       file_(path, OutputKind::contacts, replace),
-      columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))) {
+      columns_(quantity_columns(info.contacts.value_or(ContactOptions{}))),
+      unit_(info.pressure_unit) {
   const ContactOptions& options = info.contacts.value();
   const auto& friction = options.friction.given;
   file_.write(
@@ -83,17 +86,18 @@ void JsonSink::append(const SolvedFrame& frame) {
   const FrameContacts& found = contacts_of(frame, path_.string());
   file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
                           frames_ == 0 ? "" : ",", frames_, frame.time_s,
-                          members_of(columns_, found.total)));
+                          members_of(columns_, found.total, unit_)));
   const char* separator = "";
   for (const TrackedContact& contact : found.contacts) {
-    file_.write(fmt::format("{}{{{},{}}}", separator, members_of(identity_columns(), contact),
-                            members_of(columns_, contact.quantities)));
+    file_.write(fmt::format("{}{{{},{}}}", separator,
+                            members_of(identity_columns(), contact, unit_),
+                            members_of(columns_, contact.quantities, unit_)));
     separator = ",";
   }
   file_.write("],\"ended\":[");
   separator = "";
   for (const EndedContact& contact : found.ended) {
-    file_.write(fmt::format("{}{{{}}}", separator, members_of(ended_columns(), contact)));
+    file_.write(fmt::format("{}{{{}}}", separator, members_of(ended_columns(), contact, unit_)));
     separator = ",";
   }
   file_.write("]}");

@@ -20,15 +20,17 @@ void refuse_key(const TomlSection& section, std::string_view key, IndenterShape 
   if (section.has(key)) section.fail(key, "does not apply to " + shape_text(shape), "no such key");
 }
 
-/// Reads the numbers that apply to the shape; refuses others.
-void read_indenter_quantities(TomlSection& section, Indenter& indenter) {
+/// Reads the numbers that apply to the shape; refuses others. Friction may be left out where no
+/// shear is felt.
+void read_indenter_quantities(TomlSection& section, SkinLayout layout, Indenter& indenter) {
   for (const auto& [quantity, required, applies] : kIndenterQuantities) {
     if (!applies(indenter.shape)) {
       refuse_key(section, quantity.key, indenter.shape);
       continue;
     }
     const auto value = section.number(quantity.key, quantity.range);
-    if (!value && required) section.fail_missing(quantity.key, quantity.range.text());
+    const bool unfelt = layout == SkinLayout::sensels && quantity.member == &Indenter::friction;
+    if (!value && required && !unfelt) section.fail_missing(quantity.key, quantity.range.text());
     if (value) indenter.*quantity.member = *value;
   }
 }
@@ -96,10 +98,11 @@ std::filesystem::path read_height_map_path(TomlSection& section,
   return folder / *path;
 }
 
-Indenter read_indenter(TomlSection& section, const std::filesystem::path& folder) {
+Indenter read_indenter(TomlSection& section, const std::filesystem::path& folder,
+                       SkinLayout layout) {
   Indenter indenter;
   read_indenter_shape(section, folder, indenter);
-  read_indenter_quantities(section, indenter);
+  read_indenter_quantities(section, layout, indenter);
   expect_together(section, "roughness_exponent", "roughness_um");
   expect_together(section, "roughness_length_mm", "roughness_um");
   expect_together(section, "friction_variation_length_mm", "friction_variation");

@@ -261,7 +261,6 @@ DirectionSweep read_direction_sweep(TomlSection section, Skin& skin) {
 
 void read_skin(TomlSection section, Scene& scene) {
   read_quantities(section, kSkinQuantities, scene.skin);
-  if (const auto layout = read_name(section, "layout", kLayouts)) scene.skin.layout = *layout;
   scene.modulus_kpa = section.number("modulus_kpa", kModulusKpa).value_or(scene.modulus_kpa);
   if (!std::holds_alternative<DirectionSweep>(scene.load)) read_size(section, scene.skin);
   for (const std::string_view key : {"size_mm", "pillars"}) {
@@ -377,14 +376,17 @@ void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& sc
   scene.load = std::move(load);
   if (!indenters) return;
   for (TomlSection& indenter : *indenters)
-    scene.indenters.push_back(read_indenter(indenter, folder));
+    scene.indenters.push_back(read_indenter(indenter, folder, scene.skin.layout));
 }
 
 Scene read_scene(TomlSection root, const std::filesystem::path& folder) {
   Scene scene;
   scene.title = root.text("title").value_or("");
+  TomlSection skin = root.table("skin");
+  // It decides which keys the load needs.
+  if (const auto layout = read_name(skin, "layout", kLayouts)) scene.skin.layout = *layout;
   read_load(root, folder, scene);
-  read_skin(root.table("skin"), scene);
+  read_skin(std::move(skin), scene);
   read_sensor(root.table("sensor"), scene);
   read_surface(root.table("surface"), folder, scene);
   read_time(root.table("time"), scene);

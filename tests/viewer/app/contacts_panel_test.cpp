@@ -26,7 +26,7 @@ TEST(FormatContact, FollowTheHeads) {
   ContactQuantities contact = a_contact();
   using Words = std::vector<std::string>;
   const auto format_contact = [](const char* name, const ContactQuantities& of) {
-    return viewer::format_contact(name, of, SkinLayout::pillars);
+    return viewer::format_contact(name, of, SkinLayout::pillars, kPressureUnits.front());
   };
   EXPECT_EQ(format_contact("7", contact),
             (Words{"7", "50.1", "5.00", "–", "unknown", "0 %", "157", "285", "320", "0.457"}));
@@ -42,8 +42,12 @@ TEST(FormatContact, FollowTheHeads) {
 }
 
 TEST(FormatContact, OfSenselsHasNoShear) {
-  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels),
-            (std::vector<std::string>{"7", "50.1", "157", "285", "320", "0.457"}));
+  using Words = std::vector<std::string>;
+  const auto [kpa, psi, mmhg] = kPressureUnits;
+  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels, kpa),
+            (Words{"7", "50.1", "157", "285", "320", "0.457"}));
+  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels, psi),
+            (Words{"7", "50.1", "22.7", "41.4", "320", "0.457"}));
   EXPECT_EQ(contact_columns(SkinLayout::sensels).size(), 6U);
 }
 

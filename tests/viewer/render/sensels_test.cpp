@@ -64,6 +64,14 @@ INSTANTIATE_TEST_SUITE_P(Quantities, BareSensels,
                                          Quantity::uncertainty, Quantity::peak),
                          [](const auto& test) { return info_of(test.param).name; });
 
+TEST(BareSensels, APressureIsShownInItsUnit) {
+  for (const PressureUnit& unit : kPressureUnits) {
+    EXPECT_EQ(info_of(Quantity::pressure, unit).unit, unit.name);
+    EXPECT_DOUBLE_EQ(info_of(Quantity::pressure, unit).factor * unit.kpa, 1);
+    EXPECT_EQ(info_of(Quantity::normal, unit).factor, 1);
+  }
+}
+
 TEST(BareSensels, APressureIsTheForceOverTheAreaInKilopascals) {
   const MadeUpField field(2, 2, [](std::uint32_t row, std::uint32_t) {
     return MadeUpPillar{0, 0, row == 0 ? 2.0F : 0.5F, status::kSensel1};

@@ -30,7 +30,7 @@ View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
 
 void show_quantity(AppState& state, Quantity quantity) {
   RenderSettings& settings = state.settings;
-  const QuantityInfo& info = info_of(quantity);
+  const QuantityInfo info = info_of(quantity);
   if (!is_available(quantity, state.player->info())) {
     state.notice = fmt::format("this source has no {}", info.title);
     return;

@@ -29,12 +29,15 @@ void set_columns(SkinLayout layout) {
 }
 
 /// Fixed head row above the scrolled contacts.
-void write_head(SkinLayout layout) {
+void write_head(SkinLayout layout, const PressureUnit& unit) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const ContactColumn& column : contact_columns(layout)) {
     ImGui::TableNextColumn();
     ImGui::TableHeader(column.head);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column.help);
+    if (!ImGui::IsItemHovered()) continue;
+    const bool pressure = column.pressure_kpa != nullptr;
+    ImGui::SetTooltip("%s%s%s", column.help, pressure ? ", " : "",
+                      pressure ? std::string(unit.name).c_str() : "");
   }
 }
 
@@ -45,9 +48,10 @@ void write_right(const std::string& words) {
 }
 
 /// Returns true if clicked.
-bool write_row(const std::string& name, const ContactQuantities& contact, SkinLayout layout) {
+bool write_row(const std::string& name, const ContactQuantities& contact, SkinLayout layout,
+               const PressureUnit& unit) {
   bool clicked = false;
-  const auto words = format_contact(name, contact, layout);
+  const auto words = format_contact(name, contact, layout, unit);
   ImGui::TableNextRow();
   for (std::size_t i = 0; i < words.size(); ++i) {
     ImGui::TableNextColumn();
@@ -61,7 +65,8 @@ bool write_row(const std::string& name, const ContactQuantities& contact, SkinLa
 }
 
 /// Index of the clicked contact in the frame's contacts.
-std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayout layout) {
+std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayout layout,
+                                        const PressureUnit& unit) {
   std::optional<std::size_t> clicked;
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(contacts.above_noise));
@@ -69,14 +74,15 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayou
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const std::size_t place = contacts.heaviest[static_cast<std::size_t>(row)];
       const TrackedContact& contact = contacts.found.contacts[place];
-      if (write_row(std::to_string(contact.track_id), contact.quantities, layout)) clicked = place;
+      if (write_row(std::to_string(contact.track_id), contact.quantities, layout, unit))
+        clicked = place;
     }
   }
   return clicked;
 }
 
 std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts,
-                                         SkinLayout layout) {
+                                         SkinLayout layout, const PressureUnit& unit) {
   const std::size_t rows = std::min(contacts.above_noise, kMostRows) + 2;
   const ImGuiStyle& imgui_style = ImGui::GetStyle();
   const float row = static_cast<float>(style.line) + 2 * imgui_style.CellPadding.y;
@@ -87,9 +93,9 @@ std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownCon
   }
   ImGui::TableSetupScrollFreeze(1, 2);
   set_columns(layout);
-  write_head(layout);
-  write_row("all", contacts.found.total, layout);
-  const auto clicked = contact_rows(contacts, layout);
+  write_head(layout, unit);
+  write_row("all", contacts.found.total, layout, unit);
+  const auto clicked = contact_rows(contacts, layout, unit);
   ImGui::EndTable();
   return clicked;
 }
@@ -104,7 +110,7 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
   }
   const ShownContacts& contacts = *state.field->contacts;
   const SkinLayout layout = state.player->info().skin.layout;
-  if (const auto clicked = contact_table(style, contacts, layout)) {
+  if (const auto clicked = contact_table(style, contacts, layout, state.settings.pressure_unit)) {
     mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
   }

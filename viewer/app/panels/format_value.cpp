@@ -41,8 +41,9 @@ double plane(const PillarValues& values, Uncertainty which) {
 
 bool is_ambiguous(const PillarValues& values) { return (values.status & status::kAmbiguous) != 0; }
 
-ShownValue with_deviation(const char* label, double value, double deviation, const char* unit) {
-  return {label, format_value(value, deviation), format_deviation(deviation), unit};
+ShownValue with_deviation(const char* label, double value, double deviation,
+                          std::string_view unit) {
+  return {label, format_value(value, deviation), format_deviation(deviation), std::string(unit)};
 }
 
 /// A value known only as an interval.
@@ -187,12 +188,14 @@ std::array<ShownValue, 3> shown_components(const PillarValues& values) {
                          plane(values, Uncertainty::shear_y), "N")};
 }
 
-std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin) {
+std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,
+                                     const PressureUnit& unit) {
   const auto components = shown_components(values);
   if (values.has_pillars) return {components.begin(), components.end()};
-  const auto kpa = static_cast<double>(kpa_per_newton(skin));
-  return {components.front(), with_deviation("pressure", kpa * static_cast<double>(values.normal),
-                                             kpa * plane(values, Uncertainty::normal), "kPa")};
+  const double pressure = static_cast<double>(kpa_per_newton(skin)) / unit.kpa;
+  return {components.front(),
+          with_deviation("pressure", pressure * static_cast<double>(values.normal),
+                         pressure * plane(values, Uncertainty::normal), unit.name)};
 }
 
 namespace {
@@ -236,12 +239,10 @@ std::vector<ContactColumn> columns_of(SkinLayout layout) {
   if (layout == SkinLayout::pillars) {
     for (const ContactColumn& column : shear_columns()) columns.push_back(column);
   }
-  columns.push_back({"mean", "mean pressure, kPa", "0.0000", [](const ContactQuantities& contact) {
-                       return three_digits(contact.mean_pressure_kpa);
-                     }});
-  columns.push_back(
-      {"most", "largest pressure, kPa", "0.0000",
-       [](const ContactQuantities& contact) { return three_digits(contact.peak_pressure_kpa()); }});
+  columns.push_back({"mean", "mean pressure", "0.0000", nullptr,
+                     [](const ContactQuantities& contact) { return contact.mean_pressure_kpa; }});
+  columns.push_back({"most", "largest pressure", "0.0000", nullptr,
+                     [](const ContactQuantities& contact) { return contact.peak_pressure_kpa(); }});
   columns.push_back({"area", "mm²", "00000", [](const ContactQuantities& contact) {
                        return three_digits(contact.area_mm2);
                      }});
@@ -262,10 +263,14 @@ const std::vector<ContactColumn>& contact_columns(SkinLayout layout) {
 }
 
 std::vector<std::string> format_contact(const std::string& name, const ContactQuantities& contact,
-                                        SkinLayout layout) {
+                                        SkinLayout layout, const PressureUnit& unit) {
   std::vector<std::string> words;
   for (const ContactColumn& column : contact_columns(layout)) {
-    words.push_back(column.words == nullptr ? name : column.words(contact));
+    if (column.pressure_kpa != nullptr) {
+      words.push_back(three_digits(column.pressure_kpa(contact) / unit.kpa));
+    } else {
+      words.push_back(column.words == nullptr ? name : column.words(contact));
+    }
   }
   return words;
 }

@@ -67,21 +67,23 @@ struct ShownValue {
 
 /// Normal force with its deviation, of a pillar with the other components, of a sensel with the
 /// pressure.
-[[nodiscard]] std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin);
+[[nodiscard]] std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,
+                                                   const PressureUnit& unit);
 
 /// A column of the table of contacts.
 struct ContactColumn {
   const char* head;                                        ///< "normal"
   const char* help;                                        ///< "normal force, N"
   const char* widest;                                      ///< sample text that sets the width
-  std::string (*words)(const ContactQuantities& contact);  ///< null: its name
+  std::string (*words)(const ContactQuantities& contact);  ///< null: its name, or a pressure
+  double (*pressure_kpa)(const ContactQuantities& contact) = nullptr;
 };
 [[nodiscard]] const std::vector<ContactColumn>& contact_columns(SkinLayout layout);
 
-/// A row of the table: `name`, then contact_columns(), numbers with three digits; "–" for missing
-/// values.
+/// A row of the table: `name`, then contact_columns(), pressures in `unit`, numbers with three
+/// digits; "–" for missing values.
 [[nodiscard]] std::vector<std::string> format_contact(const std::string& name,
                                                       const ContactQuantities& contact,
-                                                      SkinLayout layout);
+                                                      SkinLayout layout, const PressureUnit& unit);
 
 }  // namespace pillarfield::viewer

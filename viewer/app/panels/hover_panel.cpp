@@ -19,14 +19,15 @@ void add_mapped(std::vector<ShownValue>& lines, const AppState& state) {
   const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
                     quantity == Quantity::pressure;
   if (!adds || elsewhere) return;
-  const QuantityInfo& info = info_of(quantity);
+  const QuantityInfo info = info_of(quantity, state.settings.pressure_unit);
   const double value =
       value_of(quantity, *state.field, skin, state.hovered->row, state.hovered->col);
-  lines.push_back({info.title, three_digits(value * info.factor), {}, info.unit});
+  lines.push_back({info.title, three_digits(value * info.factor), {}, std::string(info.unit)});
 }
 
 std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& values) {
-  std::vector<ShownValue> lines = shown_forces(values, state.player->info().skin);
+  std::vector<ShownValue> lines =
+      shown_forces(values, state.player->info().skin, state.settings.pressure_unit);
   if (values.has_pillars) {
     for (const ShownValue& value : shown_direction(values)) lines.push_back(value);
   }
@@ -41,8 +42,8 @@ void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pil
   if (pillar.row >= forces.rows || pillar.col >= forces.cols) return;
   leave_gap(style, 4);
   heading(style, state.beside_is_truth ? "truth" : state.beside->info().name);
-  value_table(style,
-              shown_forces(values_at(*state.beside_field, pillar), state.beside->info().skin));
+  value_table(style, shown_forces(values_at(*state.beside_field, pillar), state.beside->info().skin,
+                                  state.settings.pressure_unit));
 }
 
 }  // namespace

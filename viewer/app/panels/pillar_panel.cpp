@@ -148,7 +148,8 @@ void pillar_panel(AppState& state) {
   if (!values.has_pillars) {
     if (state.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
     leave_gap(style, 2);
-    return value_table(style, shown_forces(values, state.player->info().skin));
+    return value_table(
+        style, shown_forces(values, state.player->info().skin, state.settings.pressure_unit));
   }
   leave_gap(style, 4);
   draw_readings_and_direction(style, state, values, colour);

@@ -23,17 +23,18 @@ std::string size_words(const PillarRect& rect, double pitch_mm) {
                      three_digits((rect.row_end - rect.row_begin) * pitch_mm));
 }
 
-ShownValue shown(const char* label, double value, const char* unit, std::string further = {}) {
-  return {label, three_digits(value), std::move(further), unit};
+ShownValue shown(const char* label, double value, std::string_view unit) {
+  return {label, three_digits(value), {}, std::string(unit)};
 }
 
 /// Total force of the selection, without pillars with the pressure.
-std::vector<ShownValue> force_lines(const SelectionSums& sums, const Skin& skin) {
+std::vector<ShownValue> force_lines(const SelectionSums& sums, const Skin& skin,
+                                    const PressureUnit& unit) {
   if (!skin.has_pillars()) {
-    const auto kpa = static_cast<double>(kpa_per_newton(skin));
+    const double pressure = static_cast<double>(kpa_per_newton(skin)) / unit.kpa;
     return {shown("normal", sums.normal, "N"),
-            shown("mean pressure", kpa * sums.mean_normal, "kPa"),
-            shown("peak pressure", kpa * sums.peak_normal, "kPa")};
+            shown("mean pressure", pressure * sums.mean_normal, unit.name),
+            shown("peak pressure", pressure * sums.peak_normal, unit.name)};
   }
   return {shown("normal", sums.normal, "N"),
           shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"),
@@ -54,9 +55,10 @@ std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
 }
 
 /// Two tables, side by side if they fit.
-void draw_tables(const PanelStyle& style, const SelectionSums& sums, const Skin& skin) {
+void draw_tables(const PanelStyle& style, const SelectionSums& sums, const Skin& skin,
+                 const PressureUnit& unit) {
   const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  value_table(style, force_lines(sums, skin));
+  value_table(style, force_lines(sums, skin, unit));
   const double second = value_table_width(style) - 60 * style.unit;
   if (second + value_table_width(style) <= available) {
     ImGui::SameLine(0, 0);
@@ -137,7 +139,7 @@ void selection_panel(AppState& state) {
   const SelectionSums& sums = selection_sums(state);
   heading(style, rect_words(rect), size_words(rect, skin.element_pitch_mm()));
   leave_gap(style, 2);
-  draw_tables(style, sums, skin);
+  draw_tables(style, sums, skin, state.settings.pressure_unit);
   leave_gap(style, 4);
   const std::string touched = fmt::format("{} of {} in contact", sums.in_contact, sums.pillars);
   if (!skin.has_pillars()) {

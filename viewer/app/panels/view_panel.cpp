@@ -12,22 +12,23 @@
 namespace pillarfield::viewer {
 namespace {
 
-std::string words_of(Quantity quantity) {
-  const QuantityInfo& info = info_of(quantity);
-  if (*info.unit == '\0') return info.title;
+std::string words_of(Quantity quantity, const PressureUnit& unit) {
+  const QuantityInfo info = info_of(quantity, unit);
+  if (info.unit.empty()) return info.title;
   return fmt::format("{}, {}", info.title, info.unit);
 }
 
 void choose_quantity(AppState& state) {
+  const PressureUnit& unit = state.settings.pressure_unit;
   labelled("Quantity");
-  if (!ImGui::BeginCombo("##quantity", words_of(state.settings.quantity).c_str(),
+  if (!ImGui::BeginCombo("##quantity", words_of(state.settings.quantity, unit).c_str(),
                          ImGuiComboFlags_HeightLargest)) {
     return;
   }
   for (int i = 0; i < kQuantities; ++i) {
     const auto quantity = static_cast<Quantity>(i);
     if (!is_available(quantity, state.player->info())) continue;
-    if (ImGui::Selectable(words_of(quantity).c_str(), quantity == state.settings.quantity)) {
+    if (ImGui::Selectable(words_of(quantity, unit).c_str(), quantity == state.settings.quantity)) {
       show_quantity(state, quantity);
     }
   }
@@ -42,7 +43,7 @@ bool is_fixed(Quantity quantity) {
 /// Low and high end in the displayed unit, side by side.
 void edit_range(AppState& state) {
   RenderSettings& settings = state.settings;
-  const auto factor = static_cast<float>(info_of(settings.quantity).factor);
+  const auto factor = static_cast<float>(info_of(settings.quantity, settings.pressure_unit).factor);
   std::array<float, 2> ends{settings.range.low * factor, settings.range.high * factor};
   const float width = ends[1] - ends[0];
   labelled("Range");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/layout_note.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
@@ -17,8 +18,9 @@ namespace {
 RenderSettings live_settings(const Options& options, const SourceInfo& source, double scale) {
   constexpr float kFirstRangeN = 1;
   RenderSettings settings = chosen_settings(options, source, scale);
-  settings.range = options.range ? in_unit_of(*options.range, options.quantity)
-                                 : fitting_range(options.quantity, kFirstRangeN);
+  settings.range = options.range
+                       ? in_unit_of(*options.range, options.quantity, options.pressure_unit)
+                       : fitting_range(options.quantity, kFirstRangeN);
   settings.full_force_n = settings.full_shear_n = static_cast<double>(kFirstRangeN) / 2;
   return settings;
 }
@@ -44,6 +46,10 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
                          .stop = stop,
                          .say = [&](const std::string& words) { waiting += ": " + words; }});
   if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
+  if (!options.plain.layout && options.calibration.empty()) {
+    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name),
+               layout_note(opened.player->info().skin));
+  }
   loaded.curves = std::move(opened.curves);
   loaded.settings = live_settings(options, opened.player->info(), scale);
   loaded.player = std::move(opened.player);

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+/// The layout of frames that state none, and how to have the other one.
+[[nodiscard]] std::string layout_note(const Skin& skin);
+
+}  // namespace pillarfield
