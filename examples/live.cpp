@@ -53,7 +53,8 @@ int main() try {
   }
   const pf::TareResult tare = pf::take_tare(pf::blank_calibration(plan.skin), unloaded, {});
   pf::apply(tare.calibration, plan.skin, plan.calibration);
-  plan.baseline_rate = pf::baseline_rate(10, 0.001);  // untouched sensels: follow drift within 10 s
+  plan.frame_interval_s = 0.001;
+  pf::set_baseline(plan, 10);  // untouched sensels: follow drift within 10 s
   std::printf("tare %.1f counts, noise %.2f counts, %zu sensels masked\n", tare.tare_counts,
               tare.noise_counts, tare.findings.size());
 

@@ -45,7 +45,7 @@ threshold_counts, counts_per_newton, full_scale_counts: replace constants of the
 parity_tolerance_counts: tolerance of V1 + V3 = V2 + V4; None: no test
 noise_counts: standard deviation of a raw reading, counts
 baseline_time_s: time constant with which the tare follows drift, s; None: it is fixed
-baseline_interval: frames over which its update is spread, 1..1024
+baseline_interval: frames over which its update is spread, 1..1024; None: 1/100 of that time
 frame_interval_s: time from frame to frame, s
 
 Raises Error for a value out of range or options that exclude each other.)";

@@ -15,12 +15,6 @@ namespace {
 /// Default time constant of the baseline of PlanSettings::everything, seconds.
 constexpr double kBaselineTimeDefaultS = 10;
 
-/// Baseline interval of PlanSettings::everything: at most 64 frames and 1/100 of the time constant.
-int baseline_interval_of(double baseline_time_s, double frame_interval_s) {
-  constexpr double kMostFrames = 64;
-  return static_cast<int>(std::clamp(baseline_time_s / (100 * frame_interval_s), 1.0, kMostFrames));
-}
-
 void apply_calibration(const SkinCalibration& calibration, bool keeps_tare,
                        const std::string& where, SolverPlan& plan) {
   require_fitting(calibration, plan.skin, where);
@@ -115,15 +109,11 @@ SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::strin
     enable_everything(plan);
     if (!baseline_time_s) baseline_time_s = kBaselineTimeDefaultS;
   }
+  const bool is_timed = baseline_time_s || plan.calibration.effects.memory;
+  if (is_timed && !settings.frame_interval_s) plan.frame_interval_s = frame_interval_s();
+  if (baseline_time_s) set_baseline(plan, *baseline_time_s);
   if (settings.baseline_interval) {
     plan.baseline_interval = static_cast<int>(*settings.baseline_interval);
-  }
-  if (!baseline_time_s && !plan.calibration.effects.memory) return plan;
-  if (!settings.frame_interval_s) plan.frame_interval_s = frame_interval_s();
-  if (!baseline_time_s) return plan;
-  plan.baseline_rate = baseline_rate(*baseline_time_s, plan.frame_interval_s);
-  if (settings.everything && !settings.baseline_interval) {
-    plan.baseline_interval = baseline_interval_of(*baseline_time_s, plan.frame_interval_s);
   }
   return plan;
 }

@@ -44,8 +44,7 @@ inline constexpr PlanSetting kPlanSettings[] = {
      "N",
      {1, 1024},
      true,
-     "Follow it in one of N pillar rows per frame, at 1/N of the cost [1; with --everything up to "
-     "64]"},
+     "Follow it in one of N pillar rows per frame, at 1/N of the cost [a hundredth of SECONDS]"},
     {"frame_interval_s", &PlanSettings::frame_interval_s, nullptr, "", "", kAnyNumber, false, ""},
     {"parity_tolerance_counts", &PlanSettings::parity_tolerance_counts, "--parity-tolerance",
      "Solver", "COUNTS", kAnyNumber, false,

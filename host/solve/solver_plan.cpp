@@ -83,6 +83,17 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
 }
 
 constexpr int kMaxBaselineInterval = 1024;
+
+/// Frames over which a time constant of so many frames lets the update of the tare be spread: a
+/// hundredth of it, and without the divisors 2, 3 and 5 of usual frame rates, so that hum of 50 or
+/// 60 Hz does not stand still from turn to turn.
+int baseline_interval(double time_constant_frames) {
+  constexpr double kTurnsInTimeConstant = 100;
+  const double most = time_constant_frames / kTurnsInTimeConstant;
+  int interval = static_cast<int>(std::fmin(std::fmax(most, 1), kMaxBaselineInterval));
+  while (std::gcd(interval, 2 * 3 * 5) != 1) --interval;
+  return interval;
+}
 constexpr double kMaxFrameIntervalS = 1e6;
 
 /// Threshold over standard deviation of a reading, assumed where no noise is given.
@@ -157,8 +168,9 @@ void check(const SolverPlan& plan, std::string_view where) {
   }
 }
 
-double baseline_rate(double time_constant_s, double frame_interval_s) {
-  return -std::expm1(-frame_interval_s / time_constant_s);
+void set_baseline(SolverPlan& plan, double time_constant_s) {
+  plan.baseline_rate = -std::expm1(-plan.frame_interval_s / time_constant_s);
+  plan.baseline_interval = baseline_interval(time_constant_s / plan.frame_interval_s);
 }
 
 double baseline_turn_rate(const SolverPlan& plan) {

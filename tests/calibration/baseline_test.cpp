@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "pillarfield/host_solve.h"
@@ -44,7 +46,7 @@ struct Drift {
 /// Frames of a scene, solved one after the other with a baseline that follows.
 class Follower {
  public:
-  Follower(const Scene& scene, double time_constant_s, int interval = 1)
+  Follower(const Scene& scene, double time_constant_s, std::optional<int> interval = {})
       : simulator_(scene),
         raw_(simulator_.sensel_type(), scene.skin.rows, scene.skin.cols),
         truth_(scene.skin.pillar_rows(), scene.skin.pillar_cols()),
@@ -52,8 +54,9 @@ class Follower {
     plan_.skin = scene.skin;
     plan_.sensel_type = simulator_.sensel_type();
     plan_.calibration = simulator_.calibration();
-    plan_.baseline_rate = baseline_rate(time_constant_s, 1 / scene.rate_hz);
-    plan_.baseline_interval = interval;
+    plan_.frame_interval_s = 1 / scene.rate_hz;
+    set_baseline(plan_, time_constant_s);
+    if (interval) plan_.baseline_interval = *interval;
   }
 
   /// Solves the next frame, to whose readings `drift` is added, counts.
@@ -199,6 +202,59 @@ TEST(Baseline, WhatUntouchedSenselsDriftInCommonIsTakenOffTouchedOnes) {
       EXPECT_LE(with.false_pillars, without.false_pillars);
     }
   }
+}
+
+double rms_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += std::pow(double{a[i]} - b[i], 2);
+  return std::sqrt(squares / static_cast<double>(a.size()));
+}
+
+/// A skin at 500 Hz that is followed with 2 s, so that a row has its turn in each seventh frame.
+Scene scene_in_turns(double load_n) {
+  Scene scene = pressed_scene(load_n);
+  scene.rate_hz = 500;
+  scene.skin.threshold_counts = 6;
+  return scene;
+}
+
+constexpr double kTimeInTurnsS = 2;
+constexpr double kMostInTurns = 0.1;  // A turn has sqrt(7 / 2000) = 0.06 of a reading's noise.
+
+TEST(Baseline, InTurnsIsThatOfEveryFrameBesideTheNoise) {
+  const Scene scene = scene_in_turns(20);
+  Follower every(scene, kTimeInTurnsS, 1);
+  Follower turns(scene, kTimeInTurnsS);
+  double error = 0;
+  double difference = 0;
+  for (int frame = 0; frame < 3'000; ++frame) {
+    const Drift drift = {0.3 * frame / scene.rate_hz};
+    const ForceField expected = every.step(drift);
+    const ForceField solved = turns.step(drift);
+    for (std::size_t i = 0; frame >= 1'500 && i < solved.elements(); ++i) {
+      error += std::pow(expected.normal[i] - every.truth().normal[i], 2);
+      difference += std::pow(solved.normal[i] - expected.normal[i], 2);
+    }
+  }
+  EXPECT_NE(turns.tare(), every.tare());
+  EXPECT_LT(rms_difference(turns.tare(), every.tare()), kMostInTurns);
+  EXPECT_LT(difference, 0.01 * error);
+}
+
+/// Each tenth frame would see a hum of 50 Hz at one phase.
+TEST(Baseline, InTurnsIsNotDeceivedByHum) {
+  const Scene scene = scene_in_turns(0);
+  constexpr double kHumCounts = 1.5;
+  Follower turns(scene, kTimeInTurnsS);
+  Follower tenth(scene, kTimeInTurnsS, 10);
+  for (int frame = 0; frame < 3'000; ++frame) {
+    const double turn = 50 * frame / scene.rate_hz;
+    const Drift hum = {kHumCounts * std::cos(2 * std::numbers::pi * turn)};
+    turns.step(hum);
+    tenth.step(hum);
+  }
+  EXPECT_LT(rms_difference(turns.tare(), turns.unloaded()), kMostInTurns);
+  EXPECT_GT(rms_difference(tenth.tare(), tenth.unloaded()), 0.5 * kHumCounts);
 }
 
 TEST(Baseline, ComesBackAfterAContact) {

@@ -1,6 +1,7 @@
 // Writers that die: by SIGKILL at any time, or of a full disk.
 
 #include <fcntl.h>
+#include <hdf5.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -194,6 +195,26 @@ TEST(KilledForces, GiveTheContactsOfEveryFlushedFrame) {
           << index;
     }
   }
+}
+
+herr_t expect_within_page(hid_t, const char* name, const H5O_info_t* object, void* checked) {
+  if (object->hdr.nchunks > 1) return 0;  // the places of the others are unknown
+  EXPECT_LE(object->addr % 4096 + object->hdr.space.total, 4096u) << name;
+  ++*static_cast<int*>(checked);
+  return 0;
+}
+
+/// A killed process leaves whole pages of a call: half a header would make the file unreadable.
+TEST(KilledForces, FindNoHeaderAcrossPages) {
+  const TemporaryDirectory directory;
+  ForceFileInfo info = {3, 4, 1.25, "direct", "a device", "it", false};
+  info.contacts.emplace();
+  create_force_sink(directory / "f.h5", info)->finish();
+  const hid_t file = H5Fopen((directory / "f.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  int checked = 0;
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, expect_within_page, &checked);
+  H5Fclose(file);
+  EXPECT_GT(checked, 30);
 }
 
 /// The last line of a writer whose file may grow to at most `limit` bytes.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace pillarfield {
 namespace {
 
@@ -21,6 +23,24 @@ TEST(ReadingNoise, OfThePlaneElseOfThePlanElseAFourthOfTheThreshold) {
   EXPECT_DOUBLE_EQ(reading_noise_n(plan), 0.02);
   plan.calibration.effects.residual = {0.1, 1.5};
   EXPECT_DOUBLE_EQ(reading_noise_n(plan), 0.025);
+}
+
+TEST(BaselineInterval, IsAHundredthOfTheTimeConstantAndNoPeriodOfHum) {
+  struct Case {
+    double time_constant_s;
+    double rate_hz;
+    int interval;
+  };
+  for (const Case& each :
+       {Case{1, 100, 1}, Case{10, 100, 7}, Case{2, 500, 7}, Case{10, 500, 49}, Case{10, 1000, 97},
+        Case{60, 1000, 599}, Case{1e-3, 30, 1}, Case{1e9, 1000, 1021}}) {
+    SolverPlan plan;
+    plan.frame_interval_s = 1 / each.rate_hz;
+    set_baseline(plan, each.time_constant_s);
+    EXPECT_EQ(plan.baseline_interval, each.interval) << each.time_constant_s << each.rate_hz;
+    EXPECT_NEAR(*plan.baseline_rate, -std::expm1(-1 / (each.rate_hz * each.time_constant_s)),
+                1e-15);
+  }
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ struct SolverPlan {
   double segment_point = kSegmentPoint;
   FrictionKnowledge friction;  ///< prior for Estimator::contact
   /// Fraction of its distance from the reading by which the tare of an untouched sensel moves after
-  /// each frame, (0, 1]; see baseline_rate(). Unset: the tare is fixed. A sensel is untouched if
+  /// each frame, (0, 1]; see set_baseline(). Unset: the tare is fixed. A sensel is untouched if
   /// neither its pillar nor the eight around it have a usable or saturated sensel. Other tares move
   /// by what the untouched ones have in common (docs/derivations/sensor_effects.md, E11).
   std::optional<double> baseline_rate;
@@ -65,9 +65,11 @@ struct SolverPlan {
 /// Throws Error, naming `where`, if a member is out of range or two members exclude each other.
 void check(const SolverPlan& plan, std::string_view where);
 
-/// The SolverPlan::baseline_rate that follows drift with a time constant: 1 − exp(−frame interval /
-/// time constant). Both in seconds, above zero.
-[[nodiscard]] double baseline_rate(double time_constant_s, double frame_interval_s);
+/// Lets the tare follow drift with a time constant, s, above zero: sets baseline_rate, 1 −
+/// exp(−frame_interval_s / time constant), and baseline_interval, for which a pillar row has its
+/// turn a hundred times in a time constant. Set frame_interval_s before
+/// (docs/derivations/sensor_effects.md, section 12).
+void set_baseline(SolverPlan& plan, double time_constant_s);
 
 /// Standard deviation of a reading as a force, N, for ContactOptions::noise_n: that of
 /// noise_counts, of rounding and of ResidualError::offset_counts, over counts_per_newton. A quarter

@@ -32,6 +32,8 @@ struct DriverFile : H5FD_t {
   int descriptor;
   PartBytes bytes;  ///< for writing
   haddr_t allocated_end = 0;
+  haddr_t metadata_at = 0;   ///< free place in the page of metadata
+  haddr_t metadata_end = 0;  ///< end of that page
   haddr_t file_end = 0;
   std::vector<char> waiting;  ///< adjacent small blocks, which one call writes
   haddr_t waiting_at = 0;     ///< their address
@@ -89,17 +91,33 @@ herr_t close_file(H5FD_t* file) {
 }
 
 herr_t query(const H5FD_t*, unsigned long* features) {
-  *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA |
-              H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_SUPPORTS_SWMR_IO |
-              H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  *features = H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_AGGREGATE_SMALLDATA |
+              H5FD_FEAT_SUPPORTS_SWMR_IO | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
   return 0;
 }
 
 haddr_t allocated_end(const H5FD_t* file, H5FD_mem_t) { return ours(file).allocated_end; }
 
 herr_t set_allocated_end(H5FD_t* file, H5FD_mem_t, haddr_t end) {
-  ours(file).allocated_end = end;
+  DriverFile& target = ours(file);
+  target.allocated_end = end;
+  if (end < target.metadata_end) target.metadata_at = target.metadata_end;  // values may come there
   return 0;
+}
+
+/// Puts metadata into pages of their own, none across a border: a process that is killed in a call
+/// leaves whole pages, and half a block would fail its checksum. The last byte of a page stays
+/// free, or HDF5 would join it to the next page. Values, and metadata above a page, follow the end.
+haddr_t allocate(H5FD_t* file, H5FD_mem_t type, hid_t, hsize_t size) {
+  constexpr hsize_t kPageBytes = 4096;
+  DriverFile& target = ours(file);
+  haddr_t& end = target.allocated_end;
+  if (type == H5FD_MEM_DRAW || size >= kPageBytes) return std::exchange(end, end + size);
+  if (target.metadata_at + size >= target.metadata_end) {
+    target.metadata_at = (end + kPageBytes - 1) / kPageBytes * kPageBytes;
+    target.metadata_end = end = target.metadata_at + kPageBytes;
+  }
+  return std::exchange(target.metadata_at, target.metadata_at + size);
 }
 
 haddr_t file_end(const H5FD_t* file, H5FD_mem_t) { return ours(file).file_end; }
@@ -185,6 +203,7 @@ H5FD_class_t driver_class() {
   driver.open = open_file;
   driver.close = close_file;
   driver.query = query;
+  driver.alloc = allocate;
   driver.get_eoa = allocated_end;
   driver.set_eoa = set_allocated_end;
   driver.get_eof = file_end;

@@ -53,9 +53,7 @@ void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.angles = scene.angles;
   plan.uncertainty = scene.uncertainty;
   plan.frame_interval_s = 1 / scene.rate_hz;
-  if (scene.baseline_time_s) {
-    plan.baseline_rate = baseline_rate(*scene.baseline_time_s, 1 / scene.rate_hz);
-  }
+  if (scene.baseline_time_s) set_baseline(plan, *scene.baseline_time_s);
   if (scene.sensor.noise_counts > 0) plan.noise_counts = scene.sensor.noise_counts;
 }
 
