@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "bench/frames.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
@@ -17,6 +19,9 @@ class FrameSolver {
 
   /// Solves one frame; the result is valid until run() or the next solve().
   ForceFieldView solve(const FrameView& frame);
+
+  /// The name of the device that solves.
+  [[nodiscard]] const std::string& device() const { return processor_.device().info().name; }
 
  private:
   void receive();

@@ -32,7 +32,7 @@ Usage: pillarfield-bench [OPTIONS]
   --benchmark_filter=REGEX       only cases whose name matches; --benchmark_list_tests lists them
   --benchmark_format=FORMAT      console or json, to standard output
   --benchmark_repetitions=N      run every case N times, then print mean, median and deviation
-  --device=INDEX|NAME            the OpenCL device, as for `pillarfield solve`
+  --device=INDEX|NAME|host       the device, as for `pillarfield solve`
   --seconds=S                    minimum time of a case, above 0 (default 1)
   --help                         print this help
 
@@ -122,7 +122,9 @@ bool initialize(std::vector<char*> words) {
 }
 
 int run(const Arguments& arguments) {
-  Session session{open_device(arguments.device), {}};
+  const bool is_opencl = !arguments.device.empty() && arguments.device != "host";
+  Session session{
+      open_device(arguments.device), open_device(is_opencl ? arguments.device : "opencl"), {}};
   session.length.seconds = arguments.seconds;
   add_context(session.device);
   for (const auto add :

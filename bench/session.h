@@ -5,9 +5,10 @@
 
 namespace pillarfield::bench {
 
-/// Device and timing length of all cases of a run.
+/// Devices and timing length of all cases of a run.
 struct Session {
-  Device device;
+  Device solver;  ///< solves; if none was named, small skins are the host's
+  Device device;  ///< of OpenCL: copies, and the paper's solve with one lane
   TimingLength length;
 };
 

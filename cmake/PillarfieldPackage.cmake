@@ -67,16 +67,16 @@ pillarfield_package(program pillarfield SECTION science
 force: shear and normal force in newtons on every pillar, and each
 contact's force, torque, friction and slip. It simulates, calibrates,
 solves, streams and compares."
-  DEPENDS "libpillarfield${abi} ${same}, pocl-opencl-icd | opencl-icd"
-  RECOMMENDS "pillarfield-viewer, pillarfield-doc"
+  DEPENDS "libpillarfield${abi} ${same}"
+  RECOMMENDS "pocl-opencl-icd | opencl-icd, pillarfield-viewer, pillarfield-doc"
   CONTAINS libcli11-dev nlohmann-json3-dev)
 pillarfield_package(viewer pillarfield-viewer SECTION science
   SUMMARY "forces on a tactile skin from its frames - viewer"
   DESCRIPTION "Draws fields of three-axis force as heat maps and arrows by Vulkan: in a
 window while they are solved, or without a display as pictures and
 videos."
-  DEPENDS "libpillarfield${abi} ${same}, mesa-vulkan-drivers | vulkan-icd, pocl-opencl-icd | opencl-icd, fonts-dejavu-core"
-  SUGGESTS "ffmpeg" CONTAINS libcli11-dev libimgui-dev)
+  DEPENDS "libpillarfield${abi} ${same}, mesa-vulkan-drivers | vulkan-icd, fonts-dejavu-core"
+  RECOMMENDS "pocl-opencl-icd | opencl-icd" SUGGESTS "ffmpeg" CONTAINS libcli11-dev libimgui-dev)
 pillarfield_package(library libpillarfield${abi} SECTION libs
   SUMMARY "forces on a tactile skin from its frames - shared libraries"
   DESCRIPTION "Solves frames of a tactile skin on an OpenCL device or on the host,

@@ -35,7 +35,7 @@ class Comparison {
       : session_(&session),
         plan_(bare_plan(kSquareMetre)),
         frames_(plan_.skin, plan_.sensel_type, {}),
-        ours_(session.device, plan_, frames_),
+        ours_(session.solver, plan_, frames_),
         our_entry_(timing_.add([this](int count) { ours_.run(count); })),
         copies_(timing_, session.device, plan_, frames_, Processor::Options{}.frames_in_flight) {}
 

@@ -37,8 +37,8 @@ Measurement time_way(const Session& session, std::string_view knowledge, const W
   add_stage(plan, knowledge);
   plan.estimator = way.estimator;
   plan.uncertainty = way.uncertainty;
-  FrameSolver bare(session.device, contacts.plan(), contacts.frames());
-  FrameSolver solver(session.device, plan, contacts.frames());
+  FrameSolver bare(session.solver, contacts.plan(), contacts.frames());
+  FrameSolver solver(session.solver, plan, contacts.frames());
   InterleavedTiming timing;
   const std::size_t bare_entry = timing.add([&](int count) { bare.run(count); });
   const std::size_t entry = timing.add([&](int count) { solver.run(count); });

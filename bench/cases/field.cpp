@@ -98,9 +98,9 @@ Measurement time_field(const Session& session, const Method& method,
   SolverPlan plan = contacts.plan();
   plan.estimator = method.estimator;
   const Frames& frames = contacts.frames();
-  FrameSolver direct(session.device, contacts.plan(), frames);
-  FrameSolver solver(session.device, plan, frames);
-  TrackingSolver tracking(session.device, plan, frames);
+  FrameSolver direct(session.solver, contacts.plan(), frames);
+  FrameSolver solver(session.solver, plan, frames);
+  TrackingSolver tracking(session.solver, plan, frames);
   InterleavedTiming timing;
   const std::size_t direct_entry = timing.add([&](int count) { direct.run(count); });
   const std::size_t entry = timing.add([&](int count) {

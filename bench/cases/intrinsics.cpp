@@ -23,7 +23,7 @@ Measurement time_intrinsics(const Session& session, const SolverPlan& plan) {
   const Vectorised intrinsics = vectorised().front();
   const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const Frames frames(plan.skin, plan.sensel_type, {});
-  FrameSolver ours(session.device, plan, frames);
+  FrameSolver ours(session.solver, plan, frames);
   LoopSolver cached(plan, intrinsics.cached, threads);
   LoopSolver streaming(plan, intrinsics.streaming, threads);
   require_same_bits("vectorised loop", cached.solve(frames[0]), ours.solve(frames[0]));
@@ -40,7 +40,8 @@ Measurement time_intrinsics(const Session& session, const SolverPlan& plan) {
   measured.counters["speedup"] = timing.ratio(theirs, our_entry);
   measured.counters["of_copy"] = timing.ratio(copies.fastest(timing), our_entry);
   copies.report(timing, measured);
-  measured.label = fmt::format("{}, threads: {}", intrinsics.instructions, threads);
+  measured.label =
+      fmt::format("{}, threads: {}, ours on {}", intrinsics.instructions, threads, ours.device());
   return measured;
 }
 

@@ -14,7 +14,7 @@ constexpr std::uint32_t kLatencySides[] = {32, 79, kSquareMetre};
 /// From submit to result, one frame at a time, interleaved with empty launches.
 Measurement time_latency(const Session& session, const SolverPlan& plan) {
   const Frames frames(plan.skin, plan.sensel_type, {});
-  FrameSolver solver(session.device, plan, frames, {.frames_in_flight = 1});
+  FrameSolver solver(session.solver, plan, frames, {.frames_in_flight = 1});
   EmptyLaunch launch(session.device);
   InterleavedTiming timing;
   const std::size_t solve = timing.add([&](int count) { solver.run(count); });

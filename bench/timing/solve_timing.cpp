@@ -45,7 +45,7 @@ Measurement measurement_of(const InterleavedTiming& timing, std::size_t candidat
 Measurement time_solve(const Session& session, const SolverPlan& plan, const Scenario& scenario,
                        const Processor::Options& options, const ProcessorTuning& tuning) {
   const Frames frames(plan.skin, plan.sensel_type, scenario);
-  FrameSolver solver(session.device, plan, frames, options, tuning);
+  FrameSolver solver(session.solver, plan, frames, options, tuning);
   InterleavedTiming timing;
   const std::size_t solve = timing.add([&](int count) { solver.run(count); });
   CopyEntries copies(timing, session.device, plan, frames, options.frames_in_flight);
@@ -53,7 +53,7 @@ Measurement time_solve(const Session& session, const SolverPlan& plan, const Sce
   Measurement measured = measurement_of(timing, solve, plan);
   measured.counters["of_copy"] = timing.ratio(copies.fastest(timing), solve);
   copies.report(timing, measured);
-  measured.label = fmt::format("{} frames", frames.size());
+  measured.label = fmt::format("{} frames, {}", frames.size(), solver.device());
   return measured;
 }
 
