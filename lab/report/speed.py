@@ -256,6 +256,19 @@ def latencies(live):
     return {key: text(latency, ".3f", "never") for key, latency in live["latency_ms"].items()}
 
 
+def live_cost_rows(bench, live):
+    cost = live["cost"]
+    traffic = cost["readings_gb_per_s"] + cost["forces_gb_per_s"]
+    case = "stage/all"
+    copy_ns = bench.value(case, "of_copy") * bench.value(case, "ns_per_pillar")
+    copy_gb_per_s = bench.value(case, "bytes_per_pillar") / copy_ns
+    return [["readings in, GB/s", text(cost["readings_gb_per_s"], ".3g")],
+            ["forces out, GB/s", text(cost["forces_gb_per_s"], ".3g")],
+            [f"both over the copy's {copy_gb_per_s:.3g} GB/s of all stages", text(traffic / copy_gb_per_s)],
+            ["core-milliseconds a frame", text(1e3 * cost["core_s_per_frame"], ".3g")],
+            ["joules a frame", text(cost["joules_per_frame"], ".2g", "unmeasured: no counter can be read")]]
+
+
 def main(docs, bench_json, live_json):
     folder = Path(docs, "pictures", "performance")
     bench, live = Bench(bench_json, page.load(bench_json)), page.load(live_json)["summary"]
@@ -271,7 +284,7 @@ def main(docs, bench_json, live_json):
         goal_dates="; ".join(f"{one['processor']}: {one['date']}, commit {one['commit']}" for one in kept),
         size_rows=size_rows(found),
         contact_rows=contact_rows(bare, every), latency_rows=latency_rows(bench),
-        live=live, latencies=latencies(live),
+        live=live, latencies=latencies(live), live_cost_rows=live_cost_rows(bench, live),
         scheduled=live["solved"] + live["lost"], baseline_rows=baseline_rows(bench),
         stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
         context=context, processor=processors.name(),

@@ -72,7 +72,8 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
       device_(info.forces.device),
       tracker_(plan.skin.element_pitch_mm(), *info.forces.contacts),
       live_(source, plan, processor, info),
-      control_(options.control) {
+      control_(options.control),
+      cost_(plan) {
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
   if (options.tare_s > 0) live_.start_tare(nanoseconds_of(options.tare_s));
   if (!options.record.empty()) live_.record(options.record);
@@ -111,6 +112,7 @@ void StreamSession::count(const SolvedFrame& frame) {
   const auto latency = Clock::now().time_since_epoch() - frame.arrived;
   if (options_.rate_hz && latency > nanoseconds_of(1 / *options_.rate_hz)) ++missed_;
   contacts_ = frame.contacts->contacts.size();
+  cost_.count(frame.forces);
 }
 
 /// Answers the clients whose tare is measured, or whose recording is complete.
@@ -156,6 +158,7 @@ void StreamSession::tell_of_sinks() {
 
 void StreamSession::report_health() {
   last_health_ = live_.report();
+  cost_.look();
   next_report_ = Clock::now() + nanoseconds_of(options_.health_interval_s);
   tell_of_sinks();
   const std::string& mismatch = last_health_.stream.mismatch;
@@ -298,6 +301,7 @@ void StreamSession::print_summary_json() const {
                         {"p99", latency(0.99)},
                         {"p99_9", latency(0.999)},
                         {"worst", live_.worst_latency_ms()}};
+  if (options_.summary) json["cost"] = cost_.json();
   fmt::print("{}\n", json_text({{"summary", json}}));
 }
 
@@ -319,6 +323,7 @@ void StreamSession::print_summary() const {
   if (options_.summary) {
     fmt::print("  late       {} solved more than a period of {:.3f} ms after they came\n",
                counted(missed_, "frame"), 1e3 / *options_.rate_hz);
+    fmt::print("{}", cost_.text());
   }
   fmt::print(
       "  frames     {} lost, {} incomplete; {} packets or ring slots came too fast to be read\n",

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "cli/stream/control.h"
+#include "cli/stream/run_cost.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/live_session.h"
 
@@ -59,6 +60,7 @@ class StreamSession {
   bool quit_ = false;
   std::uint64_t contacts_ = 0;  ///< in the last frame
   std::uint64_t missed_ = 0;    ///< frames solved later than a period after they came
+  RunCost cost_;
   Clock::time_point start_;
   Clock::time_point next_report_;
   HealthReport last_health_;
