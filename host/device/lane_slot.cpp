@@ -13,12 +13,12 @@
 namespace pillarfield {
 namespace {
 
-/// Blocks of 2 x 2 sensels from which on threads share a frame: waking them takes 10 µs.
-constexpr std::size_t kQuadsOfThreads = 8192;
-
+/// Bands of rows that threads share. Waking them takes some 10 µs, in which one thread solves
+/// 10,000 pillars without effects of a sensor, or some hundreds with all of them.
 std::size_t bands_of(const SolverPlan& plan) {
   constexpr std::size_t kBandsPerThread = 4;
-  if (quads(plan.skin) < kQuadsOfThreads) return 1;
+  const std::size_t least = plan.calibration.effects.empty() && !plan.uncertainty ? 65536 : 4096;
+  if (quads(plan.skin) < least) return 1;
   const std::size_t threads = std::max(std::thread::hardware_concurrency(), 1U);
   return std::min<std::size_t>(quad_rows(plan.skin), kBandsPerThread * threads);
 }
@@ -87,12 +87,17 @@ LaneWires wires_of(const SolverPlan& plan) {
 }
 
 template <class Reading>
-void convert(const FrameView& frame, std::size_t stride, float* to) {
-  const auto* row = static_cast<const Reading*>(frame.data);
-  for (std::size_t i = 0; i < frame.rows; ++i, row += frame.row_stride, to += stride) {
-    std::transform(row, row + frame.cols, to,
-                   [](Reading reading) { return static_cast<float>(reading); });
-  }
+void convert(const FrameView& frame, std::size_t row, float* to) {
+  const auto* const from = static_cast<const Reading*>(frame.data) + row * frame.row_stride;
+  std::transform(from, from + frame.cols, to,
+                 [](Reading reading) { return static_cast<float>(reading); });
+}
+
+/// Writes a row of readings as float.
+void convert_row(const FrameView& frame, std::size_t row, float* to) {
+  if (frame.type == SenselType::u8) return convert<std::uint8_t>(frame, row, to);
+  if (frame.type == SenselType::u16) return convert<std::uint16_t>(frame, row, to);
+  convert<float>(frame, row, to);
 }
 
 }  // namespace
@@ -133,27 +138,34 @@ LaneSlot::LaneSlot(const SolverPlan& plan, const LaneSettings& settings,
   if (!settings.whole && !in_place) readings_.resize(padded_sensels(plan.skin));
 }
 
+template <class Work>
+void LaneSlot::share(std::size_t pieces, const Work& work) {
+  if (pool_ == nullptr || pieces == 1) {
+    for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
+    return;
+  }
+  pool_->run(pieces, [&](std::size_t piece, std::size_t) { work(piece); });
+}
+
 void LaneSlot::read(const FrameView& frame) {
   if (readings_.empty()) {
     frame_.raw = frame.data;
     frame_.layout.row_stride = frame.row_stride;
     return;
   }
-  if (frame.type == SenselType::u8) {
-    convert<std::uint8_t>(frame, padded_cols_, readings_.data());
-  } else if (frame.type == SenselType::u16) {
-    convert<std::uint16_t>(frame, padded_cols_, readings_.data());
-  } else {
-    convert<float>(frame, padded_cols_, readings_.data());
-  }
+  const std::size_t pieces = bands_.down;
+  share(pieces, [&](std::size_t piece) {
+    const std::size_t end = (piece + 1) * frame.rows / pieces;
+    for (std::size_t row = piece * frame.rows / pieces; row < end; ++row) {
+      convert_row(frame, row, readings_.data() + row * padded_cols_);
+    }
+  });
   frame_.raw = readings_.data();
   frame_.layout.row_stride = padded_cols_;
 }
 
 void LaneSlot::run(LaneProgram::Run work, LaneRange range) {
-  if (pool_ == nullptr || range.down == 1) return work(plan_, frame_, range, 0, range.down);
-  pool_->run(range.down,
-             [&](std::size_t piece, std::size_t) { work(plan_, frame_, range, piece, piece + 1); });
+  share(range.down, [&](std::size_t piece) { work(plan_, frame_, range, piece, piece + 1); });
 }
 
 void LaneSlot::submit(const FrameView& frame, const std::optional<Curvature>& bent,

@@ -42,6 +42,9 @@ class LaneSlot final : public Slot {
            const SlotLayout& slot);
   /// Points to the readings of the frame, as float unless in whole numbers.
   void read(const FrameView& frame);
+  /// Calls `work` with each piece, in the threads of the pool if there is one.
+  template <class Work>
+  void share(std::size_t pieces, const Work& work);
   void run(LaneProgram::Run work, LaneRange range);
 
   LanePlan plan_;
