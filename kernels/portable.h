@@ -164,7 +164,7 @@ PF_INLINE To in_lanes(From x) {
   if constexpr (std::is_arithmetic_v<To> || std::is_same_v<From, To>) {
     return static_cast<To>(x);
   } else {
-    return static_cast<std::remove_cvref_t<decltype(To{}[0])>>(x) - To{};
+    return static_cast<std::remove_cvref_t<decltype(To{}[0])> >(x) - To{};
   }
 }
 #define PF_CONSTANT(type, x) in_lanes<type>(x)
@@ -204,10 +204,10 @@ PF_INLINE Real fabs(Real x) { return real_of_word(word_of(x) & PF_WORD(0x7ffffff
 PF_INLINE Real copysign(Real x, Real y) {
   return real_of_word((word_of(x) & PF_WORD(0x7fffffff)) | (word_of(y) & PF_WORD(0x80000000)));
 }
-#define PF_DEFINE_BY_LANES(name, function)                                \
-  PF_INLINE Real name(Real x) {                                           \
+#define PF_DEFINE_BY_LANES(name, function)                                   \
+  PF_INLINE Real name(Real x) {                                              \
     for (int lane = 0; lane < PF_LANES; ++lane) x[lane] = function(x[lane]); \
-    return x;                                                             \
+    return x;                                                                \
   }
 PF_DEFINE_BY_LANES(sqrt, __builtin_sqrtf)
 PF_DEFINE_BY_LANES(floor, __builtin_floorf)

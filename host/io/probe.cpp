@@ -96,13 +96,13 @@ int fork_within_hdf5() {
 void probe(const InputFile& file, const std::function<void()>& attempt) {
   const hdf5::QuietErrors quiet;
   if (detect_format(file).kind != FileKind::hdf5) return;
-  const ChildEnd end = run_in_child(file.path().string(), {}, file.descriptor(), fork_within_hdf5,
-                                    [&] {
-    return answer_of([&] {
-      attempt();
-      (void)hdf5::open_to_read(file, true);
-    });
-  });
+  const ChildEnd end =
+      run_in_child(file.path().string(), {}, file.descriptor(), fork_within_hdf5, [&] {
+        return answer_of([&] {
+          attempt();
+          (void)hdf5::open_to_read(file, true);
+        });
+      });
   const bool returned = end.reason == ChildEnd::Reason::returned;
   if (returned && end.text[0] == kReadable) return;
   // The text already names the place.

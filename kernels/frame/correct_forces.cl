@@ -129,7 +129,8 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
         global const float* const solved =
             (global const float*)(results + layout.forces + plane * layout.result_bytes);
         global float* const to = (global float*)(results + plane * layout.result_bytes);
-        const Real force = loaded ? unleaked(solved, layout, row, (int)col) : PF_CONSTANT(Real, 0.0f);
+        const Real force =
+            loaded ? unleaked(solved, layout, row, (int)col) : PF_CONSTANT(Real, 0.0f);
         store_plane(force, to + (size_t)row * cols + col, block.lanes);
       }
     }

@@ -12,11 +12,11 @@
 #define PF_IN_RANGE(type, reading) (PF_CONSTANT(type, 0.0f) == PF_CONSTANT(type, 0.0f))
 #endif
 /* Readings less their offset for the sums; missing sensels count as zero. */
-#define PF_DEFINE_SUMMED(name, type)                                    \
-  PF_INLINE type name(type reading, type offset, type good) {           \
-    const type none = PF_CONSTANT(type, 0.0f);                          \
+#define PF_DEFINE_SUMMED(name, type)                                               \
+  PF_INLINE type name(type reading, type offset, type good) {                      \
+    const type none = PF_CONSTANT(type, 0.0f);                                     \
     const type summed = good == PF_CONSTANT(type, 1.0f) ? reading - offset : none; \
-    return PF_IN_RANGE(type, reading) ? summed : none;                  \
+    return PF_IN_RANGE(type, reading) ? summed : none;                             \
   }
 PF_DEFINE_SUMMED(summed_reading, float)
 #ifndef PF_SCALAR

@@ -78,11 +78,10 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
   global const PF_SENSEL* const below_raw = raw + row_stride;
   const PF_LANE_TYPE(PF_SENSEL) above = max(PF_READING(raw, 0), PF_READING(raw, 1));
   const PF_LANE_TYPE(PF_SENSEL) below = max(PF_READING(below_raw, 0), PF_READING(below_raw, 1));
-  return !PF_ANY((
-      PF_IS_ACTIVE(max(above, below), PF_CONSTANT(PF_LANE_TYPE(PF_SENSEL), PF_THRESHOLD_AT(0, 0)))));
+  return !PF_ANY((PF_IS_ACTIVE(max(above, below),
+                               PF_CONSTANT(PF_LANE_TYPE(PF_SENSEL), PF_THRESHOLD_AT(0, 0)))));
 #else
-  return !PF_ANY((PF_ACTIVE(0, 0) | PF_ACTIVE(0, 1) |
-                                                   PF_ACTIVE(1, 0) | PF_ACTIVE(1, 1)));
+  return !PF_ANY((PF_ACTIVE(0, 0) | PF_ACTIVE(0, 1) | PF_ACTIVE(1, 0) | PF_ACTIVE(1, 1)));
 #endif
 }
 

@@ -26,8 +26,7 @@
 #else
 #define PF_READS_ALL_WIRES 0
 #endif
-#define PF_SKIPS_IDLE_TILES \
-  (PF_TILE_ROWS % 2 == 0 && PF_TILE_COLS % 2 == 0 && !PF_READS_ALL_WIRES)
+#define PF_SKIPS_IDLE_TILES (PF_TILE_ROWS % 2 == 0 && PF_TILE_COLS % 2 == 0 && !PF_READS_ALL_WIRES)
 
 /* Greatest absolute reading of a tile, and least distance of a reading from its threshold, both in
  * counts; negative where a reading is out of range. */
@@ -71,7 +70,8 @@ typedef struct {
 PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
 #ifdef PF_RANGE
   const Real size = fabs(reading);
-  const Real distance = size <= PF_VALUE(Real, largest) ? threshold - reading : PF_CONSTANT(Real, -1.0f);
+  const Real distance =
+      size <= PF_VALUE(Real, largest) ? threshold - reading : PF_CONSTANT(Real, -1.0f);
   range.largest = size > range.largest ? size : range.largest;
 #else
   const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
@@ -112,7 +112,8 @@ PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calib
                                   Layout layout, Tile tile) {
   const TileRange unknown = {(float)(PF_ACTIVATION_NEVER), -1.0f};
   if (tile.cols < PF_LANES) return unknown;
-  LaneRange range = {PF_CONSTANT(SenselLanes, 0), PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION_NEVER))};
+  LaneRange range = {PF_CONSTANT(SenselLanes, 0),
+                     PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION_NEVER))};
   for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
     prefetch_tile_row(raw, calibration, layout, tile, row);
   }
@@ -191,8 +192,8 @@ PF_INLINE float bound_of(WireVectors wires, Place place) {
 
 PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise) {
   const Real counts = PF_REALS_OF(reading);
-  const Mask idle =
-      counts + PF_LOAD_OF(counts) * rise <= PF_REALS_OF(threshold) - PF_CONSTANT(Real, PF_ACTIVATION_STEP);
+  const Mask idle = counts + PF_LOAD_OF(counts) * rise <=
+                    PF_REALS_OF(threshold) - PF_CONSTANT(Real, PF_ACTIVATION_STEP);
 #ifdef PF_RANGE
   return idle && fabs(counts) <= PF_VALUE(Real, largest);
 #else

@@ -141,9 +141,9 @@ PF_INLINE void store_readings(RealPair pair, float* row, Lanes lanes) {
 }
 PF_INLINE void store_sensel_status(Bits left, Bits right, uchar* row, Lanes sensels) {
   ushort values[PF_LANES];
-  store_whole(__builtin_convertvector(left, BytePairs) |
-                  (__builtin_convertvector(right, BytePairs) << 8),
-              values);
+  store_whole(
+      __builtin_convertvector(left, BytePairs) | (__builtin_convertvector(right, BytePairs) << 8),
+      values);
   uchar bytes[2 * PF_LANES];
   __builtin_memcpy(bytes, values, sizeof(bytes));
   for (uint i = sensels.first; i < sensels.end; ++i) row[i] = bytes[i];

@@ -43,10 +43,13 @@ PF_INLINE Pillar recall_block(Pillar pillar, Calibration calibration, Block bloc
   for (int i = 0; i < PF_MAX_STATES; ++i) {
     const int number = number_of_state(i, model);
     const bool has = number >= 0;
-    memory.pair[0][i] = has ? *word_at(calibration, 1 + 2 * number, row, block) : PF_CONSTANT(Word, 0);
-    memory.pair[1][i] = has ? *word_at(calibration, 2 + 2 * number, row, block) : PF_CONSTANT(Word, 0);
+    memory.pair[0][i] =
+        has ? *word_at(calibration, 1 + 2 * number, row, block) : PF_CONSTANT(Word, 0);
+    memory.pair[1][i] =
+        has ? *word_at(calibration, 2 + 2 * number, row, block) : PF_CONSTANT(Word, 0);
   }
-  const Recalled result = recall(pillar, memory, model, threshold, PF_CONSTANT(Word, calibration.frame));
+  const Recalled result =
+      recall(pillar, memory, model, threshold, PF_CONSTANT(Word, calibration.frame));
   *word_at(calibration, 0, row, block) = result.memory.last;
   PF_UNROLL
   for (int i = 0; i < PF_MAX_STATES; ++i) {

@@ -48,7 +48,8 @@ PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
     /* Two tiles: lanes before and from the border on. */
     const size_t at = (size_t)first * wires.rows + row;
     const size_t next = at + wires.rows;
-    const Real before = PF_CONSTANT(Real, (float)(last * PF_TILE_COLS - col)) - PF_CONSTANT(Real, 2.0f) * PF_LANE_NUMBERS;
+    const Real before = PF_CONSTANT(Real, (float)(last * PF_TILE_COLS - col)) -
+                        PF_CONSTANT(Real, 2.0f) * PF_LANE_NUMBERS;
     const Mask left = before > PF_CONSTANT(Real, 0.0f);
     const Mask right = before > PF_CONSTANT(Real, 1.0f);
     pair.left.row = left ? PF_CONSTANT(Real, wires.row[at]) : PF_CONSTANT(Real, wires.row[next]);

@@ -15,7 +15,7 @@ PF_INLINE Mask at_least_three(Bits status) {
  * force; `known` is the other one, `high` the largest normal force. `along_y`: the free one is
  * shear_y. */
 PF_INLINE DirectionInterval segment_interval(Real known, Real free, Real normal, Real high,
-                                                 Real slope, Mask along_y) {
+                                             Real slope, Mask along_y) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const Real start = free + slope * normal; /* of the free component, at no normal force */
@@ -50,9 +50,8 @@ PF_INLINE DirectionInterval segment_interval(Real known, Real free, Real normal,
 /* The interval of a corrected force: a point with three or four usable sensels, a segment with two
  * adjacent ones; else any direction, and the magnitude before, widened by `moved` newtons. */
 PF_INLINE DirectionInterval corrected_interval(DirectionInterval before, Force force,
-                                                   Direction direction, Bits status,
-                                                   Real segment_point, Real moved,
-                                                   ShearWeights weights) {
+                                               Direction direction, Bits status, Real segment_point,
+                                               Real moved, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
   const Real pi = PF_REAL(3.14159265358979323846);
   const Mask upper = usable_are(status, 3);

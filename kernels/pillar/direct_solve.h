@@ -184,8 +184,7 @@ PF_INLINE Real largest_reading(Pillar pillar) {
 /* True if the inactive fourth sensel may carry load while three are usable: its upper bound is
  * above zero, and parity predicts more than -`margin` counts for it (D9). Usable sensels are above
  * zero, so the minimum over all four decides. */
-PF_INLINE Mask fourth_may_be_loaded(Pillar pillar, Diagonals diagonals, Counts sum,
-                                        Counts margin) {
+PF_INLINE Mask fourth_may_be_loaded(Pillar pillar, Diagonals diagonals, Counts sum, Counts margin) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Counts least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),

@@ -34,7 +34,7 @@ PF_INLINE DirectionInterval point_interval(Direction estimate) {
 }
 
 PF_INLINE DirectionInterval either_interval(Mask condition, DirectionInterval a,
-                                                DirectionInterval b) {
+                                            DirectionInterval b) {
   DirectionInterval interval;
   interval.theta_low = condition ? a.theta_low : b.theta_low;
   interval.theta_high = condition ? a.theta_high : b.theta_high;
@@ -58,7 +58,7 @@ typedef struct {
 } ScaledPillar;
 
 PF_INLINE ScaledPillar scaled_pillar(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                         Real newtons) {
+                                     Real newtons) {
   ScaledPillar e;
   e.a = diagonals.rising;
   e.b = diagonals.falling;
@@ -98,9 +98,7 @@ PF_INLINE DifferenceLine difference_line(Diagonal d) {
   return line;
 }
 
-PF_INLINE Real difference_at(DifferenceLine line, Real sum) {
-  return line.base - line.slope * sum;
-}
+PF_INLINE Real difference_at(DifferenceLine line, Real sum) { return line.base - line.slope * sum; }
 
 /* Largest difference of two inactive sensels in one direction (U5). */
 PF_INLINE Real most_difference(Real reading, Real sum) {
@@ -138,7 +136,7 @@ PF_INLINE DifferenceEnds ends_of(Diagonal d, Mask unconstrained, Real flat, Real
 
 /* Squared shear of the longest force, counts^2: the force at the smallest parity sum. */
 PF_INLINE Real longest_shear(ScaledPillar e, DifferenceEnds a_ends, DifferenceEnds b_ends,
-                                 ShearWeights weights) {
+                             ShearWeights weights) {
   const Real a = larger_of(a_ends.low, a_ends.high);
   const Real b = larger_of(b_ends.low, b_ends.high);
   const Real longest = shear_square(a, b, weights);
@@ -181,7 +179,7 @@ typedef struct {
 
 /* The shorter interval between two directions of shear (U7). */
 PF_INLINE PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to,
-                                      ShearWeights weights) {
+                                  ShearWeights weights) {
   const Mask clockwise = a_from * b_to < b_from * a_to;
   const Real from = phi_of(a_from, b_from, weights);
   const Real to = phi_of(a_to, b_to, weights);
@@ -192,8 +190,8 @@ PF_INLINE PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to
 }
 
 /* phi between the ends of a segment, or of an unconstrained diagonal at the smallest sum. */
-PF_INLINE PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, DifferenceEnds b,
-                                       Real a_steep, Real b_steep, ShearWeights weights) {
+PF_INLINE PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, DifferenceEnds b, Real a_steep,
+                                   Real b_steep, ShearWeights weights) {
   const Mask unconstrained = e.a_unconstrained || e.b_unconstrained;
   const Real a_from = e.a_unconstrained ? -a.low : a.low;
   const Real b_from = e.b_unconstrained ? -b.low : b.low;
@@ -204,7 +202,7 @@ PF_INLINE PhiInterval phi_interval(ScaledPillar e, DifferenceEnds a, DifferenceE
 
 /* The parity sum of the shortest force (U6). */
 PF_INLINE Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b,
-                                ShearWeights weights) {
+                            ShearWeights weights) {
   const Real one_half = PF_REAL(0.5);
   Real free;
   if (weights.are_one) {
@@ -223,8 +221,8 @@ PF_INLINE Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b,
 }
 
 /* The interval of a pillar whose force is not determined; `inactive` are those of U8. */
-PF_INLINE DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive,
-                                                   Direction estimate, ShearWeights weights) {
+PF_INLINE DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive, Direction estimate,
+                                               ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
   const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const DifferenceLine a = difference_line(e.a);
@@ -259,9 +257,9 @@ PF_INLINE DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive,
  *
  * The general interval costs more than the rest of the solve; cheaper formulas give the same bits
  * where no lane needs it. */
-PF_INLINE DirectionInterval interval_of_readings(Pillar pillar, Diagonals diagonals,
-                                                     ParitySum sum, Direction estimate,
-                                                     ForceScale scale, ShearWeights weights) {
+PF_INLINE DirectionInterval interval_of_readings(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                                 Direction estimate, ForceScale scale,
+                                                 ShearWeights weights) {
   const Mask determined = is_determined(pillar, sum);
   const DirectionInterval point = point_interval(estimate);
   if (!any_lane(!determined)) return point;
@@ -293,9 +291,9 @@ PF_INLINE DirectionInterval open_interval(DirectionInterval interval, Open open)
 /* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
  * pillar without missing sensels (U4 to U8, U12). Both ends are the estimate where the force is
  * determined. `sum` comes from `parity_sum`, `estimate` is the direction of `direct_force`. */
-PF_INLINE DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
-                                                   ParitySum sum, Direction estimate,
-                                                   ForceScale scale, ShearWeights weights) {
+PF_INLINE DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                               Direction estimate, ForceScale scale,
+                                               ShearWeights weights) {
   const DirectionInterval interval =
       interval_of_readings(pillar, diagonals, sum, estimate, scale, weights);
   if (!any_lane(any_saturated(pillar))) return interval;

@@ -115,8 +115,7 @@ PF_INLINE Ratios turned_ratios(Real v1, Real v2, Real v3, Real v4, Turn turn) {
 
 /* The force on a turned pillar whose largest reading is `largest` counts: its magnitude by (2) at
  * that sensel, its components by M2, turned back. */
-PF_INLINE Force turned_force(Ratios v, Angles angles, Real largest, Turn turn,
-                                 ForceScale scale) {
+PF_INLINE Force turned_force(Ratios v, Angles angles, Real largest, Turn turn, ForceScale scale) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const SenselCosines cosines = sensel_cosines(angles.phi);
@@ -140,8 +139,7 @@ PF_INLINE Force turned_force(Ratios v, Angles angles, Real largest, Turn turn,
 /* The force on a pillar by the paper's equations. The paper does not cover saturated and missing
  * sensels: they count as usable and as unusable. Nor does it cover two opposite sensels alone:
  * `direct_force` solves them. */
-PF_INLINE Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                ForceScale scale) {
+PF_INLINE Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum sum, ForceScale scale) {
   const Real zero = PF_REAL(0.0);
   const Mask u1 = is_pressed(pillar.s1);
   const Mask u2 = is_pressed(pillar.s2);

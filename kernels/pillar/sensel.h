@@ -124,8 +124,7 @@ PF_INLINE Sensel classify(Sensel sensel, Counts threshold) {
  * readings, 0: any), are inactive after tare and gain. It is the highest such threshold but for
  * rounding, computed with the arithmetic of the stages, which is monotonic in the reading; `lowest`
  * where rounding leaves none. */
-PF_INLINE Real activation_threshold(Real tare, Real gain, Real threshold, Real step,
-                                        Real lowest) {
+PF_INLINE Real activation_threshold(Real tare, Real gain, Real threshold, Real step, Real lowest) {
   const Real largest_inactive = floor(tare + threshold / gain);
   const Real below = largest_inactive - PF_REAL(1.0);
   const Mask is_idle = (largest_inactive - tare) * gain <= threshold;

@@ -119,8 +119,7 @@ PF_INLINE Real variance_of(Sensel sensel, Real noise) {
 /* Root mean square distance of the true parity sum from the reported one, counts (U9): on a segment
  * by the distribution under friction, elsewhere by a uniform one over the interval. Zero where the
  * force is determined. */
-PF_INLINE Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                Real segment_point) {
+PF_INLINE Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Real segment_point) {
   const Real away = segment_point - PF_REAL(0.875);
   const Real on_segment =
       any_saturated(pillar) ? PF_REAL(0.5) : plain_length_2(PF_REAL(0.12), away);
@@ -130,8 +129,7 @@ PF_INLINE Real ambiguity_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
 }
 
 /* Deviations, N, from variances of the components and what ambiguity adds to them, counts. */
-PF_INLINE Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity,
-                             ForceScale scale) {
+PF_INLINE Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity, ForceScale scale) {
   const Real square = ambiguity * ambiguity;
   Force deviations;
   deviations.shear_x = scale.shear * sqrt(variances.shear_x + to_x * to_x * square);
@@ -142,8 +140,8 @@ PF_INLINE Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity,
 
 /* Standard deviations of the components of the force of readings, N (U3, U9); exact in regions 1
  * and 2. */
-PF_INLINE Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                       Noise noise, Real segment_point, ForceScale scale) {
+PF_INLINE Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
+                                   Real segment_point, ForceScale scale) {
   const ParityWeights weights = parity_weights(diagonals, segment_point);
   const DifferenceWeights rising = difference_weights(diagonals.rising);
   const DifferenceWeights falling = difference_weights(diagonals.falling);
@@ -183,7 +181,7 @@ PF_INLINE Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum
 /* Standard deviations of the components of `direct_force`, N: those of its readings, infinite where
  * a saturated sensel leaves a component open. */
 PF_INLINE Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
-                                     Real segment_point, ForceScale scale) {
+                                 Real segment_point, ForceScale scale) {
   const Force deviations = reading_deviations(pillar, diagonals, sum, noise, segment_point, scale);
   if (!any_lane(any_saturated(pillar))) return deviations;
   return open_deviations(deviations, open_components(pillar, diagonals, sum), scale);
