@@ -11,8 +11,6 @@
 
 #include "lanes/lane_plan.h"
 
-// Vectors are passed between functions that are all inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
