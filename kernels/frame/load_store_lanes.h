@@ -25,16 +25,14 @@ typedef PF_LANES_OF(int) Places;
 
 /* Unaligned vectors. */
 template <class Vector>
-struct __attribute__((packed, may_alias)) Unaligned {
-  Vector value;
-};
-template <class Vector>
 PF_INLINE Vector load_whole(const void* place) {
-  return static_cast<const Unaligned<Vector>*>(place)->value;
+  Vector lanes;
+  __builtin_memcpy(&lanes, place, sizeof(lanes));
+  return lanes;
 }
 template <class Vector>
 PF_INLINE void store_whole(Vector lanes, void* place) {
-  static_cast<Unaligned<Vector>*>(place)->value = lanes;
+  __builtin_memcpy(place, &lanes, sizeof(lanes));
 }
 #define PF_LOAD_WHOLE(type, place) load_whole<PF_LANE_TYPE(type)>(place)
 #define PF_STORE_WHOLE(type, lanes, place) store_whole<PF_LANE_TYPE(type)>(lanes, place)

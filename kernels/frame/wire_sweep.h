@@ -29,6 +29,9 @@ typedef struct {
 #ifdef PF_WIRE_SCALAR
 #define PF_LOAD_WIRES(place) (*(place))
 #define PF_STORE_WIRES(value, place) *(place) = (value)
+#elif defined(__cplusplus)
+#define PF_LOAD_WIRES(place) load_whole<Real>(place)
+#define PF_STORE_WIRES(value, place) store_whole<Real>(value, place)
 #else
 #define PF_LOAD_WIRES(place) (((const WireLanes*)(place))->lanes)
 #define PF_STORE_WIRES(value, place) ((WireLanes*)(place))->lanes = (value)
