@@ -9,6 +9,7 @@
 
 #include "device/device_state.h"
 #include "device/kernel_cache.h"
+#include "device/lane_slot.h"
 #include "lanes/lane_plan.h"
 #include "skin/quads.h"
 
@@ -238,7 +239,7 @@ const DeviceInfo& Device::info() const { return state().info; }
 
 Device Device::for_plan(const SolverPlan& plan) const {
   if (best_ == nullptr) return *this;
-  const bool is_small = quads(plan.skin) <= kMostQuadsOnHost;
+  const bool is_small = quads(plan.skin) <= kMostQuadsOnHost && host_solves(plan.skin);
   return Device(is_small ? std::make_shared<State>() : best_->opened());
 }
 

@@ -104,10 +104,6 @@ std::string line_on_compiling(const DeviceInfo& device) {
               "receive() or unpin a frame first, or set more frames_in_flight");
 }
 
-}  // namespace
-
-namespace {
-
 /// Threads beside a device: the compute units of one that is the host's processor.
 std::size_t threads_beside(const Device::State& device) {
   const bool is_cpu =
@@ -121,7 +117,12 @@ std::size_t threads_beside(const Device::State& device) {
 std::optional<LaneSettings> lane_settings(const Device& device, const SolverPlan& plan, int lanes) {
   if (!device.state().is_host()) return std::nullopt;
   const int most = lanes != 0 ? lanes : device.info().lanes;
-  return LaneSettings(plan, lane_program(quad_cols(plan.skin), most));
+  const LaneProgram* const program = lane_program(quad_cols(plan.skin), most);
+  if (program == nullptr) {
+    throw Error(device.info().name, "it does not solve a skin with a single column of pillars",
+                "solve it on an OpenCL device: --device opencl");
+  }
+  return LaneSettings(plan, *program);
 }
 
 std::vector<CalibrationPlane> planes_of(const std::optional<LaneSettings>& lanes,

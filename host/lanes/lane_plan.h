@@ -89,8 +89,8 @@ struct LaneProgram {
 /// The programs that this processor runs, those with the most lanes first.
 [[nodiscard]] std::span<const LaneProgram* const> lane_programs();
 
-/// The one with the most lanes, at most `most`, that a row of so many blocks of 2 x 2 sensels
-/// fills.
-[[nodiscard]] const LaneProgram& lane_program(std::uint32_t quad_cols, int most);
+/// The one with the most lanes, but not more than `most` if there is one, that a row of so many
+/// blocks of 2 x 2 sensels fills; null if a row is a single block.
+[[nodiscard]] const LaneProgram* lane_program(std::uint32_t quad_cols, int most);
 
 }  // namespace pillarfield

@@ -30,11 +30,13 @@ std::span<const LaneProgram* const> lane_programs() {
   return programs;
 }
 
-const LaneProgram& lane_program(std::uint32_t quad_cols, int most) {
-  const auto fits = [&](const LaneProgram* program) {
-    return program->lanes <= most && static_cast<std::uint32_t>(program->lanes) <= quad_cols;
-  };
-  return **std::ranges::find_if(lane_programs(), fits);  // the last one has a single lane
+const LaneProgram* lane_program(std::uint32_t quad_cols, int most) {
+  const int limit = std::max(most, lane_programs().back()->lanes);
+  for (const LaneProgram* program : lane_programs()) {
+    const bool is_filled = static_cast<std::uint32_t>(program->lanes) <= quad_cols;
+    if (program->lanes <= limit && is_filled) return program;
+  }
+  return nullptr;
 }
 
 }  // namespace pillarfield

@@ -29,7 +29,7 @@ TEST(Lanes, AreTheDeviceOfSkinsWithoutOpenCl) {
 TEST(Lanes, NameTheirInstructions) {
   const std::string widest = lane_programs().front()->name;
   EXPECT_EQ(open_device("host").info().name, "host, " + widest);
-  EXPECT_EQ(lane_programs().back()->lanes, 1);
+  EXPECT_EQ(lane_programs().back()->lanes, 2);
 }
 
 /// Frames that threads share, with every program of this processor.

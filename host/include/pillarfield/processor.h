@@ -56,9 +56,9 @@ class Device {
   [[nodiscard]] const DeviceInfo& info() const;
 
   /// The device that solves the frames of a plan: this one, if it was named. Else the host for a
-  /// skin of up to 16,384 pillars (or 2 x 2 sensels), without opening OpenCL, and the best OpenCL
-  /// device for a larger one; the host if there is no such device. Throws Error in the cases of
-  /// list_devices().
+  /// skin of up to 16,384 pillars (or 2 x 2 sensels) and two columns or more, without opening
+  /// OpenCL, and the best OpenCL device for others; the host if there is no such device. Throws
+  /// Error in the cases of list_devices().
   [[nodiscard]] Device for_plan(const SolverPlan& plan) const;
 
   /// @cond internal
