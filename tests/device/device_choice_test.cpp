@@ -5,6 +5,7 @@
 #include "device/device_state.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
+#include "random_plan.h"
 
 namespace pillarfield {
 namespace {
@@ -23,6 +24,18 @@ TEST(DeviceChoice, ASuitableDeviceIsOpenedByDefault) {
   EXPECT_TRUE(device.info().unsuitable.empty());
   EXPECT_FALSE(device.info().name.empty());
   EXPECT_GE(device.info().lanes, 1);
+}
+
+TEST(DeviceChoice, SmallSkinsAreTheHostsUnlessADeviceIsNamed) {
+  const auto solver = [](const Device& device, std::uint32_t rows, std::uint32_t cols) {
+    return device.for_plan(bare_plan(rows, cols, SenselType::u8)).info().type;
+  };
+  EXPECT_EQ(solver(open_device(), 13, 6), "host");
+  EXPECT_EQ(solver(open_device(), 256, 256), "host");
+  EXPECT_NE(solver(open_device(), 256, 258), "host");
+  EXPECT_NE(solver(open_device(), 256, 2), "host") << "it has a single column of pillars";
+  EXPECT_NE(solver(open_device("opencl"), 13, 6), "host");
+  EXPECT_EQ(solver(open_device("host"), 256, 258), "host");
 }
 
 TEST(DeviceChoice, GpusComeBeforeCpus) {
