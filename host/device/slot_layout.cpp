@@ -52,7 +52,10 @@ SlotLayout::SlotLayout(const SolverPlan& plan, const Division& division, bool sk
     return begin;
   };
   layout.forces = scratch(effects.pillar_leak ? 3 * results.plane_bytes : 0);
-  layout.ratios = scratch(effects.arm_mm ? 4 * results.plane_bytes : 0);
+  // Planes of find_shear_ratios, and the pillars after the last one, which it reads in vain.
+  const std::size_t after =
+      (quad_cols(plan.skin) + 1 + static_cast<std::size_t>(division.lanes)) * sizeof(float);
+  layout.ratios = scratch(effects.arm_mm ? 8 * results.plane_bytes + after : 0);
   layout.ring = scratch(ring_floats(plan, division) * sizeof(float));
   layout.wires = scratch(wires * sizeof(float));
   const bool marks_touched = plan.baseline_rate && !plan.skin.has_pillars();

@@ -139,25 +139,27 @@ maths::Solution solution_at(const ForceField& field, std::size_t index, bool unc
 }
 
 /// The mean ratio of 3 x 3 pillars along an axis, as in kernels/frame/correct_forces.cl.
-maths::ShearRatio mean_of_ratios(const std::vector<maths::ShearRatios>& ratios,
-                                 maths::ShearRatio maths::ShearRatios::*axis,
+maths::ShearRatio mean_of_ratios(const std::vector<maths::WeightedRatios>& ratios,
+                                 maths::WeightedRatio maths::WeightedRatios::*axis,
                                  const ForceField& field, std::size_t row, std::size_t col) {
-  const PlaneView normal(field.normal, field);
-  const maths::ShearRatio own = ratios[row * field.cols + col].*axis;
-  const auto part = [&](std::size_t down, std::size_t right, int distance) {
-    const std::size_t r = row + down;
-    const std::size_t c = col + right;
-    const bool exists = r < field.rows && c < field.cols;
-    return maths::ratio_part(own, exists ? ratios[r * field.cols + c].*axis : maths::ShearRatio{},
-                             normal.at(r, c), static_cast<float>(distance));
+  const auto at = [&](std::size_t r, std::size_t c) {
+    return r < field.rows && c < field.cols ? ratios[r * field.cols + c].*axis
+                                            : maths::WeightedRatio{};
   };
-  const auto opposite = [&](std::size_t down, std::size_t right, int distance) {
-    return maths::add_ratios(part(-down, -right, distance), part(down, right, distance));
+  const maths::ShearRatio own = at(row, col).own;
+  const auto opposite = [&](std::size_t down, std::size_t right, float maths::WeightedRatio::*by) {
+    const maths::WeightedRatio before = at(row - down, col - right);
+    const maths::WeightedRatio after = at(row + down, col + right);
+    return maths::add_ratios(maths::ratio_part(own.value, before.own.value, before.*by),
+                             maths::ratio_part(own.value, after.own.value, after.*by));
   };
   constexpr auto kBack = static_cast<std::size_t>(-1);
+  constexpr auto kBeside = &maths::WeightedRatio::beside;
+  constexpr auto kDiagonal = &maths::WeightedRatio::diagonal;
   return maths::mean_ratio(
-      own, maths::add_ratios(maths::add_ratios(opposite(0, 1, 1), opposite(1, 0, 1)),
-                             maths::add_ratios(opposite(1, 1, 2), opposite(1, kBack, 2))));
+      own, maths::add_ratios(
+               maths::add_ratios(opposite(0, 1, kBeside), opposite(1, 0, kBeside)),
+               maths::add_ratios(opposite(1, 1, kDiagonal), opposite(1, kBack, kDiagonal))));
 }
 
 /// Corrects solved forces by those of the pillars around, as kernels/frame/correct_forces.cl.
@@ -168,7 +170,7 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
     }
   }
   if (!stages.lean) return;
-  std::vector<maths::ShearRatios> ratios(field.normal.size());
+  std::vector<maths::WeightedRatios> ratios(field.normal.size());
   for (std::size_t index = 0; index < ratios.size(); ++index) {
     if (!is_loaded(field, index)) continue;
     const auto [x, y] = pillar_lean(field.view(), index);
@@ -180,8 +182,8 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       const std::size_t index = row * field.cols + col;
       if (!is_loaded(field, index)) continue;
       const maths::ShearRatios means = {
-          mean_of_ratios(ratios, &maths::ShearRatios::x, field, row, col),
-          mean_of_ratios(ratios, &maths::ShearRatios::y, field, row, col)};
+          mean_of_ratios(ratios, &maths::WeightedRatios::x, field, row, col),
+          mean_of_ratios(ratios, &maths::WeightedRatios::y, field, row, col)};
       const maths::Solution before = solution_at(field, index, stages.uncertainty);
       const maths::Solution after = maths::correct_solution(before, means, stages);
       field.status[index] = static_cast<std::uint8_t>(after.status);

@@ -2,6 +2,15 @@
  * (stage PF_PILLAR_LEAK) and off-centre pressure (stage PF_LEAN). Only loaded pillars change. */
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
 
+/* Values of PF_LANES pillars. */
+PF_INLINE Real load_own(global const float* place) {
+#ifdef PF_SCALAR
+  return *place;
+#else
+  return PF_LOAD_WHOLE(float, place);
+#endif
+}
+
 /* Values of PF_LANES pillars of a row from column `col` on; zero outside. */
 PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
 #ifdef PF_SCALAR
@@ -25,20 +34,15 @@ PF_INLINE Real load_near(global const float* plane, Layout layout, uint row, int
   return load_pillars(plane + (size_t)at * layout.cols, col, (uint)layout.cols);
 }
 
-PF_INLINE Mask is_loaded(global const uchar* status, Layout layout, uint row, uint col) {
-  const Bits bits = load_status(status + (size_t)row * layout.cols, (int)col, (uint)layout.cols);
-  return mask_of(bits & PF_BITS(PF_STATUS_PRESSED));
+PF_INLINE Bits status_at(global const uchar* results, Layout layout, size_t index) {
+  return load_status(results + layout.status + index, 0, PF_LANES);
 }
+
+PF_INLINE Mask is_loaded(Bits status) { return mask_of(status & PF_BITS(PF_STATUS_PRESSED)); }
 
 #endif
 
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
-
-/* A block of a pillar row, as in solve_frame, and the lanes that it alone writes. */
-typedef struct {
-  uint col;
-  Lanes lanes;
-} OwnBlock;
 
 /* A row of blocks as in solve_frame. */
 typedef struct {
@@ -61,11 +65,13 @@ PF_INLINE OwnRow own_row(global const uchar* results, Layout layout, uint at) {
   return row;
 }
 
-PF_INLINE OwnBlock own_block(OwnRow row, uint at) {
-  OwnBlock block;
-  block.col = min(max(at * PF_LANES, row.skew) - row.skew, row.cols - PF_LANES);
-  block.lanes = own_lanes(at * PF_LANES, row.skew, block.col, row.cols);
-  return block;
+/* The first column of a block, and the lanes that it alone writes. (PoCL would pass a structure of
+ * both through memory.) */
+PF_INLINE uint own_col(OwnRow row, uint at) {
+  return min(max(at * PF_LANES, row.skew) - row.skew, row.cols - PF_LANES);
+}
+PF_INLINE Lanes lanes_of_block(OwnRow row, uint at) {
+  return own_lanes(at * PF_LANES, row.skew, own_col(row, at), row.cols);
 }
 
 #ifdef PF_SKIP_IDLE
@@ -122,16 +128,17 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
     const OwnRow own = own_row(results, layout, row);
     for (uint at = next_correctable(own, (uint)get_global_id(0), PF_NEWLY_IDLE); at < own.blocks;
          at = next_correctable(own, at + step, PF_NEWLY_IDLE)) {
-      const OwnBlock block = own_block(own, at);
-      const uint col = block.col;
-      const Mask loaded = is_loaded(results + layout.status, layout, row, col);
+      const uint col = own_col(own, at);
+      const Lanes lanes = lanes_of_block(own, at);
+      const size_t index = (size_t)row * cols + col;
+      const Mask loaded = is_loaded(status_at(results, layout, index));
       for (uint plane = 0; plane < 3; ++plane) {
         global const float* const solved =
             (global const float*)(results + layout.forces + plane * layout.result_bytes);
         global float* const to = (global float*)(results + plane * layout.result_bytes);
         const Real force =
             loaded ? unleaked(solved, layout, row, (int)col) : PF_CONSTANT(Real, 0.0f);
-        store_plane(force, to + (size_t)row * cols + col, block.lanes);
+        store_plane(force, to + index, lanes);
       }
     }
   }
@@ -150,10 +157,20 @@ PF_INLINE Lean lean_along(global const float* normal, Layout layout, uint row, i
                       load_near(normal, layout, row, 2 * down, col + 2 * right));
 }
 
-/* The plane of the scratch memory with values or variances of the ratios of an axis. */
-enum { kRatioX, kVarianceX, kRatioY, kVarianceY };
-PF_INLINE global float* ratio_plane(global uchar* results, Layout layout, uint plane) {
-  return (global float*)(results + layout.ratios + plane * layout.result_bytes);
+/* Planes of the scratch memory, of each axis. */
+enum { kRatio, kVariance, kBeside, kDiagonal, kRatioPlanes };
+
+/* The values of an axis, 0 or 1, at a pillar: planes are layout.result_bytes apart. */
+PF_INLINE global float* ratios_at(global uchar* results, Layout layout, uint axis, size_t index) {
+  return (global float*)(results + layout.ratios + axis * kRatioPlanes * layout.result_bytes) +
+         index;
+}
+
+PF_INLINE void store_ratio(WeightedRatio ratio, global float* to, size_t plane, Lanes lanes) {
+  store_plane(ratio.own.value, to + kRatio * plane, lanes);
+  store_plane(ratio.own.variance, to + kVariance * plane, lanes);
+  store_plane(ratio.beside, to + kBeside * plane, lanes);
+  store_plane(ratio.diagonal, to + kDiagonal * plane, lanes);
 }
 
 /* Ratios of shear to normal force of the loaded pillars, by their own readings and lean, to the
@@ -165,63 +182,72 @@ kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
   const Band band = band_of_rows((uint)layout.rows);
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
-  global const float* const plane = (global const float*)results;
-  const size_t plane_floats = layout.result_bytes / sizeof(float);
+  global const float* const shear_x = (global const float*)results;
+  const size_t plane = layout.result_bytes / sizeof(float);
+  global const float* const shear_y = shear_x + plane;
+  global const float* const normal = shear_y + plane;
   for (uint row = band.first; row < band.end; ++row) {
     const OwnRow own = own_row(results, layout, row);
     for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
          at = next_correctable(own, at + step, 0)) {
-      const OwnBlock block = own_block(own, at);
-      const int col = (int)block.col;
-      const Bits status = load_status(results + layout.status + (size_t)row * cols, col, cols);
-      if (!any_lane(mask_of(status & PF_BITS(PF_STATUS_PRESSED)))) continue;
-      global const float* const normal = plane + 2 * plane_floats;
-      const Force force = {load_near(plane, layout, row, 0, col),
-                           load_near(plane + plane_floats, layout, row, 0, col),
-                           load_near(normal, layout, row, 0, col)};
-      const ShearRatios ratios =
-          shear_ratios(force, status, lean_along(normal, layout, row, col, 0, 1),
-                       lean_along(normal, layout, row, col, -1, 0), planes.stages);
-      const size_t index = (size_t)row * cols + block.col;
-      store_plane(ratios.x.value, ratio_plane(results, layout, kRatioX) + index, block.lanes);
-      store_plane(ratios.x.variance, ratio_plane(results, layout, kVarianceX) + index, block.lanes);
-      store_plane(ratios.y.value, ratio_plane(results, layout, kRatioY) + index, block.lanes);
-      store_plane(ratios.y.variance, ratio_plane(results, layout, kVarianceY) + index, block.lanes);
+      const uint col = own_col(own, at);
+      const Lanes lanes = lanes_of_block(own, at);
+      const size_t index = (size_t)row * cols + col;
+      const Bits status = status_at(results, layout, index);
+      if (!any_lane(is_loaded(status))) continue;
+      const Force force = {load_own(shear_x + index), load_own(shear_y + index),
+                           load_own(normal + index)};
+      const WeightedRatios ratios =
+          shear_ratios(force, status, lean_along(normal, layout, row, (int)col, 0, 1),
+                       lean_along(normal, layout, row, (int)col, -1, 0), planes.stages);
+      store_ratio(ratios.x, ratios_at(results, layout, 0, index), plane, lanes);
+      store_ratio(ratios.y, ratios_at(results, layout, 1, index), plane, lanes);
     }
   }
 }
 
-/* Loads the shear ratio of a pillar along one axis. `first`: its plane. Undefined for unloaded
- * pillars. */
-PF_INLINE ShearRatio load_ratio(global uchar* results, Layout layout, uint first, uint row,
-                                int down, int col) {
-  ShearRatio ratio;
-  ratio.value = load_near(ratio_plane(results, layout, first), layout, row, down, col);
-  ratio.variance = load_near(ratio_plane(results, layout, first + 1), layout, row, down, col);
-  return ratio;
+/* Which of the pillars around PF_LANES pillars have a load: rows from above, columns from the left.
+ * Scratch memory holds anything beside the others. */
+typedef struct {
+  Mask at[3][3];
+} LoadedAround;
+
+PF_INLINE LoadedAround loaded_around(global const float* normal, Layout layout, uint row, int col) {
+  LoadedAround loaded;
+  PF_UNROLL
+  for (int down = -1; down < 2; ++down) {
+    PF_UNROLL
+    for (int right = -1; right < 2; ++right) {
+      loaded.at[down + 1][right + 1] =
+          load_near(normal, layout, row, down, col + right) > PF_REAL(0.0);
+    }
+  }
+  return loaded;
 }
 
-/* The part of the two pillars that are `down` and `right`, and as far on the other side. */
-PF_INLINE RatioSum opposite_parts(global uchar* results, Layout layout, uint first, ShearRatio own,
-                                  uint row, int col, int down, int right) {
-  global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
-  const Real distance = PF_CONSTANT(Real, (float)(down * down + right * right));
-  const RatioSum after = ratio_part(own, load_ratio(results, layout, first, row, down, col + right),
-                                    load_near(normal, layout, row, down, col + right), distance);
-  const RatioSum before =
-      ratio_part(own, load_ratio(results, layout, first, row, -down, col - right),
-                 load_near(normal, layout, row, -down, col - right), distance);
-  return add_ratios(before, after);
+/* The parts of the pillar that is `down` and `right`, and of the one as far on the other side.
+ * `ratios` are those of an axis of PF_LANES pillars. */
+PF_INLINE RatioSum opposite_parts(global const float* ratios, size_t plane, long cols, Real own,
+                                  LoadedAround loaded, int down, int right) {
+  const Real none = PF_REAL(0.0);
+  global const float* const after = ratios + (down * cols + right);
+  global const float* const before = ratios - (down * cols + right);
+  const size_t weights = plane * (down != 0 && right != 0 ? kDiagonal : kBeside);
+  const Real weight_after = loaded.at[1 + down][1 + right] ? load_own(after + weights) : none;
+  const Real weight_before = loaded.at[1 - down][1 - right] ? load_own(before + weights) : none;
+  return add_ratios(ratio_part(own, load_own(before), weight_before),
+                    ratio_part(own, load_own(after), weight_after));
 }
 
 /* The mean ratio of 3 x 3 pillars along an axis. */
-PF_INLINE ShearRatio mean_of_ratios(global uchar* results, Layout layout, uint first, uint row,
-                                    int col) {
-  const ShearRatio own = load_ratio(results, layout, first, row, 0, col);
-  const RatioSum edges = add_ratios(opposite_parts(results, layout, first, own, row, col, 0, 1),
-                                    opposite_parts(results, layout, first, own, row, col, 1, 0));
-  const RatioSum corners = add_ratios(opposite_parts(results, layout, first, own, row, col, 1, 1),
-                                      opposite_parts(results, layout, first, own, row, col, 1, -1));
+PF_INLINE ShearRatio mean_of_ratios(global const float* ratios, size_t plane, long cols,
+                                    LoadedAround loaded) {
+  const ShearRatio own = {load_own(ratios + kRatio * plane), load_own(ratios + kVariance * plane)};
+  const RatioSum edges = add_ratios(opposite_parts(ratios, plane, cols, own.value, loaded, 0, 1),
+                                    opposite_parts(ratios, plane, cols, own.value, loaded, 1, 0));
+  const RatioSum corners =
+      add_ratios(opposite_parts(ratios, plane, cols, own.value, loaded, 1, 1),
+                 opposite_parts(ratios, plane, cols, own.value, loaded, 1, -1));
   return mean_ratio(own, add_ratios(edges, corners));
 }
 
@@ -230,11 +256,11 @@ PF_INLINE ShearRatio mean_of_ratios(global uchar* results, Layout layout, uint f
 #if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
 
 /* Results of PF_LANES pillars; zero where the plan does not have them. */
-PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uint row, uint col) {
+PF_INLINE Solution load_solution(global const uchar* results, Layout layout, size_t index) {
   Solution solution;
   global const uchar* plane = results;
-#define PF_LOAD(name, unit, value)                                                  \
-  solution.value = load_near((global const float*)plane, layout, row, 0, (int)col); \
+#define PF_LOAD(name, unit, value)                               \
+  solution.value = load_own((global const float*)plane + index); \
   plane += layout.result_bytes;
   PF_FORCE_PLANES(PF_LOAD)
 #ifdef PF_ANGLES
@@ -248,8 +274,7 @@ PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uin
   }
 #endif
 #undef PF_LOAD
-  solution.status =
-      load_status(results + layout.status + (size_t)row * layout.cols, (int)col, (uint)layout.cols);
+  solution.status = status_at(results, layout, index);
   return solution;
 }
 
@@ -279,20 +304,22 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
     const OwnRow own = own_row(results, layout, row);
     for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
          at = next_correctable(own, at + step, 0)) {
-      const OwnBlock block = own_block(own, at);
-      const uint col = block.col;
-      if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
-      const Real none = PF_CONSTANT(Real, 0.0f);
-      ShearRatios ratios = {{none, none}, {none, none}};
+      const uint col = own_col(own, at);
+      const size_t index = (size_t)row * cols + col;
+      Solution solution = load_solution(results, layout, index);
+      if (!any_lane(is_loaded(solution.status))) continue;
+      ShearRatios ratios = {{PF_REAL(0.0), PF_REAL(0.0)}, {PF_REAL(0.0), PF_REAL(0.0)}};
 #ifdef PF_LEAN
       if (PF_NAMED(lean)) {
-        ratios.x = mean_of_ratios(results, layout, kRatioX, row, (int)col);
-        ratios.y = mean_of_ratios(results, layout, kRatioY, row, (int)col);
+        const size_t plane = layout.result_bytes / sizeof(float);
+        const LoadedAround loaded =
+            loaded_around((global const float*)results + 2 * plane, layout, row, (int)col);
+        ratios.x = mean_of_ratios(ratios_at(results, layout, 0, index), plane, cols, loaded);
+        ratios.y = mean_of_ratios(ratios_at(results, layout, 1, index), plane, cols, loaded);
       }
 #endif
-      const Solution solution =
-          correct_solution(load_solution(results, layout, row, col), ratios, planes.stages);
-      store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
+      solution = correct_solution(solution, ratios, planes.stages);
+      store_corrected(solution, output, index, lanes_of_block(own, at));
     }
   }
 }

@@ -377,10 +377,12 @@ PF_INLINE Bits flag_other_region(Solution solution, Real margin_x, Real margin_y
   Real shear_y = along * solution.force.shear_y;
 #ifdef PF_SHEAR_COEFFICIENT
   if (PF_NAMED(shear_coefficient)) {
-    shear_x = shear_x / PF_VALUE(Real, per_coefficient_x);
-    shear_y = shear_y / PF_VALUE(Real, per_coefficient_y);
-    margin_x = margin_x / PF_VALUE(Real, per_coefficient_x);
-    margin_y = margin_y / PF_VALUE(Real, per_coefficient_y);
+    const Real coefficient_x = PF_REAL(1.0) / PF_VALUE(Real, per_coefficient_x);
+    const Real coefficient_y = PF_REAL(1.0) / PF_VALUE(Real, per_coefficient_y);
+    shear_x = coefficient_x * shear_x;
+    shear_y = coefficient_y * shear_y;
+    margin_x = coefficient_x * margin_x;
+    margin_y = coefficient_y * margin_y;
   }
 #endif
   const Real margin = (margin_x + margin_y) * (along + along);
@@ -403,11 +405,11 @@ PF_INLINE Bits flag_other_region(Solution solution, Real margin_x, Real margin_y
 #ifdef PF_LEAN
 /* The ratios of a pillar that leans by `x` and `y`. Four sensels whose noise is a quarter of the
  * threshold have this noise in each component. */
-PF_INLINE ShearRatios shear_ratios(Force force, Bits status, Lean x, Lean y, Stages stages) {
+PF_INLINE WeightedRatios shear_ratios(Force force, Bits status, Lean x, Lean y, Stages stages) {
   const Real pitch_over_arm = PF_VALUE(Real, pitch_over_arm);
   const Real noise = PF_REAL(0.5) * PF_VALUE(Real, threshold) * PF_VALUE(Real, shear_scale);
   const Mask informs = at_least_three(status) && !mask_of(status & PF_BITS(PF_STATUS_INCONSISTENT));
-  ShearRatios ratios;
+  WeightedRatios ratios;
   ratios.x = shear_ratio(force.shear_x, force.normal, x, pitch_over_arm, noise, informs);
   ratios.y = shear_ratio(force.shear_y, force.normal, y, pitch_over_arm, noise, informs);
   return ratios;

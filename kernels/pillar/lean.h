@@ -63,8 +63,7 @@ PF_INLINE Mask loads_otherwise(Bits status, int bit, Real load, Real margin) {
 /* The shear of a leaning pillar from its own readings and from the ratio of shear to normal force
  * of the pillars around it (docs/derivations/sensor_effects.md, E7a). */
 
-/* The ratio of a component of the shear to the normal force, and its variance; negative where the
- * pillar informs no other. */
+/* The ratio of a component of the shear to the normal force, and its variance. */
 typedef struct {
   Real value;
   Real variance;
@@ -75,6 +74,19 @@ typedef struct {
   ShearRatio y;
 } ShearRatios;
 
+/* The ratio of a pillar, and its weights in the sums of the pillars beside it and of those diagonal
+ * to it; zero where it informs none. */
+typedef struct {
+  ShearRatio own;
+  Real beside;
+  Real diagonal;
+} WeightedRatio;
+
+typedef struct {
+  WeightedRatio x;
+  WeightedRatio y;
+} WeightedRatios;
+
 /* A sum over the pillars around of their weights, and of these times their difference in ratio and
  * its square. */
 typedef struct {
@@ -84,32 +96,39 @@ typedef struct {
 } RatioSum;
 
 /* The ratio of a pillar that leans by `lean` times `pitch_over_arm`; `noise` is the deviation of
- * its shear, N. `informs`: its shear is determined by readings that agree. Zero without load. */
-PF_INLINE ShearRatio shear_ratio(Real shear, Real normal, Lean lean, Real pitch_over_arm,
-                                 Real noise, Mask informs) {
+ * its shear, N. `informs`: its shear is determined by readings that agree. The ratios of pillars
+ * beside it differ by a deviation of 0.3, those of diagonal ones by that times the root of 2. Zero
+ * without load. */
+PF_INLINE WeightedRatio shear_ratio(Real shear, Real normal, Lean lean, Real pitch_over_arm,
+                                    Real noise, Mask informs) {
   const Real zero = PF_REAL(0.0);
+  const Real one = PF_REAL(1.0);
   const Real most = PF_REAL(1e12); /* variance; a ratio to next to no force tells nothing */
-  const Mask loaded = normal > zero;
-  const Real force = loaded ? normal : PF_REAL(1.0);
-  const Real leaning = pitch_over_arm * lean.deviation / force;
-  const Real noisy = noise / force;
+  const Mask loaded = normal > PF_REAL(1e-37); /* the least with a finite reciprocal */
+  const Real per_force = one / (loaded ? normal : one);
+  const Real leaning = pitch_over_arm * lean.deviation * per_force;
+  const Real noisy = noise * per_force;
   const Real variance = leaning * leaning + noisy * noisy;
   const Real bounded = variance < most ? variance : most;
-  ShearRatio ratio;
-  ratio.value = loaded ? (shear - pitch_over_arm * lean.moment) / force : zero;
-  ratio.variance = (loaded && informs) ? bounded : -bounded;
+  const Real beside = bounded + PF_REAL(0.09);
+  const Real diagonal = bounded + PF_REAL(0.18);
+  const Real per_both = (loaded && informs) ? one / (beside * diagonal) : zero;
+  WeightedRatio ratio;
+  ratio.own.value = loaded ? (shear - pitch_over_arm * lean.moment) * per_force : zero;
+  ratio.own.variance = bounded;
+  ratio.beside = diagonal * per_both;
+  ratio.diagonal = beside * per_both;
   return ratio;
 }
 
-/* The part in the sum of a pillar with the normal force `normal`, whose distance in pillars has the
- * square `distance`. The ratios of neighbours differ by a deviation of 0.3. */
-PF_INLINE RatioSum ratio_part(ShearRatio own, ShearRatio other, Real normal, Real distance) {
+/* The part in the sum around a pillar with the ratio `own` of one with the ratio `other` and this
+ * weight. */
+PF_INLINE RatioSum ratio_part(Real own, Real other, Real weight) {
   const Real zero = PF_REAL(0.0);
-  const Real spread = PF_REAL(0.09) * distance;
-  const Mask informs = normal > zero && other.variance >= zero;
+  const Mask informs = weight > zero;
+  const Real difference = informs ? other - own : zero;
   RatioSum part;
-  part.weight = informs ? PF_REAL(1.0) / (other.variance + spread) : zero;
-  const Real difference = informs ? other.value - own.value : zero;
+  part.weight = informs ? weight : zero;
   part.difference = part.weight * difference;
   part.square = part.difference * difference;
   return part;
@@ -128,12 +147,11 @@ PF_INLINE ShearRatio mean_ratio(ShearRatio own, RatioSum around) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const Real most = PF_REAL(1e12); /* as in shear_ratio */
-  const Real variance = size_of(own.variance);
-  const Real whole = one + variance * around.weight;
-  const Real shift = variance * around.difference / whole;
+  const Real narrower = own.variance / (one + own.variance * around.weight);
+  const Real shift = narrower * around.difference;
   const Real square = around.square - shift * around.difference;
   const Real disagreement = PF_REAL(2.0) * (square < zero ? zero : square);
-  const Real wider = (variance / whole) * (one + disagreement);
+  const Real wider = narrower * (one + disagreement);
   ShearRatio mean;
   mean.value = own.value + shift;
   mean.variance = wider < most ? wider : most;

@@ -287,12 +287,18 @@ TEST(Lean, DoesNotFlagPillarsWithAnUnknownSensel) {
 
 // --- The ratio of shear to normal force ---
 
-maths::ShearRatio mean_of(maths::ShearRatio own, const std::vector<maths::ShearRatio>& around) {
+maths::WeightedRatio ratio_of(double value, double variance, bool informs = true) {
+  return maths::shear_ratio(value, 1, {0, 0}, 5, std::sqrt(variance), informs);
+}
+
+/// The mean of a pillar with those beside it.
+maths::ShearRatio mean_of(const maths::WeightedRatio& own,
+                          const std::vector<maths::WeightedRatio>& around) {
   maths::RatioSum sum{};
   for (const auto& other : around) {
-    sum = maths::add_ratios(sum, maths::ratio_part(own, other, 1, 1));
+    sum = maths::add_ratios(sum, maths::ratio_part(own.own.value, other.own.value, other.beside));
   }
-  return maths::mean_ratio(own, sum);
+  return maths::mean_ratio(own.own, sum);
 }
 
 TEST(ShearRatio, IsTheMeanOfLeastVariance) {
@@ -300,18 +306,22 @@ TEST(ShearRatio, IsTheMeanOfLeastVariance) {
   std::uniform_real_distribution<double> value(-2, 2);
   std::uniform_real_distribution<double> variance(1e-4, 1);
   for (int i = 0; i < 200; ++i) {
-    const maths::ShearRatio own = {value(random), variance(random)};
-    double weights = 1 / own.variance;
-    double sum = weights * own.value;
-    double squares = sum * own.value;
-    std::vector<maths::ShearRatio> around;
+    const double own_value = value(random);
+    const double own_variance = variance(random);
+    double weights = 1 / own_variance;
+    double sum = weights * own_value;
+    double squares = sum * own_value;
+    std::vector<maths::WeightedRatio> around;
     while (around.size() < 8) {
-      around.push_back({value(random), variance(random)});
-      weights += 1 / (around.back().variance + 0.09);
-      sum += around.back().value / (around.back().variance + 0.09);
-      squares += around.back().value * around.back().value / (around.back().variance + 0.09);
+      const double other = value(random);
+      const double other_variance = variance(random);
+      around.push_back(ratio_of(other, other_variance));
+      EXPECT_NEAR(around.back().diagonal, 1 / (other_variance + 0.18), 1e-12);
+      weights += 1 / (other_variance + 0.09);
+      sum += other / (other_variance + 0.09);
+      squares += other * other / (other_variance + 0.09);
     }
-    const maths::ShearRatio mean = mean_of(own, around);
+    const maths::ShearRatio mean = mean_of(ratio_of(own_value, own_variance), around);
     EXPECT_NEAR(mean.value, sum / weights, 1e-12);
     // It grows with what the pillars disagree by.
     const double disagreement = squares - sum * sum / weights;
@@ -320,20 +330,21 @@ TEST(ShearRatio, IsTheMeanOfLeastVariance) {
 }
 
 TEST(ShearRatio, IsItsOwnWhereItIsCertainOrNoOtherPillarInforms) {
-  EXPECT_NEAR(mean_of({0.7, 1e-9}, {8, {-1, 1e-4}}).value, 0.7, 1e-6);
-  for (const double variance : {0.1, -0.1}) {
-    const maths::ShearRatio mean = mean_of({0.7, variance}, {8, {-1, -1e-4}});
+  EXPECT_NEAR(mean_of(ratio_of(0.7, 1e-9), {8, ratio_of(-1, 1e-4)}).value, 0.7, 1e-6);
+  for (const bool informs : {true, false}) {
+    const maths::WeightedRatio own = ratio_of(0.7, 0.1, informs);
+    const maths::ShearRatio mean = mean_of(own, {8, ratio_of(-1, 1e-4, false)});
     EXPECT_EQ(mean.value, 0.7);
-    EXPECT_EQ(mean.variance, 0.1);
-    EXPECT_LT(mean_of({0.7, variance}, {8, {-1, 1e-4}}).value, 0);
+    EXPECT_NEAR(mean.variance, 0.1, 1e-15);
+    EXPECT_LT(mean_of(own, {8, ratio_of(-1, 1e-4)}).value, 0);
   }
-  EXPECT_EQ(maths::ratio_part({0.7, 0.1}, {-1, 0.1}, 0, 1).weight, 0);
+  EXPECT_EQ(maths::shear_ratio(-1, 0, {0, 0}, 5, 0.1, true).beside, 0);
 }
 
 TEST(ShearRatio, OfNextToNoForceTellsNothing) {
   for (const double normal : {0.0, 1e-30, 1e-300}) {
-    const maths::ShearRatio ratio = maths::shear_ratio(normal, normal, {0, 0}, 5, 1e-3, true);
-    const maths::ShearRatio mean = mean_of({0.7, 0.1}, {8, ratio});
+    const maths::WeightedRatio ratio = maths::shear_ratio(normal, normal, {0, 0}, 5, 1e-3, true);
+    const maths::ShearRatio mean = mean_of(ratio_of(0.7, 0.1), {8, ratio});
     EXPECT_NEAR(mean.value, 0.7, 1e-9);
     EXPECT_TRUE(std::isfinite(mean_of(ratio, {8, ratio}).value));
   }
