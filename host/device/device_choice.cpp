@@ -215,6 +215,19 @@ std::shared_ptr<Device::State> Device::Best::opened() {
   return state_;
 }
 
+namespace {
+
+/// Quotients and roots are correctly rounded, as on the host, where the device can do so: without
+/// the option a GPU takes approximate ones. -w: PoCL would print how many warnings there are.
+std::string build_options(const cl::Device& device) {
+  const auto config = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
+  const bool rounds = (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+  return std::string("-cl-std=CL1.2 -w") +
+         (rounds ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+}
+
+}  // namespace
+
 cl::Program Device::State::program(const std::string& source) {
   const std::scoped_lock lock(building_);
   if (const auto found = programs_.find(source); found != programs_.end()) return found->second;
@@ -223,7 +236,7 @@ cl::Program Device::State::program(const std::string& source) {
   }
   cl::Program built(context, source);
   try {
-    built.build(device, "-cl-std=CL1.2 -w");  // PoCL would print how many warnings there are.
+    built.build(device, build_options(device).c_str());
   } catch (const cl::BuildError& error) {
     const auto log = error.getBuildLog();
     throw Error(info.name, "the kernel does not compile on this device",

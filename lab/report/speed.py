@@ -229,8 +229,6 @@ def stage_rows(bench):
 def lane_rows(bench):
     for case in bench.group("lanes"):
         yield [case.removeprefix("lanes/"), *bench.cells(case, "ns_per_pillar:.3g of_copy:.3f")]
-    if "(GPU)" not in bench.context["device"]:
-        yield ["GPU, 1 lane: unmeasured, there was none", "–", "–"]
 
 
 # --- The machine ---

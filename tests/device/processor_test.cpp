@@ -31,15 +31,20 @@ void expect_near(float actual, float expected, float scale, float ulps, const ch
       << plane << " of pillar " << pillar << ": " << actual << " is not " << expected;
 }
 
-/// Tolerance with library functions before the solve: ULP of the force's magnitude.
+/// Tolerance with library functions before the solve: ULP of the force's magnitude. Where the power
+/// law's last bit decides whether readings allow one force or a segment, a GPU may decide
+/// otherwise.
 void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected, float ulps) {
+  std::size_t other_decisions = 0;
   for (std::size_t i = 0; i < actual.normal.size(); ++i) {
     const float scale = std::hypot(expected.shear_x[i], expected.shear_y[i], expected.normal[i]);
     expect_near(actual.shear_x[i], expected.shear_x[i], scale, ulps, "shear_x", i);
     expect_near(actual.shear_y[i], expected.shear_y[i], scale, ulps, "shear_y", i);
     expect_near(actual.normal[i], expected.normal[i], scale, ulps, "normal", i);
-    ASSERT_EQ(actual.status[i], expected.status[i]);
+    if (actual.status[i] != expected.status[i]) ++other_decisions;
+    ASSERT_EQ(actual.status[i] | status::kAmbiguous, expected.status[i] | status::kAmbiguous);
   }
+  EXPECT_LE(other_decisions, actual.normal.size() / 100);
 }
 
 /// A skin whose columns are no multiple of any lane width, and one smaller than all of them.

@@ -107,8 +107,8 @@ class Examples(unittest.TestCase):
 
 class Desktop(unittest.TestCase):
     def test_man_pages_of_all_commands(self):
-        if not shutil.which("help2man"):
-            self.skipTest("no help2man")
+        if os.environ["PILLARFIELD_MAN_PAGES"] == "0":
+            self.skipTest("built without help2man")
         commands = [line.split("\t")[0] for line in run("pillarfield", "completion", "words", "--").splitlines()]
         wanted = {"pillarfield", *(f"pillarfield-{name}" for name in commands if not name.startswith("--"))}
         pages = {path.name.removesuffix(".1.gz"): gzip.open(path, "rt").read()
