@@ -149,9 +149,9 @@ PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 #define PF_PREFETCH(row) PF_PREFETCH_TO(row, 3)
 #define PF_PREFETCH_FAR(row) PF_PREFETCH_TO(row, 2)
 #else
-#define PF_PREFETCH_SPAN(row, count, locality)
-#define PF_PREFETCH(row)
-#define PF_PREFETCH_FAR(row)
+#define PF_PREFETCH_SPAN(row, count, locality) ((void)0)
+#define PF_PREFETCH(row) ((void)0)
+#define PF_PREFETCH_FAR(row) ((void)0)
 #endif
 
 /* Range of the lanes of a block that are written. */
