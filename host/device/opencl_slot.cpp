@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "skin/quads.h"
+#include "solve/stages.h"
 
 namespace pillarfield {
 namespace {

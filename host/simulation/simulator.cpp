@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
+#include "pillarfield/status.h"
 #include "simulation/closed_form/contact_traction.h"
 #include "simulation/closed_form/direction_sweep.h"
 #include "simulation/effects/memory_history.h"

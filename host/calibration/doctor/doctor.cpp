@@ -10,6 +10,7 @@
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/frame_times.h"
 #include "calibration/doctor/kept_frames.h"
+#include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "io/contact_columns.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/stored_frames.h"
 #include "pillarfield/contact_tracker.h"

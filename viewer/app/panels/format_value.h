@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pillarfield/contact_quantities.h"
+#include "pillarfield/pressure_unit.h"
 #include "pillarfield/skin.h"
 #include "viewer/source/selection.h"
 
