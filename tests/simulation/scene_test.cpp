@@ -220,9 +220,6 @@ TEST(Scene, ADirectionSweepSetsTheSizeOfTheSkin) {
       "directions = 8\ninclinations = 5\nmagnitudes_n = [0.1, 1]\nmax_theta_deg = 60";
   const Scene scene = parse_scene("[direction_sweep]\n" + keys, "c");
   EXPECT_TRUE(scene.warnings.empty());
-  EXPECT_EQ(parse_scene("[chart]\n" + keys, "c").warnings,
-            std::vector<std::string>{
-                "[chart] is now [direction_sweep]; the former name works in this release only"});
   EXPECT_EQ(scene.skin.pillar_rows(), 10U);
   EXPECT_EQ(scene.skin.pillar_cols(), 8U);
   EXPECT_EQ(std::get<DirectionSweep>(scene.load).max_theta_deg, 60);

@@ -88,7 +88,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[time]\nrate_hz = 0",
        "s.toml:3: key 'rate_hz' in [time] is 0; allowed: a number in [1e-06, 1000000]"},
       {"[solver]\nestimator = \"magic\"",
-       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "contact", "field")"},
+       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "contact")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
        "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
        "allowed: estimator = \"direct\" or \"contact\""},
