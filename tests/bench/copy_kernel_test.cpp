@@ -6,7 +6,6 @@
 
 #include <cstring>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -174,4 +173,5 @@ TEST(Streams, BytesAreThoseOfThePlan) {
   EXPECT_EQ(streams_of(following).bytes_per_pillar(), 16U + 2 * 16 + 12 + 1);
 }
 
+}  // namespace
 }  // namespace pillarfield::bench

@@ -211,39 +211,5 @@ TEST_F(QueuedSinkTest, PassesReportsOn) {
   EXPECT_EQ(log_.reports, 1u);
 }
 
-FrameContacts contacts_of(const std::vector<std::uint64_t>& tracks) {
-  FrameContacts contacts;
-  for (const std::uint64_t track : tracks) {
-    contacts.contacts.emplace_back().track_id = track;
-  }
-  return contacts;
-}
-
-TEST(ContactSlots, KeepTheirContacts) {
-  ContactSlots slots;
-  const auto tracks = [](const auto& all, std::size_t count) {
-    std::vector<std::uint64_t> ids;
-    for (std::size_t i = 0; i < count; ++i) {
-      ids.push_back(all[i].contact != nullptr ? all[i].contact->track_id : 0);
-    }
-    return ids;
-  };
-  using Ids = std::vector<std::uint64_t>;
-  const FrameContacts first = contacts_of({5, 9, 7});
-  EXPECT_EQ(tracks(slots.update(first), 4), (Ids{5, 9, 7, 0}));
-  const FrameContacts second = contacts_of({7, 5});
-  const auto& after = slots.update(second);
-  EXPECT_EQ(tracks(after, 4), (Ids{5, 0, 7, 0}));
-  EXPECT_TRUE(after[1].ended);
-  EXPECT_FALSE(after[0].ended);
-  const FrameContacts third = contacts_of({11, 7, 12});
-  EXPECT_EQ(tracks(slots.update(third), 4), (Ids{11, 12, 7, 0}));
-
-  std::vector<std::uint64_t> many(40);
-  for (std::size_t i = 0; i < many.size(); ++i) many[i] = 100 + i;
-  const FrameContacts crowd = contacts_of(many);
-  for (const auto& slot : slots.update(crowd)) EXPECT_NE(slot.contact, nullptr);
-}
-
 }  // namespace
 }  // namespace pillarfield
