@@ -12,6 +12,7 @@
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/kept_frames.h"
+#include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
