@@ -18,22 +18,6 @@ import sys
 # A small and a large skin, 1 % in contact, all stages, float readings, and latency.
 FILTER = "^(size/10000|size/624100|contact/1/bare|contact/1/all|stage/all|type/f32|latency/6241)$"
 PAIRS = 10
-# Prefixes of names, as programs of older revisions have them.
-OLD_NAMES = {"baseline/": "opponent/", "intrinsics/": "by_hand/", "limit/": "ceiling/",
-             "regions/idle": "regions/silent"}
-
-
-def renamed(text, names):
-    """Text with each of the names replaced."""
-    for before, after in names.items():
-        text = text.replace(before, after)
-    return text
-
-
-def any_revision(pattern):
-    """The pattern, extended by the old names of the cases that it names."""
-    old = renamed(pattern, OLD_NAMES)
-    return pattern if old == pattern else f"{pattern}|{old}"
 
 
 def turns(pairs):
@@ -46,8 +30,7 @@ def turns(pairs):
 
 def times_of(report):
     """Nanoseconds per pillar by case, from a program's JSON report."""
-    new_names = {old: new for new, old in OLD_NAMES.items()}
-    return {renamed(case["name"], new_names): case["ns_per_pillar"] for case in report["benchmarks"]
+    return {case["name"]: case["ns_per_pillar"] for case in report["benchmarks"]
             if case.get("run_type") == "iteration" and "ns_per_pillar" in case}
 
 
@@ -112,12 +95,11 @@ def main():
 
     programs = {"old": arguments.old, "new": arguments.new}
     times = {"old": [], "new": []}
-    pattern = any_revision(arguments.filter)
     order = turns(arguments.pairs)
     for number, which in enumerate(order, 1):
         if sys.stderr.isatty():
             print(f"run {number} of {len(order)}", end="\r", file=sys.stderr, flush=True)
-        times[which].append(run(programs[which], pattern, arguments.seconds))
+        times[which].append(run(programs[which], arguments.filter, arguments.seconds))
     print("\n".join(compare(times["old"], times["new"])))
 
 

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <random>
-#include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/force_field.h"

@@ -24,12 +24,16 @@ import re
 import resource
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 
-import make_corpus
 import mutations
+
+CORPUS = pathlib.Path(__file__).parent / "corpus"
+KINDS = ("recording", "forces", "calibration", "tekscan", "scene", "plain")
 
 MAX_SECONDS = 5
 # Hard limit of a run. On a busy computer a run may exceed 5 s, so it is repeated up to twice and the
@@ -172,7 +176,7 @@ def try_mutant(runner, number):
     """(kind, command, outcome, run, data, words) for each run of a mutant."""
     options = runner.options
     chance = random.Random(f"{options.seed}:{number}")
-    kind = make_corpus.KINDS[number % len(make_corpus.KINDS)]
+    kind = KINDS[number % len(KINDS)]
     seed = chance.choice(SEEDS[kind])
     data = mutations.mutant_of(chance, seed)
     file = runner.folder / f"mutant{pathlib.Path(seed.name).suffix}"
@@ -192,10 +196,11 @@ SEEDS = {}
 RUNNER = None
 
 
-def read_seeds(folder, rng):
-    for kind in make_corpus.KINDS:
-        files = sorted((folder / kind).glob("seed_*"))
-        SEEDS[kind] = [mutations.Seed(kind, file.name, file.read_bytes()) for file in files]
+def read_seeds():
+    for kind in KINDS:
+        with zipfile.ZipFile(CORPUS / f"{kind}.zip") as archive:
+            names = sorted(name for name in archive.namelist() if name.startswith("seed_"))
+            SEEDS[kind] = [mutations.Seed(kind, name, archive.read(name)) for name in names]
 
 
 def start_worker(options, good):
@@ -265,11 +270,10 @@ def run_all(options, scratch):
     options.scratch = scratch
     options.environment = {**os.environ, "POCL_CACHE_DIR": str(scratch / "pocl")}
     os.environ["POCL_CACHE_DIR"] = str(scratch / "pocl")
-    make_corpus.write_seeds(scratch / "seeds", options.program)
-    read_seeds(scratch / "seeds", random)
-    recording = scratch / "seeds" / "recording" / "seed_old_slide.h5"
-    (scratch / "good.h5").write_bytes(recording.read_bytes())
-    make_corpus.run(options.program, "solve", scratch / "good.h5", "-o", scratch / "forces.h5")
+    read_seeds()
+    good = next(seed for seed in SEEDS["recording"] if seed.name == "seed_old_slide.h5")
+    (scratch / "good.h5").write_bytes(good.data)
+    subprocess.run([options.program, "solve", "-q", scratch / "good.h5", "-o", scratch / "forces.h5"], check=True)
     numbers = range(options.count) if options.only is None else [options.only]
     print(f"{len(numbers)} mutants of {sum(map(len, SEEDS.values()))} seeds, --seed {options.seed}")
     results = []

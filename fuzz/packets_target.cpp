@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "fuzz/some_frames.h"
 #include "fuzz/targets.h"
 #include "pillarfield/error.h"
 #include "streams/source/flexitac_parser.h"

@@ -3,7 +3,7 @@
 
     fuzz/run.py [TARGET] [SECONDS] [--programs build/fuzz/bin] [--findings build/fuzz/findings]
 
-libFuzzer mutates the files of fuzz/corpus/TARGET for SECONDS (60), through all crashes; without TARGET,
+libFuzzer mutates the files of fuzz/corpus/TARGET.zip for SECONDS (60), through all crashes; without TARGET,
 each target gets SECONDS. Inputs that reach new code are stored beside the findings for the next run.
 Each failing input then runs again alone, and the symbolised stack of that run gives its owner: our code,
 or libhdf5 (which a command first runs in a child process; SECURITY.md). One input per distinct failure
@@ -20,6 +20,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGETS = ("recording", "forces", "parts", "calibration", "tekscan", "scene", "plain", "packets")
@@ -48,7 +49,9 @@ def memory_folder():
 
 def fuzz(program, target, seconds, folders):
     """Runs libFuzzer, which writes its artifacts to folders["raw"]."""
-    seeds = [ROOT / "fuzz" / "corpus" / target]
+    with zipfile.ZipFile(ROOT / "fuzz/corpus" / f"{target}.zip") as archive:
+        archive.extractall(folders["seeds"])
+    seeds = [folders["seeds"]]
     if target == "scene":
         seeds.append(ROOT / "scenes")
     command = [program, "-fork=1", "-print_funcs=0", "-ignore_crashes=1", "-ignore_timeouts=1", "-ignore_ooms=1",
@@ -172,7 +175,7 @@ def run_target(target, options):
     program = (options.programs / f"fuzz_{target}").resolve()
     folders = {"findings": options.findings.resolve()}
     work = folders["findings"].parent / "work" / target
-    folders.update(raw=work / "artifacts", grown=work / "corpus", log=work / "log.txt")
+    folders.update(raw=work / "artifacts", grown=work / "corpus", seeds=work / "seeds", log=work / "log.txt")
     for name in ("findings", "raw", "grown"):
         folders[name].mkdir(parents=True, exist_ok=True)
     for old in folders["raw"].iterdir():

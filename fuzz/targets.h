@@ -1,12 +1,16 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
 #include "pillarfield/read_options.h"
 
 namespace pillarfield::fuzz {
+
+/// Largest frame that is read, in sensels or pillars; a fuzzer needs many small files.
+inline constexpr std::uint64_t kMaxRead = 1 << 20;
 
 // Each function opens a file with the commands' reader and reads the first, the last and some other
 // frames, with their truth, contacts and planes. It throws Error if the file is refused, as

@@ -1,7 +1,6 @@
 // Compiled with -O3 -march=native (bench/CMakeLists.txt).
 
-#include "bench/baselines/plain_loop.h"
-
+#include "bench/baselines/bare_solve.h"
 #include "solve/pillar_maths.h"
 
 namespace pillarfield::bench {

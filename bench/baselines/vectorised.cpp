@@ -13,7 +13,7 @@
 #include <array>
 #include <cmath>
 
-#include "bench/baselines/plain_loop.h"
+#include "bench/baselines/bare_solve.h"
 #include "pillarfield/error.h"
 
 HWY_BEFORE_NAMESPACE();

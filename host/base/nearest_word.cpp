@@ -27,14 +27,13 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
   return edits[a.size()][b.size()];
 }
 
-}  // namespace
-
-std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates,
-                         std::size_t most_edits) {
+/// The candidate that begins with `word` or has the smallest distance; empty where that is above a
+/// third of the word plus 1.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongest = 40;  // The table is quadratic, and all names are shorter.
   if (word.size() > kLongest) return {};
   std::string nearest;
-  std::size_t too_many = most_edits + 1;
+  std::size_t too_many = word.size() / 3 + 2;
   for (const std::string& candidate : candidates) {
     const bool begins = word.size() >= 3 && candidate.starts_with(word);
     const std::size_t edits = begins ? 1 : edits_between(word, candidate);
@@ -45,8 +44,10 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   return nearest;
 }
 
+}  // namespace
+
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_word(word, candidates, word.size() / 3 + 1);
+  const std::string nearest = nearest_word(word, candidates);
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <limits>
 #include <optional>
-#include <utility>
 
 #include "pillarfield/error.h"
 

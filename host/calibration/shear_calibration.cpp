@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/number_text.h"
 #include "calibration/steps.h"

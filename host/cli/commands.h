@@ -1,20 +1,38 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "calibration/steps.h"
-#include "cli/options/plan_options.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/plan_builder.h"
 #include "pillarfield/pressure_unit.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
+
+/// Options of the solver plan.
+struct PlanOptions {
+  ReadOptions read;  ///< of the frames and the calibration
+  std::string scene;
+  std::string calibration;
+  PlanSettings settings;
+};
+
+/// The options of opening the frames: `read`, and the constants that the others give.
+[[nodiscard]] ReadOptions frame_options(const PlanOptions& options);
+
+/// build_plan() with the files of the options; a `source` that is a scene is applied too. Throws
+/// Error where a file cannot be read or does not fit.
+[[nodiscard]] SolverPlan plan_of(const PlanOptions& options, SolverPlan plan,
+                                 const std::string& source,
+                                 const std::function<double()>& frame_interval_s);
 
 struct PrintOptions {
   bool json = false;

@@ -6,9 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
-#include <cmath>
-#include <limits>
-#include <memory>
 
 #include "base/number_text.h"
 #include "cli/commands.h"

@@ -29,8 +29,6 @@ using Json = nlohmann::ordered_json;
 /// facts_of() probes a file once, before it is opened several times.
 const ReadOptions kProbed = {.trust = true};
 
-/// Parts of a joined file without which it is not whole.
-
 /// Returns a value as text: the members of a list, and of an object with their names.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/number_text.h"
-#include "base/quantile.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"

@@ -4,17 +4,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "contacts/contact_matching.h"
 #include "contacts/contact_measure.h"
-#include "contacts/contact_wrench.h"
 #include "contacts/estimator/friction_estimator.h"
 #include "contacts/parallel_contact_moments.h"
+#include "pillarfield/contact_labels.h"
+#include "pillarfield/contact_quantities.h"
 #include "pillarfield/error.h"
+#include "pillarfield/force_field.h"
+#include "pillarfield/surface.h"
+#include "skin/vectors.h"
 
 namespace pillarfield {
 namespace {
+
+/// Adds a wrench about the same point.
+void add(Wrench& sum, const Wrench& wrench) {
+  sum.force_n = sum.force_n + wrench.force_n;
+  sum.moment_nmm = sum.moment_nmm + wrench.moment_nmm;
+}
+
+/// Force and moment of the pillars of runs, summed in their order. `poses` has one pose a pillar of
+/// the field. NaN and infinite forces count as zero.
+Wrench wrench_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
+                 std::span<const Pose> poses) {
+  Wrench wrench;
+  for (const ContactRun& run : runs) {
+    for (std::uint32_t col = run.first; col < run.end; ++col) {
+      const std::size_t pillar = std::size_t{run.row} * forces.cols + col;
+      const Pose& pose = poses[pillar];
+      const auto of = [&](std::span<const float> plane) {
+        return plane.empty() ? 0 : finite_or_zero(plane[pillar]);
+      };
+      const Vector3 force_n =
+          rotated(pose, {of(forces.shear_x), of(forces.shear_y), -of(forces.normal)});
+      add(wrench, {force_n, cross(pose.position_mm, force_n)});
+    }
+  }
+  return wrench;
+}
 
 constexpr const char* kPlace = "ContactTracker";
 constexpr double kMostNoiseN = 1e6;

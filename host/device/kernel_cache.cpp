@@ -6,8 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <memory>
-#include <optional>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <thread>
-#include <utility>
 
 #include "skin/quads.h"
 #include "solve/activation_thresholds.h"

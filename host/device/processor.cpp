@@ -31,17 +31,15 @@ namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
 constexpr const char* kSubmit = "Processor::submit";
-constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
-constexpr std::chrono::milliseconds kCompiledBefore{
-    150};  ///< wait for kernels of the driver's cache
+constexpr std::chrono::milliseconds kCompileNotice{300};   ///< wait without a message
+constexpr std::chrono::milliseconds kCompiledBefore{150};  ///< wait for the driver's cache
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
     throw Error("Processor", fmt::format("frames_in_flight is {}", options.frames_in_flight),
                 fmt::format("it must lie in [1, {}]", kMaxFramesInFlight));
   }
-  const int lanes = tuning.lanes;
-  if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16) {
+  if (const int lanes = tuning.lanes; lanes < 0 || lanes > 16 || (lanes & (lanes - 1)) != 0) {
     throw Error("Processor", fmt::format("lanes is {}", lanes),
                 "it must be 1, 2, 4, 8 or 16, or 0 for the device's own");
   }
@@ -92,13 +90,13 @@ std::string line_on_compiling(const DeviceInfo& device) {
 }
 
 [[noreturn]] void throw_all_in_flight(std::size_t slots) {
-  throw Error("Processor::submit", fmt::format("all {} frames are in flight", slots),
+  throw Error(kSubmit, fmt::format("all {} frames are in flight", slots),
               "receive() one first, or set more frames_in_flight");
 }
 
 [[noreturn]] void throw_no_slot(const SlotScheduler& scheduler) {
   if (scheduler.pinned() == 0) throw_all_in_flight(scheduler.slots());
-  throw Error("Processor::submit",
+  throw Error(kSubmit,
               fmt::format("of {} frames {} are in flight and {} are pinned", scheduler.slots(),
                           scheduler.in_flight(), scheduler.pinned()),
               "receive() or unpin a frame first, or set more frames_in_flight");

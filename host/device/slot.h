@@ -1,16 +1,55 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <cstddef>
 #include <optional>
 
+#include "contacts/estimator/contact_estimator.h"
 #include "device/calibration_memory.h"
-#include "device/contact_stage.h"
-#include "device/slot_layout.h"
+#include "device/slot_memory.h"
 #include "device/slot_scheduler.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield {
+
+/// How a frame is divided among work-items.
+struct Division {
+  int lanes = 1;          ///< pillars that one solves at once
+  std::size_t bands = 1;  ///< bands of rows
+  bool has_rings = true;  ///< each band keeps the rows around its own: kernels/frame/neighbours.h
+};
+
+/// The memory of a slot: results, idle flags, and scratch memory.
+struct SlotLayout {
+  SlotLayout(const SolverPlan& plan, const Division& division, bool skips_idle,
+             const CalibrationMemory& calibration);
+
+  ResultLayout results;
+  single_precision::Layout layout{};
+  std::size_t tiles_across = 0;  ///< of wires; 0 without their crosstalk
+  std::size_t tiles_down = 0;
+};
+
+/// The estimator `contact` of a processor. Runs on the host, on the planes of a frame after the
+/// direct solve: equal bits on all devices. All slots share it, since frames are resolved in order.
+class ContactStage {
+ public:
+  ContactStage(const SolverPlan& plan, std::size_t threads);
+
+  /// Estimates the ambiguous pillars of a frame whose planes lie in `memory`.
+  void resolve(const ResultMemory& memory);
+
+  /// The contacts of the frame last resolved.
+  [[nodiscard]] FoundContacts contacts() const {
+    return {&estimator_.contacts(), estimator_.friction()};
+  }
+
+ private:
+  std::uint32_t rows_;
+  std::uint32_t cols_;
+  ContactEstimator estimator_;
+};
 
 /// What frames leave to the next one on the device: the tare of a followed baseline or of a bent
 /// skin, and the states of sensels. Frames in flight are then ordered: a reader waits for the last

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/pressure_unit.h"

@@ -11,7 +11,6 @@
 #include "io/hdf5/handle.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
-#include "io/misspelt_names.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
@@ -77,7 +76,6 @@ Recording::Recording(hdf5::File file, const ReadOptions& options)
   check_times(options);
   warn_of_missing();
   warn_of_size();
-  for (std::string& warning : misspelt_names(file_)) warnings_.push_back(std::move(warning));
 }
 
 void Recording::open_times() {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/status.h"

@@ -3,14 +3,76 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
-#include "pipeline/baseline_survey.h"
+#include "pillarfield/force_parts.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/recording.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
 namespace {
+
+/// Follows the baseline through a few frames of each checkpoint's distance, so that the tare at a
+/// checkpoint has the drift of all frames before it. The result depends on the checkpoints alone.
+class BaselineSurvey {
+ public:
+  /// The plan must follow the baseline, on a skin that is not bent.
+  BaselineSurvey(FrameSource& source, const Device& device, const SolverPlan& plan,
+                 const Checkpoints& checkpoints);
+
+  /// The tare at a frame, not before that of the last call, [sensel rows, cols], counts; of an
+  /// earlier one once `stop` returns true.
+  [[nodiscard]] std::vector<float> tare_at(std::uint64_t frame, const std::function<bool()>& stop);
+
+ private:
+  FrameSource& source_;
+  std::uint64_t step_;
+  std::uint64_t next_ = 0;
+  FrameBuffer frame_;
+  Processor processor_;
+};
+
+constexpr std::uint64_t kFramesOfDistance = 10;
+
+std::uint64_t survey_step(const Checkpoints& checkpoints) {
+  return std::max<std::uint64_t>(checkpoints.every / kFramesOfDistance, 1);
+}
+
+/// The plan for every step-th frame, without what does not change the tare.
+SolverPlan survey_plan(SolverPlan plan, std::uint64_t step) {
+  // A single frame never sets the tare, since its noise would.
+  constexpr double kMostRate = 0.5;
+  const auto frames = static_cast<double>(step);
+  plan.baseline_rate = std::min(1 - std::pow(1 - *plan.baseline_rate, frames), kMostRate);
+  plan.baseline_interval = 1;
+  plan.frame_interval_s *= frames;
+  if (plan.estimator == Estimator::contact) plan.estimator = Estimator::direct;
+  plan.angles = plan.uncertainty = false;
+  return plan;
+}
+
+BaselineSurvey::BaselineSurvey(FrameSource& source, const Device& device, const SolverPlan& plan,
+                               const Checkpoints& checkpoints)
+    : source_(source),
+      step_(survey_step(checkpoints)),
+      frame_(plan.sensel_type, plan.skin.rows, plan.skin.cols),
+      processor_(device, survey_plan(plan, step_)) {}
+
+std::vector<float> BaselineSurvey::tare_at(std::uint64_t frame, const std::function<bool()>& stop) {
+  for (; next_ < frame; next_ += step_) {
+    if (stop && stop()) break;
+    source_.read(next_, frame_);
+    processor_.submit(frame_.view());
+    static_cast<void>(processor_.receive());
+  }
+  return processor_.tare();
+}
 
 /// Passes frames on, without those of a warm-up, and with ids of contacts above those before.
 class SegmentSink final : public ForceSink {

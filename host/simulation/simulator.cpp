@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <mutex>
 #include <span>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -17,12 +22,128 @@
 #include "simulation/effects/pillar_model.h"
 #include "simulation/ideal_readings.h"
 #include "simulation/indenter/indenter_history.h"
-#include "simulation/render_ahead.h"
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
 
 namespace pillarfield {
 namespace {
+
+/// Threads that render the next frames into a ring of buffers while the caller takes the earlier
+/// ones; the caller renders too where its frame is not claimed yet.
+class RenderAhead {
+ public:
+  /// Frames `first` to `first` + `count` - 1; `in_order`: one frame at a time, for scenes whose
+  /// frames depend on the one before. `threads` is at least 1.
+  RenderAhead(const Simulator& simulator, std::uint64_t first, std::uint64_t count,
+              unsigned threads, bool in_order);
+  ~RenderAhead();
+  RenderAhead(const RenderAhead&) = delete;
+  RenderAhead& operator=(const RenderAhead&) = delete;
+
+  /// Calls `take` for each frame; once.
+  void deliver(const Simulator::TakeFrame& take);
+
+ private:
+  struct Frame {
+    FrameBuffer raw;
+    ForceField truth;
+    bool rendered = false;
+    std::exception_ptr failed = nullptr;
+  };
+  using Lock = std::unique_lock<std::mutex>;
+
+  void help();
+  [[nodiscard]] bool may_claim() const;
+  /// Renders the next frame; releases the lock meanwhile.
+  void render_next(Lock& lock);
+  [[nodiscard]] Frame& place_of(std::uint64_t number) { return ring_[number % ring_.size()]; }
+
+  const Simulator& simulator_;
+  const std::uint64_t first_;
+  const std::uint64_t count_;
+  const bool in_order_;
+  std::mutex mutex_;  ///< guards the members below
+  std::condition_variable changed_;
+  std::vector<Frame> ring_;
+  std::uint64_t claimed_ = 0;
+  std::uint64_t taken_ = 0;
+  std::uint64_t busy_ = 0;  ///< frames being rendered
+  bool stopped_ = false;
+  std::vector<std::jthread> helpers_;  ///< last: they use the other members
+};
+
+RenderAhead::RenderAhead(const Simulator& simulator, std::uint64_t first, std::uint64_t count,
+                         unsigned threads, bool in_order)
+    : simulator_(simulator), first_(first), count_(count), in_order_(in_order) {
+  const Skin& skin = simulator.scene().skin;
+  for (std::uint64_t i = 0; i < std::min<std::uint64_t>(count, std::uint64_t{threads} + 2); ++i) {
+    ring_.push_back({.raw = FrameBuffer(simulator.sensel_type(), skin.rows, skin.cols),
+                     .truth = ForceField(skin)});
+  }
+  try {
+    for (unsigned i = 1; i < threads && i < count; ++i) helpers_.emplace_back([this] { help(); });
+  } catch (const std::system_error&) {
+    // The limit of threads is reached; the caller renders.
+  }
+}
+
+RenderAhead::~RenderAhead() {
+  {
+    const std::scoped_lock lock(mutex_);
+    stopped_ = true;
+  }
+  changed_.notify_all();
+}
+
+bool RenderAhead::may_claim() const {
+  return claimed_ < count_ && claimed_ < taken_ + ring_.size() && !(in_order_ && busy_ > 0);
+}
+
+void RenderAhead::render_next(Lock& lock) {
+  const std::uint64_t number = claimed_++;
+  Frame& frame = place_of(number);
+  ++busy_;
+  lock.unlock();
+  try {
+    simulator_.render(first_ + number, frame.raw, frame.truth);
+  } catch (...) {
+    frame.failed = std::current_exception();
+  }
+  lock.lock();
+  --busy_;
+  frame.rendered = true;
+  changed_.notify_all();
+}
+
+void RenderAhead::help() {
+  Lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return stopped_ || claimed_ == count_ || may_claim(); });
+    if (stopped_ || claimed_ == count_) return;
+    render_next(lock);
+  }
+}
+
+void RenderAhead::deliver(const Simulator::TakeFrame& take) {
+  Lock lock(mutex_);
+  for (std::uint64_t number = 0; number < count_; ++number) {
+    Frame& frame = place_of(number);
+    while (!frame.rendered) {
+      if (may_claim()) {
+        render_next(lock);
+      } else {
+        changed_.wait(lock);
+      }
+    }
+    lock.unlock();
+    if (frame.failed) std::rethrow_exception(frame.failed);
+    take(first_ + number, frame.raw.view(), frame.truth);
+    lock.lock();
+    frame.rendered = false;
+    ++taken_;
+    changed_.notify_all();
+  }
+}
 
 Scene checked(Scene scene) {
   scene.skin.surface = surface_of(scene);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "pillarfield/error.h"
 #include "skin/pillar_sensels.h"

@@ -159,17 +159,6 @@ std::vector<EffectParameter> parameters_of(const SensorEffects& effects) {
   return parameters;
 }
 
-std::vector<std::string> effect_parameter_names() {
-  std::vector<std::string> names;
-  static_cast<void>(effects_of(
-      [&](const char* name) {
-        names.emplace_back(name);
-        return std::nullopt;
-      },
-      "names"));
-  return names;
-}
-
 SensorEffects effects_of(
     const std::function<std::optional<std::vector<double>>(const char* name)>& find,
     std::string_view where) {

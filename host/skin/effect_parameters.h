@@ -20,9 +20,6 @@ struct EffectParameter {
 /// The parameters of the effects that are set.
 [[nodiscard]] std::vector<EffectParameter> parameters_of(const SensorEffects& effects);
 
-/// The names of the parameters of all effects.
-[[nodiscard]] std::vector<std::string> effect_parameter_names();
-
 /// The effects whose parameters `find` returns; it returns an unset value for an absent one. Throws
 /// Error, naming `where`, if only some parameters of an effect are there or a number is a list.
 [[nodiscard]] SensorEffects effects_of(

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <vector>
 
 #include "pillarfield/sensor_effects.h"
 #include "solve/pillar_maths.h"

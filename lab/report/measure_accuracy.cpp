@@ -7,7 +7,6 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "lab/studies/bound.h"

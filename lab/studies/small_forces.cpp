@@ -1,6 +1,5 @@
 #include "lab/studies/small_forces.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

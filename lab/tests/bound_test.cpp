@@ -25,39 +25,6 @@ PillarSensor sensor_of(double noise_counts) {
   return sensor;
 }
 
-/// Expectation of the squared derivative of the log-likelihood, by the trapezoidal rule.
-double integrated_information(double deviations) {
-  constexpr double kStep = 1e-3;
-  double sum = 0;
-  for (int i = 0; - deviations + i * kStep < 12; ++i) {
-    const double u = -deviations + i * kStep;
-    const double low = u * u * std::exp(-u * u / 2);
-    const double high = (u + kStep) * (u + kStep) * std::exp(-(u + kStep) * (u + kStep) / 2);
-    sum += kStep * (low + high) / 2;
-  }
-  const double spoken = sum / std::sqrt(2 * std::numbers::pi);
-  const auto log_idle = [](double d) { return std::log(std::erfc(d / std::numbers::sqrt2) / 2); };
-  const double slope = (log_idle(deviations + 1e-5) - log_idle(deviations - 1e-5)) / 2e-5;
-  return spoken + slope * slope * std::exp(log_idle(deviations));
-}
-
-TEST(Information, IsTheExpectedSquareOfTheScore) {
-  for (int i = -8; i <= 8; ++i) {
-    const double deviations = i / 2.0;
-    EXPECT_NEAR(information(deviations), integrated_information(deviations), 1e-5) << deviations;
-  }
-}
-
-TEST(Information, GrowsFromNothingToThatOfAReading) {
-  EXPECT_NEAR(information(-8), 0, 1e-12);
-  EXPECT_NEAR(information(8), 1, 1e-12);
-  EXPECT_EQ(information(50), 1);
-  for (int i = -32; i < 32; ++i) {
-    const double deviations = i / 4.0;
-    EXPECT_LT(information(deviations), information(deviations + 0.25) + 1e-14);
-  }
-}
-
 TEST(LeastError, IsThatOfFourAndOfThreeReadingsWhateverTheDirection) {
   PillarSensor sensor = sensor_of(0.5);
   sensor.counts_per_newton = 320;
@@ -75,28 +42,6 @@ TEST(LeastError, IsThatOfFourAndOfThreeReadingsWhateverTheDirection) {
     }
   }
   EXPECT_GT(in_two, 30);
-}
-
-TEST(LeastError, OfUnequalSensorsIsThatOfTheirVariances) {
-  // V = (50, 30, -10, 10), of which three are usable: N = (V2 + V4) / 2, and the shear along the
-  // diagonals is sqrt(2) (V1 - N) and (V2 - V4) / sqrt(2).
-  Sensels sensels;
-  sensels[0] = sensor_of(0.4);
-  sensels[1] = sensor_of(0.5);
-  sensels[2] = sensor_of(0.6);
-  sensels[3] = sensor_of(0.8);
-  const Force force = {10 * std::numbers::sqrt2, 20 * std::numbers::sqrt2, 20};
-  const double variance = 0.4 * 0.4 + 3 * (0.5 * 0.5 + 0.8 * 0.8) / 4;
-  EXPECT_EQ(usable_sensels(force, sensels), 3);
-  EXPECT_NEAR(least_error(force, sensels), std::sqrt(variance), 1e-6);
-}
-
-TEST(LeastError, LosesNoMoreThanAnInactiveSenselAdds) {
-  // B5: a fourth reading of weight w takes 5 w / (1 + 3 w) from the squared bound of 5/2.
-  const PillarSensor sensor = sensor_of(1);
-  const Force force = {10.5 * std::numbers::sqrt2, 10.5 * std::numbers::sqrt2, 22};  // V3 = 1
-  const double weight = information(1 - 5);
-  EXPECT_NEAR(least_error(force, sensor), std::sqrt(2.5 - 5 * weight / (1 + 3 * weight)), 1e-9);
 }
 
 TEST(Misreading, CostsItsChanceTimesTheSquareOfItsJump) {

@@ -32,30 +32,6 @@ TEST(ThreadPool, SharesPieces) {
   EXPECT_EQ(inside, 2);
 }
 
-TEST(ThreadPool, PassesTheMemberOfAPiece) {
-  ThreadPool team(3);
-  std::array<std::thread::id, 3> threads;
-  std::mutex mutex;
-  for (int turn = 0; turn < 200; ++turn) {
-    team.run(9, [&](std::size_t, std::size_t member) {
-      const std::scoped_lock lock(mutex);
-      std::thread::id& thread = threads.at(member);
-      if (thread == std::thread::id()) thread = std::this_thread::get_id();
-      EXPECT_EQ(thread, std::this_thread::get_id()) << member;
-    });
-  }
-  EXPECT_EQ(threads[0], std::this_thread::get_id());
-}
-
-TEST(ThreadPool, LeavesASinglePieceToTheCaller) {
-  ThreadPool team(4);
-  for (int turn = 0; turn < 100; ++turn) {
-    std::thread::id worker;
-    team.run(1, [&](std::size_t, std::size_t) { worker = std::this_thread::get_id(); });
-    ASSERT_EQ(worker, std::this_thread::get_id());
-  }
-}
-
 TEST(ThreadPool, WaitsForOtherMembers) {
   ThreadPool team(3);
   for (int turn = 0; turn < 20; ++turn) {

@@ -6,7 +6,6 @@
 
 #include <cstring>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -173,14 +172,6 @@ TEST(Streams, BytesAreThoseOfThePlan) {
   add_stage(following, "baseline");
   EXPECT_EQ(streams_of(following).bytes_per_pillar(), 16U + 2 * 16 + 12 + 1);
 }
-
-TEST(CopySource, KindsDiffer) {
-  std::set<std::string> sources;
-  for (const CopyKind& kind : kCopyKinds) sources.insert(copy_source({}, 16, kind));
-  EXPECT_EQ(sources.size(), std::size(kCopyKinds));
-}
-
-TEST(EmptyLaunch, Returns) { EmptyLaunch(test_device()).run(3); }
 
 }  // namespace
 }  // namespace pillarfield::bench

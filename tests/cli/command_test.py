@@ -1,6 +1,5 @@
 """The commands simulate, solve, compare and info."""
 
-import re
 import pathlib
 import unittest
 
@@ -210,20 +209,6 @@ class Work(CommandTest):
         differ = [index for index in range(6) if (normals[0][index] != normals[1][index]).any()]
         self.assertTrue(differ)
         self.assertNotIn(0, differ)
-
-    def test_a_segment_point_has_no_effect_any_more(self):
-        run("simulate", SOURCE / "scenes" / "ambiguous_contacts.toml", "-o", self.recording, "--frames", 1)
-        self.scene.write_text(BALL + "[solver]\nsegment_point = 0.5\n")
-        planes = []
-        for options, notes in ((), 0), (("--segment-point", 0.5), 1), (("--scene", self.scene), 1):
-            messages = run("solve", self.recording, "-o", self.forces, "--noise", 0.5, *options).stderr
-            self.assertEqual(len(re.findall("segment.point", messages)), notes)
-            with h5py.File(self.forces) as file:
-                planes.append(file["force/status"][:] & 15)
-            self.assertEqual(run_json("info", self.forces)["segment_point"], 0.875)
-        self.assertTrue((planes[0] == planes[1]).all())
-        run("solve", self.recording, "-o", self.forces, "--estimator", "paper")
-        self.assertNotIn("segment_point", run_json("info", self.forces))
 
     def test_info_describes_every_file(self):
         run("simulate", self.scene, "-o", self.recording)

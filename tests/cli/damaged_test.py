@@ -7,6 +7,7 @@ import os
 import pathlib
 import resource
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -15,10 +16,10 @@ import zlib
 import h5py
 import numpy
 
-from command import PROGRAM, SCENES, SOURCE, run
+from command import PROGRAM, SCENES, run
 
 VIEWER = pathlib.Path(PROGRAM).with_name("pillarfield-viewer")
-CORPUS = sorted(file for file in (SOURCE / "fuzz/corpus").glob("*/*.h5")
+CORPUS = sorted(file for file in pathlib.Path(sys.argv.pop()).glob("*/*.h5")
                 if not file.name.startswith(("seed_", "hostile_")))
 SANITIZED = "asan" in pathlib.Path(PROGRAM).parts
 MEGABYTE = 1 << 20

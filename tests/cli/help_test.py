@@ -131,17 +131,10 @@ class WrongCommandLines(CommandTest):
             line = self.assert_fails(*arguments, status=2, names=[fault])
             self.assertRegex(line, r"; see 'pillarfield.* --help'$|; did you mean")
 
-    def test_former_names_work_with_a_note(self):
-        scene = SOURCE / "scenes/spin.toml"
-        for gone in ("pace", "live"):
-            self.assertIn("stream SOURCE --repeat --rate HZ --summary",
-                          self.assert_fails(gone, scene, "--rate", 50, status=2, names=[gone]))
-        old = self.folder / "old.toml"
-        old.write_text(scene.read_text() + '\n[solver]\nestimator = "field"\n')
-        messages = run("simulate", old, "-o", self.folder / "a.h5", "-q").stderr
-        self.assertRegex(messages, r'\A.*old.toml: estimator = "field" is now "contact"; .*\n\Z')
+    def test_a_former_name_works_with_a_note(self):
         rough = (SOURCE / "scenes/rough_ball.toml").read_text()
         self.assertIn("[[indenter]]", rough)
+        old = self.folder / "old.toml"
         old.write_text(rough.replace("[[indenter]]", "[[body]]"))
         two = [self.folder / "new_name.h5", self.folder / "old_name.h5"]
         run("simulate", SOURCE / "scenes/rough_ball.toml", "-o", two[0], "--frames", 2, "-q")
@@ -150,14 +143,6 @@ class WrongCommandLines(CommandTest):
         planes = [datasets(path) for path in two]
         for name, plane in planes[0].items():
             self.assertEqual(plane.tobytes(), planes[1][name].tobytes(), name)
-        self.assertIn("'--memory' has no effect any more", run(
-            "solve", two[0], "-o", self.folder / "memory.npy", "--memory", "staged").stderr)
-        copies = []
-        for name, notes in (("contact", 0), ("field", 1)):
-            copies.append(self.folder / f"{name}.npy")
-            notes_of = run("solve", self.folder / "a.h5", "-o", copies[-1], "--estimator", name)
-            self.assertEqual(notes_of.stderr.count("'--estimator field' is now"), notes)
-        self.assertEqual(*(copy.read_bytes() for copy in copies))
 
 
 class Numbers(CommandTest):

@@ -197,27 +197,6 @@ class Ends(OutputTest):
             self.assert_part_is_read()
             self.part.unlink()
 
-    def test_killed(self):
-        status, _ = self.simulate(lambda process: process.send_signal(signal.SIGKILL))
-        self.assertEqual(status, -signal.SIGKILL)
-        self.assertFalse((self.folder / "long.h5").exists())
-        facts = run_json("info", self.part)
-        self.assertGreater(facts["frames"], 16)
-        self.assertTrue(facts["truth"])
-        forces = self.folder / "forces.h5"
-        self.assertEqual(run_json("solve", self.part, "-o", forces)["frames"], facts["frames"])
-        self.assertLess(run_json("compare", forces, self.part)["regions"]["1"]["rms_n"], 1.5 / 320)
-
-    def test_a_second_writer_is_refused(self):
-        def write_again_then_stop(process):
-            self.assert_fails("simulate", self.scene, "-o", self.folder / "long.h5",
-                              names=["long.h5", "being written by another process"])
-            self.assertIsNone(process.poll())
-            process.send_signal(signal.SIGTERM)
-        status, lines = self.simulate(write_again_then_stop)
-        self.assertEqual((status, len(lines)), (1, 1), lines)
-        self.assert_part_is_read()
-
     def test_hang_up_stays_ignored(self):
         def hang_up_then_stop(process):
             process.send_signal(signal.SIGHUP)

@@ -299,17 +299,6 @@ class PlainData(CommandTest):
         run("stream", array, "--rate", 200, "--record", self.path("s.h5"), "-q")
         self.assertGreater(run_json("info", self.path("s.h5"))["frames"], 0)  # A busy computer drops some.
 
-    def test_misspelt_names_are_warned_of(self):
-        with h5py.File(self.recording, "r+") as file:
-            skin = file["skin"].attrs
-            skin["treshold_counts"], skin["colour"] = skin["threshold_counts"], "blue"
-            del skin["threshold_counts"]
-            file["calibration/taer"] = np.zeros((6, 8))
-        warnings = " ".join(run_json("info", self.recording)["warnings"])
-        self.assertIn("treshold_counts of /skin is ignored; did you mean threshold_counts?", warnings)
-        self.assertIn("/calibration/taer is ignored; did you mean tare?", warnings)
-        self.assertNotIn("colour", warnings)
-
     def test_a_dash_is_no_file(self):
         for arguments in (("solve", "-", "-o", "f.h5"), ("solve", self.recording, "-o", "-"),
                           ("info", "-"), ("compare", "-", self.recording),

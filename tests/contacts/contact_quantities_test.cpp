@@ -341,16 +341,6 @@ TEST(Friction, OfALargeContactIsSeenInSomeOfItsPillars) {
   }
 }
 
-TEST(Slip, StatesAndSourcesHaveNames) {
-  std::set<std::string> names;
-  for (int i = 0; i < 4; ++i) {
-    names.insert(name_of(static_cast<SlipState>(i)));
-    names.insert(name_of(static_cast<FrictionSource>(i)));
-  }
-  EXPECT_EQ(names, (std::set<std::string>{"carried_over", "given", "observed", "partial", "prior",
-                                          "sliding", "sticking", "unknown"}));
-}
-
 /// A scene, solved and tracked frame by frame.
 class SolvedScene {
  public:
@@ -397,22 +387,6 @@ class SolvedScene {
   ContactTracker tracker_;
 };
 
-TEST(Scenes, PressedBallBearsItsLoad) {
-  SolvedScene scene("hertz_press.toml");
-  for (std::uint64_t index = 1; index < 40; ++index) {
-    const FrameContacts& frame = scene.frame(index);
-    ASSERT_EQ(frame.contacts.size(), 1);
-    const ContactQuantities& contact = frame.contacts[0].quantities;
-    EXPECT_EQ(frame.contacts[0].track_id, 1);
-    EXPECT_NEAR(contact.normal_n, scene.key(0, frame.time_s).load_n, 1e-4);
-    EXPECT_NEAR(frame.total.normal_n, contact.normal_n, 1e-9);
-    EXPECT_NEAR(std::hypot(contact.shear_x_n, contact.shear_y_n), 0, 1e-4);
-    EXPECT_NEAR(std::hypot(contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm), 0,
-                1e-4);
-    EXPECT_EQ(contact.slip, SlipState::unknown);
-  }
-}
-
 /// Noise of half a count, rounding, and a threshold above the edge's readings.
 TEST(Scenes, SeveralContactsBearTheirLoads) {
   SolvedScene scene("several_contacts.toml");
@@ -456,13 +430,6 @@ TEST(Scenes, SpinSlidesThoughItsShearCancels) {
   EXPECT_GT(*contact.slip_margin, 0.99);
   // Under a Hertz pressure, 3 pi / 16 times mu P a; clockwise.
   EXPECT_NEAR(contact.torque_nmm, -3 * M_PI / 16 * 1.6 * 60 * 16, 0.1 * 900);
-}
-
-TEST(Scenes, PartialSlipAlongAnAxisShowsNoFriction) {
-  SolvedScene scene("partial_slip.toml");
-  const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
-  EXPECT_EQ(contact.slip, SlipState::unknown);
-  EXPECT_FALSE(contact.friction);
 }
 
 }  // namespace

@@ -146,15 +146,6 @@ TEST(ContactTracker, OfASplitTheLargerPartKeepsTheId) {
   }
 }
 
-TEST(ContactTracker, OfEqualPartsTheFirstKeepsTheId) {
-  ContactTracker tracker(kPillarPitchMm);
-  tracker.update(Patch(10, 30).box(2, 2, 4, 21).view(), 0);
-  const FrameContacts& frame =
-      tracker.update(Patch(10, 30).box(2, 2, 4, 10).box(2, 13, 4, 10).view(), 1);
-  EXPECT_EQ(ids_of(frame), (Ids{1, 2}));
-  EXPECT_EQ(frame.contacts[1].parent, 1);
-}
-
 TEST(ContactTracker, AMergedContactKeepsTheIdThatBroughtMostPillars) {
   for (const bool larger_right : {false, true}) {
     ContactTracker tracker(kPillarPitchMm);
@@ -168,14 +159,6 @@ TEST(ContactTracker, AMergedContactKeepsTheIdThatBroughtMostPillars) {
     EXPECT_EQ(frame.ended[0].last_time_s, 1);
     EXPECT_TRUE(tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 3).ended.empty());
   }
-}
-
-TEST(ContactTracker, OfEqualOnesThatMergeTheLowerIdStays) {
-  ContactTracker tracker(kPillarPitchMm);
-  tracker.update(Patch(10, 30).box(2, 2, 4, 5).box(2, 8, 4, 5).view(), 0);
-  const FrameContacts& frame = tracker.update(Patch(10, 30).box(2, 2, 4, 11).view(), 1);
-  EXPECT_EQ(ids_of(frame), Ids{1});
-  EXPECT_EQ(frame.ended.at(0).merged_into, 1);
 }
 
 TEST(ContactTracker, WhatVanishesAndReturnsIsNew) {
@@ -266,20 +249,6 @@ TEST(ContactTracker, TenThousandContactsThatMoveAside) {
       if (first.empty()) first = ids_of(frame);
       EXPECT_EQ(ids_of(frame), first) << step;
     }
-  }
-}
-
-/// A reach that holds all of them at once.
-TEST(ContactTracker, ThousandsWithinReach) {
-  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 1000});
-  for (int i = 0; i < 2; ++i) {
-    Patch patch(200, 200);
-    for (int contact = 0; contact < 2500; ++contact) {
-      patch.box(contact / 50 * 4 + i, contact % 50 * 4, 1, 1);
-    }
-    const FrameContacts& frame = tracker.update(patch.view(), i);
-    EXPECT_EQ(frame.contacts.front().track_id, 1);
-    EXPECT_EQ(frame.contacts.back().track_id, 2500);
   }
 }
 

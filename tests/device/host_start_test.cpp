@@ -117,23 +117,5 @@ TEST(HostStart, AProcessorMayEndOrMoveWhileItCompiles) {
   expect_solved(moved.receive(), plan, frame);
 }
 
-TEST(HostStart, ServesPlansWhoseFramesTheHostSolvesAlone) {
-  EXPECT_TRUE(starts_on_host(unseen_plan()));
-  const auto serves = [](auto change) {
-    SolverPlan plan = unseen_plan();
-    change(plan);
-    return starts_on_host(plan);
-  };
-  EXPECT_FALSE(serves([](SolverPlan& plan) { plan.angles = true; }));
-  EXPECT_FALSE(serves([](SolverPlan& plan) { plan.baseline_rate = 0.1; }));
-  EXPECT_FALSE(serves([](SolverPlan& plan) { plan.estimator = Estimator::paper; }));
-  EXPECT_FALSE(serves([](SolverPlan& plan) { plan.estimator = Estimator::contact; }));
-  EXPECT_FALSE(serves([](SolverPlan& plan) {
-    const std::vector<float> pattern(plan.skin.sensels());
-    plan.calibration.bend_x = plan.calibration.bend_y = plan.calibration.bend_xy = pattern;
-  }));
-  EXPECT_FALSE(serves([](SolverPlan& plan) { plan.calibration.effects.memory.emplace(); }));
-}
-
 }  // namespace
 }  // namespace pillarfield

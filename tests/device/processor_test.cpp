@@ -226,14 +226,6 @@ INSTANTIATE_TEST_SUITE_P(FurtherPaths, OtherStages,
                                          Path{SenselType::f32, 16, Memory::staged}),
                          name_of_path);
 
-TEST(Processor, SolvesAMillionPillarsBitForBit) {
-  const SolverPlan plan = bare_plan(2048, 2048, SenselType::u8);
-  Processor processor(test_device(), plan);
-  const RandomFrame frame(plan, 0, 1);
-  processor.submit(frame.view());
-  expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
-}
-
 TEST(Processor, EverySizeUpToTwiceTheLanesIsSolved) {
   const bool is_host = test_device().info().type == "host";
   for (std::uint32_t cols = is_host ? 4 : 2; cols <= 70; ++cols) {
@@ -304,38 +296,6 @@ TEST(Processor, SharedMemoryIsReadInPlace) {
     const ForceFieldView forces = processor.receive();
     EXPECT_EQ(forces.normal.data(), place) << "the result moved";
     EXPECT_FLOAT_EQ(forces.normal[0], static_cast<float>(reading) / 320);
-  }
-}
-
-TEST(Processor, AnglesAreThoseOfTheForces) {
-  SolverPlan plan = full_plan(40, 74, SenselType::u8, 5);
-  plan.angles = true;
-  for (const int lanes : {1, 16}) {
-    Processor processor(test_device(), plan, {}, {.lanes = lanes});
-    const RandomFrame frame(plan, 0, 4);
-    processor.submit(frame.view());
-    const ForceFieldView forces = processor.receive();
-    expect_same_bits({forces.rows,
-                      forces.cols,
-                      forces.shear_x,
-                      forces.shear_y,
-                      forces.normal,
-                      forces.status,
-                      {},
-                      {},
-                      {},
-                      {}},
-                     solve_on_host(plan, frame.view()).view());
-    ASSERT_EQ(forces.theta.size(), forces.normal.size());
-    for (std::size_t i = 0; i < forces.normal.size(); ++i) {
-      const double x = forces.shear_x[i];
-      const double y = forces.shear_y[i];
-      const double shear = std::hypot(x, y);
-      const double phi = shear > 0 ? std::atan2(-y, -x) : 0;
-      EXPECT_FLOAT_EQ(forces.magnitude[i], static_cast<float>(std::hypot(shear, forces.normal[i])));
-      EXPECT_FLOAT_EQ(forces.theta[i], static_cast<float>(std::atan2(shear, forces.normal[i])));
-      EXPECT_NEAR(forces.phi[i], phi, 1e-6);
-    }
   }
 }
 
@@ -461,26 +421,6 @@ TEST(SetTare, EqualsAPlanWithThatTare) {
     }
     EXPECT_EQ(retared.tare(), after);
   }
-}
-
-/// Blocks that were idle under the tare before, and are skipped, become active under a lower one.
-TEST(SetTare, MakesIdleBlocksActive) {
-  SolverPlan plan = bare_plan(64, 94, SenselType::u8);
-  plan.skin.threshold_counts = 5;
-  plan.calibration.tare.assign(plan.skin.sensels(), 20);
-  Processor processor(test_device(), plan);
-  FrameBuffer frame(SenselType::u8, plan.skin.rows, plan.skin.cols);
-  std::ranges::fill(frame.bytes(), std::byte{22});
-  for (int i = 0; i < 4; ++i) {
-    processor.submit(frame.view());
-    EXPECT_EQ(processor.receive().normal[0], 0);
-  }
-  plan.calibration.tare.assign(plan.skin.sensels(), 10);
-  processor.set_tare(plan.calibration.tare);
-  processor.submit(frame.view());
-  const ForceFieldView forces = processor.receive();
-  EXPECT_GT(forces.normal[0], 0);
-  expect_same_bits(forces, solve_on_host(plan, frame.view()).view());
 }
 
 TEST(SetTare, RefusesWhatIsNoTare) {

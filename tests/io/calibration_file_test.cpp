@@ -150,22 +150,6 @@ TEST(CalibrationFile, HoldsTheLimitsOfAPlane) {
   expect_equal(read_calibration_file(directory / "cal.h5"), calibration);
 }
 
-TEST(CalibrationFile, AFailureLeavesTheOldOne) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "cal.h5";
-  write_calibration_file(path, full_calibration());
-  const std::string before = bytes_of(path);
-  SkinCalibration wrong = full_calibration();
-  wrong.planes.gain[13] = 0;
-  EXPECT_TRUE(has_all(error_of([&] { write_calibration_file(path, wrong); }),
-                      {path.string(), "gain", "row 1, column 5"}));
-  EXPECT_EQ(bytes_of(path), before);
-  EXPECT_EQ(directory.names(), Names{"cal.h5"});
-  EXPECT_TRUE(has_all(
-      error_of([&] { write_calibration_file(directory / "no/cal.h5", full_calibration()); }),
-      {"no/cal.h5"}));
-}
-
 TEST(CalibrationFile, RefusesOtherFormats) {
   const TemporaryDirectory directory;
   const auto path = directory / "cal.h5";

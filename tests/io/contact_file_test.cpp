@@ -58,13 +58,6 @@ void write_forces(const std::filesystem::path& path, std::uint64_t frames) {
   sink->finish();
 }
 
-TEST(ContactColumns, HaveNamesOfTheirOwn) {
-  std::set<std::string> names;
-  for (const auto& column : identity_columns()) EXPECT_TRUE(names.insert(column.name).second);
-  for (const auto& column : quantity_columns(true)) EXPECT_TRUE(names.insert(column.name).second);
-  EXPECT_EQ(names.size(), 34);
-}
-
 TEST(ContactColumns, SetWhatTheyGet) {
   ContactQuantities expected = sample_quantities(3);
   ContactQuantities set;
@@ -187,22 +180,6 @@ TEST(ContactSink, RefusesWhatItCannotWrite) {
     EXPECT_TRUE(
         has_all(error_of([&] { sink->append({.contacts = &found}); }), {name, "is finished"}));
     EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {name, "is finished"}));
-  }
-}
-
-TEST(ContactSink, KeepsTheOldFileUntilItIsFinished) {
-  for (const std::string name : {"c.csv", "c.json"}) {
-    const TemporaryDirectory directory;
-    write_bytes(directory / name, "old");
-    {
-      const auto sink = create_contact_sink(directory / name, sample_info(), Replace::anything);
-      const FrameContacts found = sample_contacts(3);
-      sink->append({.contacts = &found});
-      EXPECT_EQ(bytes_of(directory / name), "old");
-      EXPECT_EQ(directory.names(), (Names{name, name + ".part"}));
-    }
-    EXPECT_EQ(directory.names(), Names{name});
-    EXPECT_EQ(bytes_of(directory / name), "old");
   }
 }
 

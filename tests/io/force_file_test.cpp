@@ -282,31 +282,6 @@ TEST(ForceSink, RefusesFramesThatDoNotFitAndGoesOn) {
   }
 }
 
-TEST(ForceSink, KeepsTheOldFileUntilItIsFinishedAndCleansUp) {
-  for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
-    const TemporaryDirectory directory;
-    write_bytes(directory / name, "precious");
-    {
-      const auto sink = create_force_sink(directory / name, info_of(2, 3), Replace::anything);
-      sink->append({.forces = Field(0, 2, 3).view()});
-    }
-    EXPECT_EQ(directory.names(), Names{name});
-    EXPECT_EQ(bytes_of(directory / name), "precious");
-  }
-}
-
-TEST(ForceSink, LeavesAnHdf5PartWithFlushedFrames) {
-  const TemporaryDirectory directory;
-  {
-    const auto sink = create_force_sink(directory / "f.h5", info_of(2, 3));
-    for (std::uint64_t index = 0; index < 20; ++index) {
-      sink->append({.forces = Field(index, 2, 3).view()});
-    }
-  }
-  EXPECT_EQ(directory.names(), Names{"f.h5.part"});
-  EXPECT_GE(ForceFileReader(directory / "f.h5.part").frames(), 16u);
-}
-
 TEST(ForceFileReader, RefusesOtherFiles) {
   const TemporaryDirectory directory;
   Skin skin;

@@ -296,66 +296,6 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   EXPECT_EQ(directory.names(), Names{"a.csv"});
 }
 
-TEST(OutputFile, ByDefaultReplacesOnlyResultsOfItsKind) {
-  const TemporaryDirectory directory;
-  const fs::path path = directory / "a.csv";
-  const auto refused = [&](const char* words) {
-    const std::string before = bytes_of(path);
-    const std::string error = error_of([&] { write_text(path, "new", Replace::results); });
-    EXPECT_TRUE(has_all(error, {"a.csv", words, "--overwrite"}));
-    EXPECT_TRUE(bytes_of(path) == before);
-    EXPECT_EQ(directory.names(), Names{"a.csv"});
-    fs::remove(path);
-  };
-  write_text(path, kTableHead, Replace::results);
-  EXPECT_TRUE(has_all(error_of([&] { write_text(path, "new", Replace::nothing); }), {"exists"}));
-  write_text(path, kTableHead, Replace::results);
-  write_bytes(path, "");
-  write_text(path, kTableHead, Replace::results);
-  write_bytes(path, "my,own,notes\n");
-  refused("not an earlier output");
-  write_bytes(path, "\x89PNG\r\n\x1a\n and more");
-  refused("is a picture");
-  write_recording(path, 1);
-  refused("holds a recording");
-  write_calibration_file(path, small_calibration());
-  refused("holds a calibration");
-  write_bytes(path, "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
-  refused("Tekscan");
-  write_some_forces(directory / "f.h5", 1);
-  fs::rename(directory / "f.h5", path);
-  refused("holds force fields");
-  write_recording(path, 1);
-  write_text(path, "new", Replace::anything);
-  EXPECT_EQ(bytes_of(path), "new");
-}
-
-TEST(OutputFile, EveryFormatReplacesItsOwnKind) {
-  const TemporaryDirectory directory;
-  for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
-    write_some_forces(directory / name, 1);
-    write_some_forces(directory / name, 2);
-    write_bytes(directory / name, "rubbish");
-    EXPECT_TRUE(
-        has_all(error_of([&] { write_some_forces(directory / name, 1); }), {name, "exists"}));
-    write_some_forces(directory / name, 1, Replace::anything);
-  }
-}
-
-TEST(OutputFile, RecordingsAndCalibrationsAreReplacedOnlyWithOverwrite) {
-  const TemporaryDirectory directory;
-  write_recording(directory / "r.h5", 2);
-  EXPECT_TRUE(has_all(error_of([&] { begin_recording(directory / "r.h5"); }),
-                      {"r.h5", "exists and holds a recording", "--overwrite"}));
-  write_recording(directory / "r.h5", 3);
-  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 3u);
-  const SkinCalibration calibration = small_calibration();
-  write_calibration_file(directory / "c.h5", calibration);
-  EXPECT_TRUE(has_all(error_of([&] { write_calibration_file(directory / "c.h5", calibration); }),
-                      {"c.h5", "exists and holds a calibration", "--overwrite"}));
-  write_calibration_file(directory / "c.h5", calibration, Replace::anything);
-}
-
 TEST(OutputFile, AFileCreatedMeanwhileIsNotReplaced) {
   const TemporaryDirectory directory;
   RecordingWriter writer = begin_recording(directory / "r.h5");
@@ -456,34 +396,6 @@ TEST(OutputFile, APartThatGrowsIsWrittenToTheDiskAtIntervals) {
   file.sync_at_intervals(std::chrono::seconds(0));
   file.commit();  // waits for it
   EXPECT_EQ(disk_calls(), (Names{"file", "file", "rename", "folder"}));
-}
-
-TEST(CheckOutputs, InputsAreNeverOutputs) {
-  const TemporaryDirectory directory;
-  const fs::path input = directory / "in.csv";
-  write_bytes(input, kTableHead);
-  write_bytes(directory / "in2.csv", kTableHead);
-  fs::create_symlink("in.csv", directory / "link.csv");
-  fs::create_hard_link(input, directory / "hard.csv");
-  fs::create_directory(directory / "folder");
-  fs::create_directory_symlink(".", directory / "here");
-  for (const char* name : {"in.csv", "link.csv", "hard.csv", "folder/../in.csv", "./in.csv",
-                           "here/in.csv", "here/here/link.csv"}) {
-    for (const Replace replace : {Replace::results, Replace::anything}) {
-      const std::string error = error_of([&] {
-        check_outputs({"", directory / "absent", directory / "in2.csv", input},
-                      {{directory / name, OutputKind::forces}}, replace);
-      });
-      EXPECT_TRUE(has_all(error, {name, "is a file that is read", "another file"}));
-    }
-  }
-  fs::rename(input, directory / "new.csv.part");
-  EXPECT_TRUE(has_all(error_of([&] {
-                        check_outputs({directory / "link.csv", directory / "new.csv.part"},
-                                      {{directory / "new.csv", OutputKind::forces}},
-                                      Replace::anything);
-                      }),
-                      {"new.csv", "part", "is read"}));
 }
 
 TEST(CheckOutputs, TwoOutputsNeverShareAFile) {

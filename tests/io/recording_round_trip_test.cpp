@@ -275,55 +275,6 @@ TEST(RecordingRoundTrip, WarnsOfRowsAndColumnsWithoutPillars) {
   EXPECT_TRUE(has_all(warnings[1], {"7", "column"}));
 }
 
-TEST(RecordingWriter, LeavesTheOldFileUntilItIsFinished) {
-  const TemporaryDirectory directory;
-  write_bytes(directory / "r.h5", "precious");
-  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {},
-                         {.replace = Replace::anything});
-  writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
-  writer.flush();
-  EXPECT_EQ(bytes_of(directory / "r.h5"), "precious");
-  writer.finish();
-  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 1u);
-}
-
-TEST(RecordingWriter, LeavesAReadablePartWithFrames) {
-  const TemporaryDirectory directory;
-  {
-    RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
-    writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
-  }
-  EXPECT_EQ(directory.names(), Names{"r.h5.part"});
-  EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
-}
-
-TEST(RecordingWriter, LeavesNothingWithoutFrames) {
-  const TemporaryDirectory directory;
-  { const RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {}); }
-  EXPECT_EQ(directory.names(), Names{});
-}
-
-TEST(RecordingWriter, NeverOverwritesAPartThatHoldsFrames) {
-  const TemporaryDirectory directory;
-  {
-    RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
-    writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
-  }
-  const std::string error =
-      error_of([&] { RecordingWriter(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {}); });
-  EXPECT_TRUE(has_all(error, {"r.h5.part", "1 frames", "rename or remove"}));
-  EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
-}
-
-TEST(RecordingWriter, OverwritesAPartWithoutFrames) {
-  const TemporaryDirectory directory;
-  write_bytes(directory / "r.h5.part", "rubbish");
-  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
-  writer.finish();
-  EXPECT_EQ(directory.names(), Names{"r.h5"});
-  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 0u);
-}
-
 TEST(RecordingWriter, WritesOnAfterItWasMoved) {
   const TemporaryDirectory directory;
   RecordingWriter first(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});

@@ -156,34 +156,6 @@ TYPED_TEST(DirectSolveSegment, HasTheExactShearAlongThePressedSide) {
   });
 }
 
-TYPED_TEST(DirectSolveSegment, HasTheHalfWidthsOfTheDesign) {
-  using Real = RealOf<TypeParam>;
-  double worst_theta = 0;
-  double worst_phi = 0;
-  double ratio_theta = 0;
-  double ratio_phi = 0;
-  for (int step = 0; step < 19'000; ++step) {
-    const double ratio = 1 + 0.001 * step;
-    const auto solved =
-        solve<TypeParam>(pillar_of<TypeParam>({static_cast<Real>(ratio), 1, 0, 0}), 1);
-    const auto low = direction_of(solved.low());
-    const auto high = direction_of(solved.high());
-    const double theta = std::abs(static_cast<double>(high.theta) - low.theta) / 2;
-    const double phi = std::abs(static_cast<double>(high.phi) - low.phi) / 2;
-    if (theta > worst_theta) ratio_theta = ratio;
-    if (phi > worst_phi) ratio_phi = ratio;
-    worst_theta = std::max(worst_theta, theta);
-    worst_phi = std::max(worst_phi, phi);
-  }
-  std::printf("half widths: theta %.5f rad at R = %.2f, phi %.5f rad at R = %.2f\n", worst_theta,
-              ratio_theta, worst_phi, ratio_phi);
-  EXPECT_NEAR(worst_theta, std::atan(1 / std::numbers::sqrt2) / 2, 1e-6);
-  EXPECT_NEAR(worst_theta, 0.3077, 1e-4);
-  EXPECT_NEAR(ratio_theta, 1, 1e-3);
-  EXPECT_NEAR(worst_phi, 0.0709, 1e-4);
-  EXPECT_NEAR(ratio_phi, 2, 0.2);
-}
-
 TYPED_TEST(DirectSolveSegment, HoldsTheTruthBehindADeadZone) {
   using Real = RealOf<TypeParam>;
   const Real dead_zone = 20;

@@ -67,41 +67,5 @@ TYPED_TEST(PillarModel, FollowsThetaAndPhiOfThePaper) {
   }
 }
 
-TYPED_TEST(PillarModel, HasTheSignsOfEquationOne) {
-  const auto right = TestFixture::readings_at({1, 0, 0}, 1);
-  EXPECT_GT(right[0] + right[3], right[1] + right[2]);
-  const auto up = TestFixture::readings_at({0, 1, 0}, 1);
-  EXPECT_GT(up[0] + up[1], up[2] + up[3]);
-  const auto pressed = TestFixture::readings_at({0, 0, 1}, 1);
-  for (const auto reading : pressed) EXPECT_EQ(reading, 1);
-}
-
-TYPED_TEST(PillarModel, AQuarterTurnPermutesTheReadings) {
-  using Force = ForceOf<TypeParam>;
-  Random random(2);
-  for (int i = 0; i < 10'000; ++i) {
-    const Force force = TestFixture::random_force(random);
-    const Force turned = {-force.shear_y, force.shear_x, force.normal};
-    const auto before = TestFixture::readings_at(force, 3);
-    const auto after = TestFixture::readings_at(turned, 3);
-    for (std::size_t n = 0; n < 4; ++n) ASSERT_EQ(after[(n + 1) % 4], before[n]);
-  }
-}
-
-TYPED_TEST(PillarModel, AMirrorSwapsLeftAndRight) {
-  using Force = ForceOf<TypeParam>;
-  Random random(3);
-  for (int i = 0; i < 10'000; ++i) {
-    const Force force = TestFixture::random_force(random);
-    const Force mirrored = {-force.shear_x, force.shear_y, force.normal};
-    const auto before = TestFixture::readings_at(force, 3);
-    const auto after = TestFixture::readings_at(mirrored, 3);
-    EXPECT_EQ(after[0], before[1]);
-    EXPECT_EQ(after[1], before[0]);
-    EXPECT_EQ(after[2], before[3]);
-    EXPECT_EQ(after[3], before[2]);
-  }
-}
-
 }  // namespace
 }  // namespace pillarfield

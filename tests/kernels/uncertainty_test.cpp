@@ -319,49 +319,6 @@ TYPED_TEST(DirectionIntervals, AreTheEstimateWhereTheForceIsDetermined) {
   }
 }
 
-TYPED_TEST(DirectionIntervals, HaveTheHalfWidthsOfTheDesign) {
-  using Real = RealOf<TypeParam>;
-  double theta = 0;
-  double phi = 0;
-  for (int i = 0; i <= 4'000; ++i) {
-    const auto ratio = static_cast<Real>(std::pow(10, i / 1'000.0));
-    for (const FourReadings<TypeParam>& readings :
-         {FourReadings<TypeParam>{ratio, 1, 0, 0}, FourReadings<TypeParam>{0, 1, ratio, 0}}) {
-      const Ends<TypeParam> ends(pillar_of<TypeParam>(readings));
-      theta = std::max<double>(theta, (ends.interval.theta_high - ends.interval.theta_low) / 2);
-      phi = std::max(phi, ends.turn_high() / 2);
-    }
-  }
-  EXPECT_NEAR(theta, 0.3077, 5e-5);
-  EXPECT_NEAR(phi, 0.0709, 5e-5 + 1e-6);
-}
-
-/// Coefficients of one have shorter formulas.
-TYPED_TEST(DirectionIntervals, DoNotDependOnTheFormOfTheWeights) {
-  Random random(75);
-  for (int i = 0; i < 100'000; ++i) {
-    const auto pillar = hiding_pillar<TypeParam>(random_truth(random).readings());
-    const Ends<TypeParam> ends(pillar);
-    const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
-    const auto general =
-        direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
-                           solved.scale, {1, 1, false});
-    const auto expect_near = [&](double a, double b) {
-      EXPECT_NEAR(a, b, ends.slack * std::max(1.0, std::abs(b)));
-    };
-    expect_near(static_cast<double>(ends.interval.theta_low),
-                static_cast<double>(general.theta_low));
-    expect_near(static_cast<double>(ends.interval.theta_high),
-                static_cast<double>(general.theta_high));
-    expect_near(static_cast<double>(ends.interval.phi_low), static_cast<double>(general.phi_low));
-    expect_near(static_cast<double>(ends.interval.phi_high), static_cast<double>(general.phi_high));
-    expect_near(static_cast<double>(ends.interval.magnitude_low),
-                static_cast<double>(general.magnitude_low));
-    expect_near(static_cast<double>(ends.interval.magnitude_high),
-                static_cast<double>(general.magnitude_high));
-  }
-}
-
 /// Readings of 30 counts and more are saturated. Where the other sensels do not bound a component,
 /// it is open, and so is the direction; parity recovers one saturated sensel beside three.
 TYPED_TEST(DirectionIntervals, AndDeviationsOfSaturatedPillarsHoldTheTruth) {

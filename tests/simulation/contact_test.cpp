@@ -190,31 +190,6 @@ TEST(Contact, SpinHasTheTorqueOfTheClosedForm) {
   EXPECT_NEAR(torque_of(contact, 0.05), punch, 5e-5 * -punch);
 }
 
-TEST(Contact, ShearStaysWithinFriction) {
-  for (const ClosedFormContact& contact : all_kinds()) {
-    SCOPED_TRACE(kind_of(contact));
-    const ForceField field = field_of(contact, 24);
-    for (std::size_t i = 0; i < field.elements(); ++i) {
-      const double shear = std::hypot(double{field.shear_x[i]}, double{field.shear_y[i]});
-      EXPECT_LE(shear, contact.friction * double{field.normal[i]} + 1e-7) << i;
-      EXPECT_GE(field.normal[i], 0) << i;
-    }
-  }
-}
-
-TEST(Contact, SlidingAndPartialSlipActAlongTheirDirection) {
-  for (ClosedFormContact contact : all_kinds()) {
-    if (tangential_n(contact) == 0) continue;
-    contact.direction_deg = 90;
-    SCOPED_TRACE(kind_of(contact));
-    const ForceField field = field_of(contact, 24);
-    for (std::size_t i = 0; i < field.elements(); ++i) {
-      EXPECT_NEAR(field.shear_x[i], 0, 1e-7F);
-      EXPECT_GE(field.shear_y[i], -1e-7F);
-    }
-  }
-}
-
 TEST(Contact, ARollerSticksAtItsLeadingEdge) {
   ClosedFormContact roller = all_kinds().back();
   roller.direction_deg = 0;
@@ -232,48 +207,6 @@ TEST(Contact, ARollerSticksAtItsLeadingEdge) {
   EXPECT_GT(leading, 0);
 }
 
-TEST(Contact, AMirroredContactHasTheMirroredField) {
-  for (const ClosedFormContact& contact : all_kinds()) {
-    SCOPED_TRACE(kind_of(contact));
-    ClosedFormContact mirrored = contact;
-    mirrored.path.front().x_mm *= -1;
-    mirrored.direction_deg = 180 - contact.direction_deg;
-    mirrored.clockwise = !contact.clockwise;
-    const ForceField here = field_of(contact, 23);
-    const ForceField there = field_of(mirrored, 23);
-    for (std::uint32_t r = 0; r < 23; ++r) {
-      for (std::uint32_t c = 0; c < 23; ++c) {
-        const std::size_t i = std::size_t{r} * 23 + c;
-        const std::size_t j = std::size_t{r} * 23 + 22 - c;
-        EXPECT_NEAR(here.normal[i], there.normal[j], 1e-7F);
-        EXPECT_NEAR(here.shear_x[i], -there.shear_x[j], 1e-7F);
-        EXPECT_NEAR(here.shear_y[i], there.shear_y[j], 1e-7F);
-      }
-    }
-  }
-}
-
-TEST(Contact, ATurnedContactHasTheTurnedField) {
-  for (const ClosedFormContact& contact : all_kinds()) {
-    SCOPED_TRACE(kind_of(contact));
-    ClosedFormContact turned = contact;
-    turned.path.front().x_mm = -contact.path.front().y_mm;
-    turned.path.front().y_mm = contact.path.front().x_mm;
-    turned.direction_deg += 90;
-    const ForceField here = field_of(contact, 23);
-    const ForceField there = field_of(turned, 23);
-    for (std::uint32_t r = 0; r < 23; ++r) {
-      for (std::uint32_t c = 0; c < 23; ++c) {
-        const std::size_t i = std::size_t{r} * 23 + c;
-        const std::size_t j = std::size_t{22 - c} * 23 + r;
-        EXPECT_NEAR(here.normal[i], there.normal[j], 1e-7F);
-        EXPECT_NEAR(here.shear_x[i], there.shear_y[j], 1e-7F);
-        EXPECT_NEAR(here.shear_y[i], -there.shear_x[j], 1e-7F);
-      }
-    }
-  }
-}
-
 TEST(Contact, TheRadiusFollowsTheLoad) {
   ClosedFormContact contact;
   contact.contact_radius_mm = 3;
@@ -283,25 +216,6 @@ TEST(Contact, TheRadiusFollowsTheLoad) {
   EXPECT_DOUBLE_EQ(contact_radius_mm(contact, 8), 6);
   contact.shape = ContactShape::flat_punch;
   EXPECT_DOUBLE_EQ(contact_radius_mm(contact, 8), 3);
-}
-
-TEST(Contact, EightTimesTheLoadIsTheSameFieldOnAGridTwiceAsCoarse) {
-  for (ClosedFormContact contact : all_kinds()) {
-    contact.path = {{0, 0.4, 0.1, 1}};
-    ClosedFormContact heavy = contact;
-    const double growth = contact.shape == ContactShape::cylinder ? 4 : 8;
-    heavy.path = {{0, 0.8, 0.2, growth}};
-    heavy.length_mm *= 2;
-    if (contact.shape == ContactShape::flat_punch) heavy.contact_radius_mm *= 2;
-    SCOPED_TRACE(kind_of(contact));
-    const ForceField light = field_of(contact, 20);
-    const ForceField field = field_of(heavy, 20, 2 * kPitch);
-    for (std::size_t i = 0; i < light.elements(); ++i) {
-      EXPECT_NEAR(double{field.normal[i]}, growth * double{light.normal[i]}, 1e-6);
-      EXPECT_NEAR(double{field.shear_x[i]}, growth * double{light.shear_x[i]}, 1e-6);
-      EXPECT_NEAR(double{field.shear_y[i]}, growth * double{light.shear_y[i]}, 1e-6);
-    }
-  }
 }
 
 TEST(Contact, WhatLiesOutsideThePatchIsLost) {

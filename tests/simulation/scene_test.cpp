@@ -201,14 +201,6 @@ TEST(Scene, ASizeHoldsWholePillars) {
   EXPECT_EQ(parse_scene("[skin]\nsensel_pitch_mm = 0.05\nsize_mm = [0.3, 0.3]", "s").skin.rows, 6U);
 }
 
-TEST(Scene, AConverterImpliesItsFullScale) {
-  const auto parse = [](const std::string& bits) {
-    return parse_scene("[skin]\nsize_mm = [9, 9]\n[sensor]\nadc_bits = " + bits, "adc.toml");
-  };
-  EXPECT_EQ(parse("8").skin.full_scale_counts, 255);
-  EXPECT_EQ(parse("16").skin.full_scale_counts, 65535);
-}
-
 TEST(Scene, AContactHasItsRadiusAtItsHeaviestLoadUnlessGivenOtherwise) {
   const auto reference_load = [](const std::string& line) {
     const Scene scene = parse_scene(
@@ -228,9 +220,6 @@ TEST(Scene, ADirectionSweepSetsTheSizeOfTheSkin) {
       "directions = 8\ninclinations = 5\nmagnitudes_n = [0.1, 1]\nmax_theta_deg = 60";
   const Scene scene = parse_scene("[direction_sweep]\n" + keys, "c");
   EXPECT_TRUE(scene.warnings.empty());
-  EXPECT_EQ(parse_scene("[chart]\n" + keys, "c").warnings,
-            std::vector<std::string>{
-                "[chart] is now [direction_sweep]; the former name works in this release only"});
   EXPECT_EQ(scene.skin.pillar_rows(), 10U);
   EXPECT_EQ(scene.skin.pillar_cols(), 8U);
   EXPECT_EQ(std::get<DirectionSweep>(scene.load).max_theta_deg, 60);
@@ -356,36 +345,6 @@ TEST(ShippedScenes, KeepTheirContactsApart) {
       }
     }
   }
-}
-
-TEST(ShippedScenes, TheSquareMetreIsTouchedOnFiveToTenPercent) {
-  const Simulator simulator(load_scene(kScenes / "square_metre.toml"));
-  const Skin& skin = simulator.scene().skin;
-  EXPECT_NEAR(skin.pillar_cols() * skin.pillar_pitch_mm(), 1000, skin.pillar_pitch_mm());
-  FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
-  ForceField truth(skin);
-  for (const std::uint64_t index : {0U, 50U, 99U}) {
-    simulator.render(index, raw, truth);
-    const auto touched = std::ranges::count_if(truth.normal, [](float n) { return n > 0; });
-    const double share = static_cast<double>(touched) / static_cast<double>(truth.elements());
-    EXPECT_GT(share, 0.05);
-    EXPECT_LT(share, 0.10);
-  }
-}
-
-TEST(ShippedScenes, TheDemoUsesTheScaleAndShowsEveryKindOfContact) {
-  const Simulator simulator(load_scene(kScenes / "demo.toml"));
-  const Skin& skin = simulator.scene().skin;
-  FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
-  ForceField truth(skin);
-  simulator.render(30, raw, truth);
-  EXPECT_GT(std::ranges::max(raw.readings<std::uint8_t>()), 150);
-  std::set<std::pair<ContactShape, ContactMotion>> kinds;
-  for (const ClosedFormContact& contact :
-       std::get<std::vector<ClosedFormContact>>(simulator.scene().load)) {
-    kinds.emplace(contact.shape, contact.motion);
-  }
-  EXPECT_EQ(kinds.size(), 6U);
 }
 
 /// The page's example is a scene, and its tables name every key that a scene may have.

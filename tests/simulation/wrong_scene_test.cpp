@@ -40,7 +40,6 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"sise = 3",
        "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, skin, "
        "direction_sweep, contact, indenter, sensor, surface, time, solver"},
-      {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",
        "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: pillar_leak_edge, "
@@ -51,16 +50,8 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "power_law_reference_counts"},
       {"[sensor]\nnoise_counts = -1",
        "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
-      {"[sensor]\nnoise_counts = nan",
-       "s.toml:3: key 'noise_counts' in [sensor] is nan; allowed: a number in [0, 1000000]"},
       {"[sensor]\nnoise_counts = \"low\"",
        "s.toml:3: key 'noise_counts' in [sensor] is \"low\"; allowed: a number in [0, 1000000]"},
-      {"[sensor]\ngain_spread = 0.3",
-       "s.toml:3: key 'gain_spread' in [sensor] is 0.3; allowed: a number in [0, 0.3)"},
-      {"[sensor]\ndead_share = 1.5",
-       "s.toml:3: key 'dead_share' in [sensor] is 1.5; allowed: a number in [0, 1]"},
-      {"[sensor]\npower_law_exponent = 6\npower_law_reference_counts = 80",
-       "s.toml:3: key 'power_law_exponent' in [sensor] is 6; allowed: a number in [0.2, 5]"},
       {"[sensor]\npower_law_exponent = 1.2",
        "s.toml:2: key 'power_law_reference_counts' in [sensor] is missing; allowed: a number in "
        "[0.001, 1000000]"},
@@ -68,36 +59,16 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:3: key 'response_curve' in [sensor] has an element that is not such a pair; "
        "allowed: a "
        "list of pairs, each a number in (0, 1000000000]"},
-      {"[sensor]\nresponse_curve = [[1, 2], [3, 2]]",
-       "s.toml:3: key 'response_curve' in [sensor] has [3, 2] after [1, 2]; allowed: readings and "
-       "loads that increase"},
       {"[sensor]\nresponse_curve = [[1, 2], [3, 4]]\npower_law_exponent = 2\n"
        "power_law_reference_counts = 9",
        "s.toml:3: key 'response_curve' in [sensor] comes with power_law_exponent; allowed: one of "
        "the two"},
       {"[sensor]\nresponse_curve = [[1, 2]]",
        "s.toml: the response curve has 1 readings and 1 loads; it needs 2 to 64 of each"},
-      {"[sensor]\nshear_coefficient = [1, 0]",
-       "s.toml:3: key 'shear_coefficient' in [sensor] has an element that is 0; allowed: a list of "
-       "2, each a number in [0.1, 10]"},
       {"[sensor]\nwires = { row_ohm = 30 }",
        "s.toml:3: key 'sensel_ohm' in [wires] is missing; allowed: resistance at full scale"},
-      {"[sensor]\nwires = { sensel_ohm = 1, tile = [8.5, 8] }",
-       "s.toml:3: key 'tile' in [wires] has a fraction; allowed: whole numbers, [rows, columns]"},
       {"[sensor]\nwires = { sensel_ohm = 1, row_ohm = 30 }",
        "s.toml: row_per_count is 0.117647; it must lie in [0, 0.1]"},
-      {"[surface]\nbend_spread_counts_mm = 3",
-       "s.toml:2: key 'curvature_per_mm' in [surface] is missing; allowed: a list of 3, [x, y, "
-       "xy], "
-       "each 1/mm"},
-      {"[surface]\nshape = \"torus\"",
-       "s.toml:3: key 'shape' in [surface] is \"torus\"; allowed: \"plane\", \"cylinder\", "
-       "\"sphere\", \"height_map\""},
-      {"[surface]\nshape = \"sphere\"",
-       "s.toml:2: key 'radius_mm' in [surface] is missing; allowed: a number in [-1000000, "
-       "1000000]"},
-      {"[surface]\nshape = \"cylinder\"\nradius_mm = 0.5",
-       "s.toml: the surface's radius_mm is 0.5; its magnitude must lie in [1, 1000000]"},
       {"[surface]\nshape = \"cylinder\"\nradius_mm = 3",
        "s.toml: the skin covers more than a whole cylinder of radius 3 mm; give a radius of at "
        "least "
@@ -108,13 +79,6 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[surface]\nshape = \"height_map\"\nheight_map = \"a.bmp\"",
        "s.toml:4: key 'height_map' in [surface] is \"a.bmp\"; allowed: the path of a .npy or .png "
        "file, from the scene's folder"},
-      {"[surface]\npath = [{ time_s = 1, curvature_per_mm = [2, 0, 0] }]",
-       "s.toml:3: key 'curvature_per_mm' in path of [surface] has an element that is 2; allowed: a "
-       "list of 3, each a number in [-1, 1]"},
-      {"[sensor]\nadc_bits = 8.0",
-       "s.toml:3: key 'adc_bits' in [sensor] is 8; allowed: a whole number from 1 to 16"},
-      {"[sensor]\nadc_bits = 17",
-       "s.toml:3: key 'adc_bits' in [sensor] is 17; allowed: a whole number from 1 to 16"},
       {"[sensor]\nadc_bits = 8\nfull_scale_counts = 256",
        "s.toml:4: key 'full_scale_counts' in [sensor] is 256; allowed: a whole number from 1 to "
        "255"},
@@ -123,27 +87,11 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "threshold_counts, 9"},
       {"[time]\nrate_hz = 0",
        "s.toml:3: key 'rate_hz' in [time] is 0; allowed: a number in [1e-06, 1000000]"},
-      {"[time]\nrate_hz = inf",
-       "s.toml:3: key 'rate_hz' in [time] is inf; allowed: a number in [1e-06, 1000000]"},
-      {"[time]\nframes = 0",
-       "s.toml:3: key 'frames' in [time] is 0; allowed: a whole number from 1 to 100000000"},
-      {"[time]\nseed = -1",
-       "s.toml:3: key 'seed' in [time] is -1; allowed: a whole number from 0 to "
-       "9223372036854775807"},
-      {"[time]\nrecording = 1000000001",
-       "s.toml:3: key 'recording' in [time] is 1000000001; allowed: a whole number from 0 to "
-       "1000000000"},
-      {"[solver]\nbaseline_time_s = 0",
-       "s.toml:3: key 'baseline_time_s' in [solver] is 0; allowed: a number in [1e-06, "
-       "1000000000]"},
       {"[solver]\nestimator = \"magic\"",
-       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "contact", "field")"},
+       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "contact")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
        "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
        "allowed: estimator = \"direct\" or \"contact\""},
-      {"[solver]\nparity_tolerance_counts = true",
-       "s.toml:3: key 'parity_tolerance_counts' in [solver] is true; allowed: a number in [0, "
-       "1e+33]"},
   };
   for (const auto& [text, message] : table) {
     // [skin] given again would be a duplicate, so the size goes into it.
@@ -162,52 +110,28 @@ TEST(WrongScene, SizeOfTheSkin) {
       {"",
        "s.toml: key 'size_mm' in [skin] is missing; allowed: size_mm = [x, y] or pillars = "
        "[rows, columns]"},
-      {"\n[skin]\n",
-       "s.toml:2: key 'size_mm' in [skin] is missing; allowed: size_mm = [x, y] or "
-       "pillars = [rows, columns]"},
-      {"[skin]\nsize_mm = 5",
-       "s.toml:2: key 'size_mm' in [skin] is 5; allowed: a list of 2, each a "
-       "number in (0, 100000000]"},
       {"[skin]\nsize_mm = [5]",
        "s.toml:2: key 'size_mm' in [skin] is a list of 1; allowed: a list "
        "of 2, each a number in (0, 100000000]"},
       {"[skin]\nsize_mm = [\n5,\n-5]",
        "s.toml:4: key 'size_mm' in [skin] has an element that is "
        "-5; allowed: a list of 2, each a number in (0, 100000000]"},
-      {"[skin]\nsize_mm = [5, nan]",
-       "s.toml:2: key 'size_mm' in [skin] has an element that is nan; "
-       "allowed: a list of 2, each a number in (0, 100000000]"},
       {"[skin]\nsize_mm = [1, 9]",
        "s.toml:2: key 'size_mm' in [skin] means 7 x 0 pillars; allowed: "
        "1 to 32767 each way, 25000000 in all"},
-      {"[skin]\nsize_mm = [1e8, 9]",
-       "s.toml:2: key 'size_mm' in [skin] means 7 x 79056941 pillars; "
-       "allowed: 1 to 32767 each way, 25000000 in all"},
       {"[skin]\npillars = [32767, 32767]",
        "s.toml:2: key 'pillars' in [skin] means 32767 x 32767 "
        "pillars; allowed: 1 to 32767 each way, 25000000 in all"},
-      {"[skin]\npillars = [2.5, 3]",
-       "s.toml:2: key 'pillars' in [skin] has a fraction; allowed: "
-       "whole numbers, [rows, columns]"},
       {"[skin]\npillars = [3, 3]\nsize_mm = [9, 9]",
        "s.toml:2: key 'pillars' in [skin] comes with "
        "size_mm; allowed: one of the two"},
       {"[skin]\nsize_mm = [9, 9]\n[direction_sweep]",
        "s.toml:2: key 'size_mm' in [skin] comes with [direction_sweep]; "
        "allowed: no size: the sweep sets it"},
-      {"[direction_sweep]\ndirections = 0",
-       "s.toml:2: key 'directions' in [direction_sweep] is 0; allowed: a whole "
-       "number from 1 to 32767"},
       {"[direction_sweep]\ninclinations = 30000\nmagnitudes_n = [1, 2]",
        "s.toml:2: key 'inclinations' in [direction_sweep] means 60000 x 72 pillars; allowed: 1 to "
        "32767 each "
        "way, 25000000 in all"},
-      {"[direction_sweep]\nmagnitudes_n = []",
-       "s.toml:2: key 'magnitudes_n' in [direction_sweep] is a list of 0; "
-       "allowed: a list, each a number in (0, 1000000]"},
-      {"[direction_sweep]\nmax_theta_deg = 91",
-       "s.toml:2: key 'max_theta_deg' in [direction_sweep] is 91; allowed: a "
-       "number in [0, 90]"},
   };
   for (const auto& [text, message] : table) expect_message(text, message);
 }
@@ -225,12 +149,6 @@ TEST(WrongScene, KeysThatDoNotGoTogether) {
       {"friction = 0.5",
        "s.toml:8: key 'friction' in [[contact]] does not apply to shape = "
        "\"sphere\", motion = \"press\"; allowed: no such key"},
-      {"direction_deg = 5",
-       "s.toml:8: key 'direction_deg' in [[contact]] does not apply to shape = "
-       "\"sphere\", motion = \"press\"; allowed: no such key"},
-      {"length_mm = 5",
-       "s.toml:8: key 'length_mm' in [[contact]] does not apply to shape = "
-       "\"sphere\", motion = \"press\"; allowed: no such key"},
       {"clockwise = true",
        "s.toml:8: key 'clockwise' in [[contact]] is unknown here; allowed: "
        "shape, motion, contact_radius_mm, reference_load_n, path, position_mm, "
@@ -240,9 +158,6 @@ TEST(WrongScene, KeysThatDoNotGoTogether) {
       {"[direction_sweep]",
        "s.toml:8: key 'direction_sweep' in the scene comes with [[contact]]; allowed: one of the "
        "two"},
-      {"radius = 5",
-       "s.toml:8: key 'radius' in [[contact]] is unknown here; allowed: shape, "
-       "motion, contact_radius_mm, reference_load_n, path, position_mm, load_n"},
   };
   for (const auto& [text, message] : table) expect_message(ball(text), message);
 }
@@ -251,23 +166,11 @@ TEST(WrongScene, Contacts) {
   const std::vector<WrongScene> table = {
       {"contact = 5",
        "s.toml:2: key 'contact' in the scene is 5; allowed: a list of tables, [[contact]]"},
-      {"contact = [5]",
-       "s.toml:2: key 'contact' in the scene has an element that is 5; allowed: a list of tables, "
-       "[[contact]]"},
-      {"[[contact]]",
-       "s.toml:2: key 'shape' in [[contact]] is missing; allowed: \"sphere\", "
-       "\"flat_punch\", \"cylinder\""},
-      {"[[contact]]\nshape = \"cube\"",
-       "s.toml:3: key 'shape' in [[contact]] is \"cube\"; allowed: "
-       "\"sphere\", \"flat_punch\", \"cylinder\""},
       {"[[contact]]\nshape = \"cylinder\"",
        R"(s.toml:2: key 'motion' in [[contact]] is missing; allowed: "press", "slide", "roll")"},
       {"[[contact]]\nshape = \"cylinder\"\nmotion = \"spin\"",
        "s.toml:4: key 'motion' in [[contact]] does not go with the shape: shape = \"cylinder\", "
        "motion = \"spin\"; allowed: \"press\", \"slide\", \"roll\""},
-      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"",
-       "s.toml:2: key 'contact_radius_mm' in [[contact]] is missing; allowed: a number in [0.001, "
-       "10000]"},
       {"[[contact]]\nshape = \"flat_punch\"\nmotion = \"press\"\ncontact_radius_mm = "
        "2\nreference_load_n = 1",
        "s.toml:6: key 'reference_load_n' in [[contact]] does not apply to shape = \"flat_punch\", "
@@ -279,22 +182,11 @@ TEST(WrongScene, Contacts) {
       {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\nload_n = 1",
        "s.toml:2: key 'position_mm' in [[contact]] is missing; allowed: a list of 2, [x, y] in "
        "millimetres"},
-      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = []",
-       "s.toml:2: key 'position_mm' in [[contact]] is missing; allowed: a list of 2, [x, y] in "
-       "millimetres"},
       {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
        "{time_s = 1, position_mm = [0, 0], load_n = 1},\n"
        "{time_s = 1, position_mm = [0, 0], load_n = 1}]",
        "s.toml:8: key 'time_s' in path of [[contact]] is 1; allowed: more than that of the key "
        "before, 1"},
-      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
-       "{time_s = 1, position_mm = [0, 0], load_n = -1}]",
-       "s.toml:7: key 'load_n' in path of [[contact]] is -1; allowed: a number in [0, 1000000]"},
-      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
-       "{time_s = 1, position_mm = [0, 0], load_n = 1, speed = 3}]",
-       "s.toml:7: key 'speed' in path of [[contact]] is unknown here; allowed: time_s, "
-       "position_mm, "
-       "load_n"},
   };
   for (const auto& [text, message] : table) expect_message(on_skin(text), message);
 }

@@ -139,74 +139,6 @@ TEST(PillarLeak, ComesBackOrIsRefused) {
 
 // --- Off-centre pressure ---
 
-/// The normal forces of five pillars in a line.
-using Line = std::array<double, 5>;
-
-maths::Lean lean(const Line& n) { return maths::lean_between(n[0], n[1], n[2], n[3], n[4]); }
-
-double moment(const Line& n) { return lean(n).moment; }
-
-Line random_line(std::mt19937& random) {
-  std::uniform_real_distribution<double> force(0, 2);
-  Line line{};
-  for (double& each : line) each = random() % 4 == 0 ? 0 : force(random);
-  line[2] += 1e-3;
-  return line;
-}
-
-TEST(Lean, IsThatOfLinearPressureToFirstOrder) {
-  for (const double slope : {1e-3, -1e-3, 1e-2, 0.1}) {
-    const double exact = 2 * slope / 24;
-    EXPECT_NEAR(moment({1 - 2 * slope, 1 - slope, 1, 1 + slope, 1 + 2 * slope}), exact,
-                std::abs(exact * slope));
-  }
-}
-
-TEST(Lean, IsOddScaleFreeBoundedAndZeroUnderEvenPressure) {
-  std::mt19937 random(4);
-  for (int i = 0; i < 2000; ++i) {
-    const Line line = random_line(random);
-    const auto [far_left, left, own, right, far_right] = line;
-    EXPECT_NEAR(moment(line), -moment({far_right, right, own, left, far_left}), 1e-12);
-    EXPECT_NEAR(moment({7 * far_left, 7 * left, 7 * own, 7 * right, 7 * far_right}),
-                7 * moment(line), 1e-12);
-    EXPECT_NEAR(moment({far_left, left, own, left, far_left}), 0, 1e-12);
-    EXPECT_LE(std::abs(moment(line)), own / 2);
-    EXPECT_GT(lean(line).deviation, 0);
-  }
-  EXPECT_EQ(moment({1, 1, 0, 2, 2}), 0);
-  EXPECT_EQ(moment({0, 0, 1, 0, 0}), 0);
-}
-
-/// Normal forces and the moment over the pitch of the middle pillar of a constant pressure between
-/// two ends, in pillars from its axis.
-std::pair<Line, double> strip(double from, double to) {
-  Line line{};
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const double at = static_cast<double>(i) - 2;
-    const double low = std::max(from, at - 0.5);
-    const double high = std::min(to, at + 0.5);
-    line[i] = std::max(0.0, high - low);
-  }
-  const double low = std::max(from, -0.5);
-  const double high = std::min(to, 0.5);
-  return {line, (high * high - low * low) / 2};
-}
-
-/// Central differences leave 0.6 of the moment under the edge of a constant pressure.
-TEST(Lean, FollowsAnEdgeWithinThePillar) {
-  double left = 0;
-  double whole = 0;
-  for (int step = -9; step <= 9; ++step) {
-    const double edge = 0.05 * step;
-    const auto [line, exact] = strip(edge, 9);
-    left += (moment(line) - exact) * (moment(line) - exact);
-    whole += exact * exact;
-    EXPECT_GT(moment(line), 0) << edge;
-  }
-  EXPECT_LT(left, 0.35 * 0.35 * whole);
-}
-
 /// The sensels read the moment over the arm as shear, + towards the higher pressure.
 TEST(Lean, IsTakenFromTheShear) {
   constexpr std::uint32_t kSide = 9;
@@ -286,69 +218,6 @@ TEST(Lean, DoesNotFlagPillarsWithAnUnknownSensel) {
 }
 
 // --- The ratio of shear to normal force ---
-
-maths::WeightedRatio ratio_of(double value, double variance, bool informs = true) {
-  return maths::shear_ratio(value, 1, {0, 0}, 5, std::sqrt(variance), informs);
-}
-
-/// The mean of a pillar with those beside it.
-maths::ShearRatio mean_of(const maths::WeightedRatio& own,
-                          const std::vector<maths::WeightedRatio>& around) {
-  maths::RatioSum sum{};
-  for (const auto& other : around) {
-    sum = maths::add_ratios(sum, maths::ratio_part(own.own.value, other.own.value, other.beside));
-  }
-  return maths::mean_ratio(own.own, sum);
-}
-
-TEST(ShearRatio, IsTheMeanOfLeastVariance) {
-  std::mt19937 random(6);
-  std::uniform_real_distribution<double> value(-2, 2);
-  std::uniform_real_distribution<double> variance(1e-4, 1);
-  for (int i = 0; i < 200; ++i) {
-    const double own_value = value(random);
-    const double own_variance = variance(random);
-    double weights = 1 / own_variance;
-    double sum = weights * own_value;
-    double squares = sum * own_value;
-    std::vector<maths::WeightedRatio> around;
-    while (around.size() < 8) {
-      const double other = value(random);
-      const double other_variance = variance(random);
-      around.push_back(ratio_of(other, other_variance));
-      EXPECT_NEAR(around.back().diagonal, 1 / (other_variance + 0.18), 1e-12);
-      weights += 1 / (other_variance + 0.09);
-      sum += other / (other_variance + 0.09);
-      squares += other * other / (other_variance + 0.09);
-    }
-    const maths::ShearRatio mean = mean_of(ratio_of(own_value, own_variance), around);
-    EXPECT_NEAR(mean.value, sum / weights, 1e-12);
-    // It grows with what the pillars disagree by.
-    const double disagreement = squares - sum * sum / weights;
-    EXPECT_NEAR(mean.variance, (1 + 2 * disagreement) / weights, 1e-9);
-  }
-}
-
-TEST(ShearRatio, IsItsOwnWhereItIsCertainOrNoOtherPillarInforms) {
-  EXPECT_NEAR(mean_of(ratio_of(0.7, 1e-9), {8, ratio_of(-1, 1e-4)}).value, 0.7, 1e-6);
-  for (const bool informs : {true, false}) {
-    const maths::WeightedRatio own = ratio_of(0.7, 0.1, informs);
-    const maths::ShearRatio mean = mean_of(own, {8, ratio_of(-1, 1e-4, false)});
-    EXPECT_EQ(mean.value, 0.7);
-    EXPECT_NEAR(mean.variance, 0.1, 1e-15);
-    EXPECT_LT(mean_of(own, {8, ratio_of(-1, 1e-4)}).value, 0);
-  }
-  EXPECT_EQ(maths::shear_ratio(-1, 0, {0, 0}, 5, 0.1, true).beside, 0);
-}
-
-TEST(ShearRatio, OfNextToNoForceTellsNothing) {
-  for (const double normal : {0.0, 1e-30, 1e-300}) {
-    const maths::WeightedRatio ratio = maths::shear_ratio(normal, normal, {0, 0}, 5, 1e-3, true);
-    const maths::ShearRatio mean = mean_of(ratio_of(0.7, 0.1), {8, ratio});
-    EXPECT_NEAR(mean.value, 0.7, 1e-9);
-    EXPECT_TRUE(std::isfinite(mean_of(ratio, {8, ratio}).value));
-  }
-}
 
 /// A constant pressure with an edge at an angle, or a stripe of it, and a shear of 0.3 of it.
 struct EdgedPressure {
@@ -502,18 +371,6 @@ TEST(CorrectedInterval, HoldsTheSegmentAndReachesItsEnds) {
     EXPECT_NEAR(interval.magnitude_low, low, 2e-3);
     EXPECT_NEAR(interval.magnitude_high, high, 2e-2);
     EXPECT_GE(interval.magnitude_high, high - 1e-9);
-  }
-}
-
-TEST(CorrectedInterval, IsAPointWhereTheForceIsDetermined) {
-  const maths::Force force = {0.3, -0.2, 1};
-  const auto direction = maths::direction_of(force);
-  for (const int bits : {15, 7, 11, 13, 14}) {
-    const auto interval = maths::corrected_interval(
-        {}, force, direction, static_cast<maths::Bits>(bits), kSegmentPoint, 0.1, {1, 1, true});
-    EXPECT_EQ(interval.theta_low, direction.theta);
-    EXPECT_EQ(interval.phi_high, direction.phi);
-    EXPECT_EQ(interval.magnitude_low, direction.magnitude);
   }
 }
 

@@ -163,21 +163,6 @@ TEST_F(QueuedSinkTest, KeepsTheOrderOfManyFrames) {
   }
 }
 
-TEST(FrameCopy, KeepsItsMemory) {
-  ForceField field(10, 10);
-  SolvedFrame frame;
-  frame.forces = field.view();
-  FrameCopy copy;
-  EXPECT_EQ(copy.capacity(), 0u);
-  copy.assign(frame, {.forces = true});
-  EXPECT_EQ(copy.capacity(), bytes_of(frame, {.forces = true}));
-  const float* const memory = copy.frame().forces.normal.data();
-  copy.assign(frame, {.forces = true});
-  EXPECT_EQ(copy.frame().forces.normal.data(), memory);
-  copy.release();
-  EXPECT_EQ(copy.capacity(), 0u);
-}
-
 TEST_F(QueuedSinkTest, StopsAtAFailure) {
   open({.frames = 10, .bytes = kUnlimited});
   log_.consume = [](const SolvedFrame& frame) {
@@ -224,79 +209,6 @@ TEST_F(QueuedSinkTest, PassesReportsOn) {
   sink_->finish();
   sink_->report({});
   EXPECT_EQ(log_.reports, 1u);
-}
-
-TEST(FrameCopy, CopiesThePartsThatAreWanted) {
-  ForceField field(2, 3);
-  field.shear_y[4] = 7;
-  field.status[5] = 3;
-  const std::vector<std::uint16_t> readings = {1, 2, 99, 3, 4, 99};  // rows of 2, a stride of 3
-  FrameContacts contacts;
-  contacts.contacts.resize(2);
-  contacts.contacts[1].track_id = 8;
-  const std::vector<SenselBlock> missing = {{1, 2, 3, 4}};
-  SolvedFrame frame;
-  frame.forces = field.view();
-  frame.contacts = &contacts;
-  frame.readings = {readings.data(), SenselType::u16, 2, 2, 3};
-  frame.missing = missing;
-  frame.time_s = 0.5;
-
-  FrameCopy copy;
-  copy.assign(frame, {.forces = true, .contacts = true, .readings = true});
-  contacts.contacts.clear();
-  field.shear_y[4] = 0;
-  const SolvedFrame& copied = copy.frame();
-  EXPECT_EQ(copied.time_s, 0.5);
-  EXPECT_EQ(copied.forces.rows, 2u);
-  EXPECT_EQ(copied.forces.shear_y[4], 7);
-  EXPECT_EQ(copied.forces.status[5], 3);
-  EXPECT_TRUE(copied.forces.theta.empty());
-  EXPECT_EQ(copied.contacts->contacts.at(1).track_id, 8u);
-  EXPECT_EQ(copied.missing[0].cols, 4u);
-  ASSERT_EQ(copied.readings.row_stride, 2u);
-  const auto* const values = static_cast<const std::uint16_t*>(copied.readings.data);
-  EXPECT_EQ(std::vector<std::uint16_t>(values, values + 4),
-            (std::vector<std::uint16_t>{1, 2, 3, 4}));
-
-  copy.assign(frame, {.contacts = true});
-  EXPECT_TRUE(copy.frame().forces.normal.empty());
-  EXPECT_EQ(copy.frame().readings.data, nullptr);
-  EXPECT_NE(copy.frame().contacts, nullptr);
-}
-
-FrameContacts contacts_of(const std::vector<std::uint64_t>& tracks) {
-  FrameContacts contacts;
-  for (const std::uint64_t track : tracks) {
-    contacts.contacts.emplace_back().track_id = track;
-  }
-  return contacts;
-}
-
-TEST(ContactSlots, KeepTheirContacts) {
-  ContactSlots slots;
-  const auto tracks = [](const auto& all, std::size_t count) {
-    std::vector<std::uint64_t> ids;
-    for (std::size_t i = 0; i < count; ++i) {
-      ids.push_back(all[i].contact != nullptr ? all[i].contact->track_id : 0);
-    }
-    return ids;
-  };
-  using Ids = std::vector<std::uint64_t>;
-  const FrameContacts first = contacts_of({5, 9, 7});
-  EXPECT_EQ(tracks(slots.update(first), 4), (Ids{5, 9, 7, 0}));
-  const FrameContacts second = contacts_of({7, 5});
-  const auto& after = slots.update(second);
-  EXPECT_EQ(tracks(after, 4), (Ids{5, 0, 7, 0}));
-  EXPECT_TRUE(after[1].ended);
-  EXPECT_FALSE(after[0].ended);
-  const FrameContacts third = contacts_of({11, 7, 12});
-  EXPECT_EQ(tracks(slots.update(third), 4), (Ids{11, 12, 7, 0}));
-
-  std::vector<std::uint64_t> many(40);
-  for (std::size_t i = 0; i < many.size(); ++i) many[i] = 100 + i;
-  const FrameContacts crowd = contacts_of(many);
-  for (const auto& slot : slots.update(crowd)) EXPECT_NE(slot.contact, nullptr);
 }
 
 }  // namespace

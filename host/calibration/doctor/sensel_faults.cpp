@@ -1,18 +1,124 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/finding_text.h"
-#include "calibration/doctor/lying_signals.h"
 
 namespace pillarfield {
 namespace {
+
+/// The signals of a frame with a contact, by the places of the sensels, and what a place must show
+/// of the contact if its neighbours are right.
+class LyingSignals {
+ public:
+  LyingSignals(const Examination& seen, std::uint32_t frame);
+
+  [[nodiscard]] float of(std::size_t sensel) const { return signals_[sensel]; }
+
+  /// What three quarters of the good neighbours exceed; 0 with fewer than three of them.
+  [[nodiscard]] float least_under_contact(std::uint32_t row, std::uint32_t col) const;
+
+  /// The same for one small contact, without holes: what lies between two loaded neighbours is
+  /// loaded, and what lies beside its peak.
+  [[nodiscard]] float least_under_small_contact(std::uint32_t row, std::uint32_t col) const;
+
+ private:
+  /// The signal of a good sensel at a place; null if there is none.
+  [[nodiscard]] const float* at(std::uint32_t row, std::uint32_t col) const;
+  /// Half of what a Gaussian of the peak's other neighbours has there: flank² / opposite, at most
+  /// flank.
+  [[nodiscard]] float least_beside_peak(std::uint32_t row, std::uint32_t col) const;
+
+  const Examination& seen_;
+  std::span<const float> signals_;
+  SenselPlace peak_;
+};
+
+/// Steps down and to the right, modulo 2^32.
+struct SenselStep {
+  std::uint32_t down;
+  std::uint32_t right;
+};
+constexpr std::uint32_t kBack = ~0U;
+/// One of each opposite pair of neighbours; the first two share an edge with the sensel.
+constexpr std::array<SenselStep, 4> kPairs = {{{0, 1}, {1, 0}, {1, 1}, {1, kBack}}};
+constexpr std::array<SenselStep, 4> kSides = {{{0, 1}, {1, 0}, {0, kBack}, {kBack, 0}}};
+/// Part of a round contact's signal that is expected, and share of its peak from which it is flat.
+constexpr float kBesidePeak = 0.5F;
+constexpr float kFlat = 0.85F;
+
+LyingSignals::LyingSignals(const Examination& seen, std::uint32_t frame)
+    : seen_(seen), signals_(std::as_const(seen.kept).frame(frame)) {
+  float most = 0;
+  for (std::uint32_t row = 0; row < seen.rows; ++row) {
+    for (std::uint32_t col = 0; col < seen.cols; ++col) {
+      const float* const signal = at(row, col);
+      if (signal == nullptr || *signal <= most) continue;
+      most = *signal;
+      peak_ = {row, col};
+    }
+  }
+}
+
+const float* LyingSignals::at(std::uint32_t row, std::uint32_t col) const {
+  if (row >= seen_.rows || col >= seen_.cols) return nullptr;
+  const std::size_t i = seen_.sensel_lying_at(row, col);
+  return seen_.good[i] != 0 ? &signals_[i] : nullptr;
+}
+
+float LyingSignals::least_under_contact(std::uint32_t row, std::uint32_t col) const {
+  std::array<float, 8> around{};
+  std::size_t count = 0;
+  for (const auto& [down, right] : kPairs) {
+    for (const float* const signal : {at(row + down, col + right), at(row - down, col - right)}) {
+      if (signal != nullptr) around.at(count++) = *signal;
+    }
+  }
+  if (count < 3) return 0;
+  const std::size_t rank = (3 * count + 3) / 4 - 1;
+  std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(rank),
+                   around.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
+  return around.at(rank);
+}
+
+float LyingSignals::least_under_small_contact(std::uint32_t row, std::uint32_t col) const {
+  float least = least_beside_peak(row, col);
+  for (const auto& [down, right] : kPairs) {
+    const float* const one = at(row + down, col + right);
+    const float* const other = at(row - down, col - right);
+    if (one != nullptr && other != nullptr) least = std::max(least, std::min(*one, *other));
+  }
+  return least;
+}
+
+float LyingSignals::least_beside_peak(std::uint32_t row, std::uint32_t col) const {
+  const std::uint32_t down = row - peak_.first;
+  const std::uint32_t right = col - peak_.second;
+  const bool is_beside = std::ranges::any_of(
+      kSides, [&](const SenselStep& step) { return step.down == down && step.right == right; });
+  if (!is_beside) return 0;
+  const float peak = *at(peak_.first, peak_.second);
+  const float* const opposite = at(peak_.first - down, peak_.second - right);
+  float flank = std::numeric_limits<float>::infinity();
+  for (const float* const signal : {at(peak_.first + right, peak_.second + down),
+                                    at(peak_.first - right, peak_.second - down)}) {
+    if (signal != nullptr) flank = std::min(flank, *signal);
+  }
+  const bool is_peaked = opposite != nullptr && *opposite < kFlat * peak && flank < kFlat * peak;
+  if (!is_peaked || flank <= 0) return 0;
+  return *opposite <= flank ? kBesidePeak * flank : kBesidePeak * flank * flank / *opposite;
+}
 
 /// Least share of sensels that must vary for a constant one to be stuck.
 constexpr double kMostVary = 0.8;

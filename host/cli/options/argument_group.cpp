@@ -2,21 +2,10 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "base/nearest_word.h"
 
 namespace pillarfield::cli {
-
-void note_former_name(const std::string& former, const std::string& name) {
-  fmt::print(stderr, "pillarfield: '{}' is now '{}'; the former name works in this release only\n",
-             former, name);
-}
-
-void add_former_option(CLI::App* command, const std::string& name, const std::string& note) {
-  const auto print = [note](const std::string&) { fmt::print(stderr, "pillarfield: {}\n", note); };
-  command->add_option_function<std::string>(name, print, note)->group("");
-}
 
 CLI::Validator number_in(double least, double most) {
   const auto error_of = [=](const std::string& text) -> std::string {
@@ -42,9 +31,9 @@ CLI::Validator whole_number_in(std::uint64_t least, std::uint64_t most) {
   return {error_of, ""};
 }
 
-CLI::Validator one_of(const std::vector<std::string>& words, const std::string& former) {
+CLI::Validator one_of(const std::vector<std::string>& words, const std::string& hidden) {
   const auto error_of = [=](const std::string& text) -> std::string {
-    if (text == former || std::ranges::find(words, text) != words.end()) return {};
+    if (text == hidden || std::ranges::find(words, text) != words.end()) return {};
     return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
                        suggestion(text, words));
   };

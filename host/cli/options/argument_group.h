@@ -18,12 +18,6 @@ namespace pillarfield::cli {
 
 inline constexpr double kAny = std::numeric_limits<double>::max();
 
-/// Prints that a former name works in this release only.
-void note_former_name(const std::string& former, const std::string& name);
-
-/// Adds an option that has no effect any more: its value is dropped, and `note` printed.
-void add_former_option(CLI::App* command, const std::string& name, const std::string& note);
-
 /// Accepts a finite number in [least, most]; CLI::Range also accepts NaN.
 CLI::Validator number_in(double least, double most);
 
@@ -31,8 +25,8 @@ CLI::Validator number_in(double least, double most);
 /// number, too many digits as the largest, and "010" as eight.
 CLI::Validator whole_number_in(std::uint64_t least, std::uint64_t most);
 
-/// Accepts one of `words`, and `former`.
-CLI::Validator one_of(const std::vector<std::string>& words, const std::string& former = "");
+/// Accepts one of `words`, and `hidden`, which messages do not name.
+CLI::Validator one_of(const std::vector<std::string>& words, const std::string& hidden = "");
 
 /// Refuses "-".
 CLI::Validator no_stream();
@@ -76,22 +70,19 @@ class Group {
         ->group(heading_);
   }
 
-  /// Adds an option that sets `target` to the value of a word; `former` is a former name of `word`.
+  /// Adds an option that sets `target` to the value of a word.
   template <class Value, class Target>
   CLI::Option* choice(const std::string& name, Target& target,
                       const std::vector<std::pair<std::string, Value>>& choices,
-                      const char* description, const std::string& former = "",
-                      const std::string& word = "") {
+                      const char* description) {
     std::vector<std::string> words(choices.size());
     std::ranges::transform(choices, words.begin(), &std::pair<std::string, Value>::first);
     const auto assign = [=, &target](const std::string& given) {
-      if (given == former) note_former_name(name + " " + former, name + " " + word);
-      const std::string& current = given == former ? word : given;
-      target = std::ranges::find(choices, current, &std::pair<std::string, Value>::first)->second;
+      target = std::ranges::find(choices, given, &std::pair<std::string, Value>::first)->second;
     };
     return command_->add_option_function<std::string>(name, assign, description)
         ->type_name(fmt::format("{}", fmt::join(words, "|")))
-        ->check(one_of(words, former))
+        ->check(one_of(words))
         ->group(heading_);
   }
 

@@ -15,7 +15,6 @@
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
 #include "cli/part_share.h"
-#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -224,11 +223,6 @@ Work parse_arguments(int argc, char** argv) {
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
     words.emplace_back("--help");
-  }
-  if (!words.empty() && (words.front() == "pace" || words.front() == "live")) {
-    throw WrongCommandLine(fmt::format(
-        "'{}' is part of stream now: pillarfield stream SOURCE --repeat --rate HZ --summary",
-        words.front()));
   }
   Work work;
   CLI::App app("Turns frames of a high-density artificial skin into fields of three-axis force.",

@@ -15,7 +15,6 @@ std::string completion_words(const CLI::App& app, std::span<const std::string> w
     lines += fmt::format("{}\t{}\n", command->get_name(), command->get_description());
   }
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_group().empty()) continue;  // A former name.
     for (const std::string& name : option->get_lnames()) {
       lines += fmt::format("--{}\t{}\n", name, option->get_description());
     }

@@ -64,8 +64,7 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
       "--estimator", settings.estimator,
       {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"contact", Estimator::contact}},
       "direct: each pillar from its own readings; paper: the paper's equations; contact: "
-      "ambiguous pillars from the friction of their contact [direct]",
-      "field", "contact");
+      "ambiguous pillars from the friction of their contact [direct]");
   solver
       .text(
           "--outputs", settings.outputs, "WORDS",
@@ -77,8 +76,6 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
   add_settings(solver, "Solver", settings);
   solver.flag("--everything", settings.everything,
               "All outputs, the parity test and --follow-baseline; needs the noise");
-  add_former_option(command, "--segment-point",
-                    "--segment-point went: direct reports 7/8 of the largest normal force");
   Group friction(command, "Friction");
   add_settings(friction, "Friction", settings);
   friction
@@ -97,7 +94,6 @@ void add_device(CLI::App* command, std::string& name) {
       "--device", name, "DEVICE",
       "host, opencl, or an OpenCL device by index or part of its name [host for small skins, "
       "else the best of OpenCL]; see info --devices");
-  add_former_option(command, "--memory", "'--memory' has no effect any more: the device decides");
 }
 
 void add_contacts(CLI::App* command, ContactOptions& options) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {
 namespace {

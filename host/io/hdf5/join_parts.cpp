@@ -2,10 +2,8 @@
 
 #include <array>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "io/file_kind.h"
 #include "io/file_source.h"

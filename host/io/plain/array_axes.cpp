@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "base/nearest_word.h"
 #include "pillarfield/error.h"

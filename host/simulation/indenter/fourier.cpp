@@ -1,7 +1,6 @@
 #include "simulation/indenter/fourier.h"
 
 #include <algorithm>
-#include <cmath>
 #include <kissfft/kissfft.hh>
 #include <vector>
 

@@ -49,7 +49,6 @@ inline constexpr std::array<Quantity<Wires>, 3> kWireQuantities = {{
     {"column_ohm", &Wires::column_ohm, {0, 1e9}},
     {"sensel_ohm", &Wires::sensel_ohm, {1e-3, 1e12}},
 }};
-inline constexpr Range kIdleRowOhm = {0, 1e9};
 inline constexpr Range kBendSpread = {0, 1e6};
 inline constexpr Range kCurvaturePerMm = {-1, 1};
 inline constexpr Range kSurfaceRadiusMm = {-1e6, 1e6};
@@ -206,11 +205,10 @@ inline constexpr std::array<Named<TareOrigin>, 2> kTareOrigins = {{
     {"conduct", TareOrigin::conductance},
     {"offset", TareOrigin::offset},
 }};
-inline constexpr std::array<Named<Estimator>, 4> kEstimators = {{
+inline constexpr std::array<Named<Estimator>, 3> kEstimators = {{
     {"direct", Estimator::direct},
     {"paper", Estimator::paper},
     {"contact", Estimator::contact},
-    {"field", Estimator::contact},  // former name
 }};
 
 /// Whether a closed form exists for this shape and motion.

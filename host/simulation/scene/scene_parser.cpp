@@ -87,14 +87,11 @@ std::optional<ShearCoefficient> read_shear_coefficient(TomlSection& section) {
   return both ? std::optional(ShearCoefficient{*both, *both}) : std::nullopt;
 }
 
-std::optional<Wires> read_wires(TomlSection section, Scene& scene) {
+std::optional<Wires> read_wires(TomlSection section) {
   if (!section.is_present()) return std::nullopt;
   Wires wires;
   read_quantities(section, kWireQuantities, wires);
   if (!section.has("sensel_ohm")) section.fail_missing("sensel_ohm", "resistance at full scale");
-  if (section.number("idle_row_ohm", kIdleRowOhm)) {
-    scene.warnings.emplace_back("idle_row_ohm has no effect: idle rows have row_ohm");
-  }
   wires.tares = read_name(section, "tares", kTareOrigins).value_or(wires.tares);
   if (const auto tile = section.numbers("tile", 2, kTileSensels)) {
     wires.tile_rows = static_cast<std::uint32_t>((*tile)[0]);
@@ -114,7 +111,7 @@ void read_sensor(TomlSection section, Scene& scene) {
   scene.sensor.hysteresis_range_counts =
       section.number("hysteresis_range_counts", kHysteresisRangeCounts);
   scene.sensor.response_curve = read_response_curve(section);
-  scene.sensor.wires = read_wires(section.table("wires"), scene);
+  scene.sensor.wires = read_wires(section.table("wires"));
   if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
     scene.sensor.adc_bits = static_cast<int>(*bits);
   }
@@ -160,13 +157,6 @@ void read_solver(TomlSection section, Scene& scene) {
   scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
   scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
   scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
-  if (section.text("estimator") == "field") {
-    scene.warnings.emplace_back(
-        R"(estimator = "field" is now "contact"; the former name works in this release only)");
-  }
-  if (section.number("segment_point", {0, 1, true})) {
-    scene.warnings.emplace_back("segment_point has no effect any more; leave it out");
-  }
   scene.angles = section.flag("angles").value_or(scene.angles);
   scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
   if (scene.uncertainty && scene.estimator == Estimator::paper) {
@@ -349,7 +339,7 @@ ClosedFormContact read_contact(TomlSection& section) {
 /// Reads the load: a direction sweep, or any number of contacts and indenters. `folder` is the
 /// folder of relative height map paths.
 void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& scene) {
-  const char* const key = root.has("chart") ? "chart" : "direction_sweep";
+  const char* const key = "direction_sweep";
   TomlSection sweep = root.table(key);
   auto contacts = root.tables("contact", "[[contact]]");
   const bool named_body = root.has("body");
@@ -361,10 +351,6 @@ void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& sc
   }
   if (sweep.is_present() && contacts) root.fail(key, "comes with [[contact]]", "one of the two");
   if (sweep.is_present() && indenters) root.fail(key, "comes with [[indenter]]", "one of the two");
-  if (root.has("chart")) {
-    scene.warnings.emplace_back(
-        "[chart] is now [direction_sweep]; the former name works in this release only");
-  }
   if (sweep.is_present()) {
     scene.load = read_direction_sweep(std::move(sweep), scene.skin);
     return;

@@ -16,7 +16,6 @@
 #include <exception>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <semaphore>
 #include <set>
 #include <thread>

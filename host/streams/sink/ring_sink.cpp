@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "pillarfield/error.h"
 #include "streams/live_sink.h"
 #include "streams/message/host_clock.h"
 #include "streams/ring/ring_writer.h"

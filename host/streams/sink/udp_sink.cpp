@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
-#include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"

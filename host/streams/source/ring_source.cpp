@@ -1,5 +1,4 @@
 #include <cstring>
-#include <utility>
 
 #include "streams/live_source.h"
 #include "streams/ring/ring_reader.h"

@@ -261,18 +261,6 @@ TEST(Ring, APollingReaderFollowsOneThatReplacesItToo) {
   EXPECT_TRUE(arrived);
 }
 
-TEST(Ring, AnUnlinkedRingWithAnotherSizeIsReplaced) {
-  const Name name;
-  Child([&] {
-    RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);
-    kill(getpid(), SIGKILL);
-  }).wait();
-  ASSERT_TRUE(name.exists());
-  RingWriter writer(name.text(), kLayout, 4);
-  publish(writer, frame_packet(kShape, 0));
-  EXPECT_NE(open_live_source(name.source(), {}), nullptr);
-}
-
 TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
   const Name name;
   const RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);

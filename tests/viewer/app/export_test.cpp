@@ -108,44 +108,6 @@ TEST_F(Export, APictureThatCannotBeWrittenLeavesNothingAndSaysWhere) {
   EXPECT_TRUE(files().empty());
 }
 
-TEST_F(Export, AFailureKeepsThePictureThatWasThere) {
-  write_png(folder_ / "a.png", noise(4, 4));
-  const std::string before = text_of(folder_ / "a.png");
-  EXPECT_THROW(write_png(folder_ / "a.png", Pixels{4, 4, {}}), Error);
-  EXPECT_EQ(text_of(folder_ / "a.png"), before);
-}
-
-TEST_F(Export, ADirectoryIsNotReplaced) {
-  fs::create_directory(folder_ / "a.png");
-  const std::string message = message_of([&] { write_png(folder_ / "a.png", noise(2, 2)); });
-  EXPECT_NE(message.find("not a regular file"), std::string::npos) << message;
-  EXPECT_TRUE(fs::is_directory(folder_ / "a.png"));
-}
-
-TEST_F(Export, OnlyEarlierPicturesAndTablesAreReplaced) {
-  const MadeField made;
-  const PillarRect all{0, made.forces.rows, 0, made.forces.cols};
-  write_csv(folder_ / "a.csv", made.shown(), all);
-  const std::string table = text_of(folder_ / "a.csv");
-  for (const Replace replace : {Replace::results, Replace::nothing}) {
-    const std::string message =
-        message_of([&] { write_png(folder_ / "a.csv", noise(2, 2), replace); });
-    EXPECT_NE(message.find("a.csv: exists"), std::string::npos) << message;
-  }
-  EXPECT_EQ(text_of(folder_ / "a.csv"), table);
-  write_csv(folder_ / "a.csv", made.shown(), all);
-  write_png(folder_ / "a.csv", noise(2, 2), Replace::anything);
-  EXPECT_EQ(text_of(folder_ / "a.csv").substr(1, 3), "PNG");
-}
-
-TEST_F(Export, ALinkInPlaceOfAPartIsNotFollowed) {
-  std::ofstream(folder_ / "victim") << "precious";
-  fs::create_symlink("victim", folder_ / "a.png.part");
-  const std::string message = message_of([&] { write_png(folder_ / "a.png", noise(2, 2)); });
-  EXPECT_NE(message.find("a.png.part: is a symbolic link"), std::string::npos) << message;
-  EXPECT_EQ(text_of(folder_ / "victim"), "precious");
-}
-
 TEST_F(Export, NamesOfASequenceSortByFrame) {
   EXPECT_EQ(numbered("field.png", 12, 100), "field_012.png");
   EXPECT_EQ(numbered("a/b.c/field.png", 3, 9), "a/b.c/field_3.png");

@@ -56,15 +56,6 @@ TEST(Shortcuts, NoChordIsThereTwice) {
   }
 }
 
-TEST(Shortcuts, EachHasADistinctKeyAndDescription) {
-  std::set<std::string> words;
-  for (const Shortcut& shortcut : shortcuts()) {
-    EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.description;
-    EXPECT_NE(*shortcut.keys, '\0');
-    EXPECT_TRUE(words.insert(shortcut.description).second) << shortcut.description;
-  }
-}
-
 TEST(Shortcuts, EachChordChangesTheState) {
   for (const Shortcut& shortcut : shortcuts()) {
     for (const Chord& chord : chords_of(shortcut)) {
@@ -80,17 +71,6 @@ TEST(Shortcuts, EachChordChangesTheState) {
       EXPECT_TRUE(changed) << shortcut.keys << ": " << shortcut.description;
     }
   }
-}
-
-TEST(Shortcuts, EveryQuantityHasOne) {
-  std::set<Quantity> shown;
-  for (const Shortcut& shortcut : shortcuts()) {
-    if (shortcut.group != ShortcutGroup::show) continue;
-    FakeAppState fake;
-    shortcut.act(fake.command());
-    shown.insert(fake.state.settings.quantity);
-  }
-  EXPECT_EQ(shown.size(), static_cast<std::size_t>(kQuantities));
 }
 
 TEST(Shortcuts, OthersDoNothing) {
@@ -114,18 +94,6 @@ TEST(Shortcuts, StepsGoOnAndBack) {
   EXPECT_EQ(fake.player.state().frame, FakeProducer::kFrames - 1);
   dispatch({GLFW_KEY_HOME, {}}, fake.command());
   EXPECT_EQ(fake.player.state().frame, 0u);
-}
-
-TEST(Shortcuts, SpeedGoesInStepsAndComesBack) {
-  FakeAppState fake;
-  std::vector<double> speeds;
-  for (int i = 0; i < 3; ++i) {
-    dispatch({GLFW_KEY_EQUAL, {true, false}}, fake.command());
-    speeds.push_back(fake.player.state().speed);
-  }
-  EXPECT_EQ(speeds, (std::vector<double>{2, 5, 10}));
-  for (int i = 0; i < 4; ++i) dispatch({GLFW_KEY_MINUS, {}}, fake.command());
-  EXPECT_EQ(fake.player.state().speed, 0.5);
 }
 
 TEST(Shortcuts, EscapeClosesTheHelpFirstAndStopsWritingBeforeItClears) {

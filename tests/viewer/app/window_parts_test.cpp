@@ -37,19 +37,6 @@ TEST(Screen, ItsPartsTileTheWindow) {
   }
 }
 
-TEST(Screen, SizesFollowTheScaleAndTheLayout) {
-  PanelLayout layout = default_layout();
-  const Screen one = divide(2000, 1400, 1, &layout);
-  const Screen two = divide(2000, 1400, 2, &layout);
-  EXPECT_EQ(two.right.width, 2 * one.right.width);
-  EXPECT_EQ(two.status.height, 2 * one.status.height);
-  EXPECT_EQ(one.left.width, 0);
-  place_of(layout, PanelId::curves).open = false;
-  EXPECT_LT(divide(2000, 1400, 1, &layout).bottom.height, one.bottom.height);
-  move_panel(layout, PanelId::curves, Dock::floating);
-  EXPECT_EQ(divide(2000, 1400, 1, &layout).bottom.height, 0);
-}
-
 TEST(PanelLayout, IsReadAsItWasWritten) {
   PanelLayout layout = default_layout();
   move_panel(layout, PanelId::contacts, Dock::left);
@@ -72,15 +59,6 @@ TEST(PanelLayout, RubbishIsIgnoredAndSizesAreLimited) {
   EXPECT_EQ(layout.left_width, 120);
   std::string text = text_of(layout);
   EXPECT_EQ(text_of(layout_from(text)), text);
-}
-
-TEST(PanelLayout, AFloatingPanelCoversItsPixels) {
-  PanelLayout layout = default_layout();
-  EXPECT_FALSE(covers(layout, {150, 150}, 1));
-  move_panel(layout, PanelId::view, Dock::floating);
-  place_of(layout, PanelId::view).window = {100, 100, 200, 200};
-  EXPECT_TRUE(covers(layout, {150, 150}, 1));
-  EXPECT_FALSE(covers(layout, {150, 150}, 2));
 }
 
 void expect_span(const Span& span, double from, double to) {
@@ -177,20 +155,6 @@ TEST(Redraws, ANoticeGoesAway) {
   EXPECT_TRUE(redraws.due(end));
   redraws.forget_notice();
   EXPECT_FALSE(redraws.rest(end));
-}
-
-TEST(DrawClock, MediansAreOfTheLastSecondAndOfAll) {
-  DrawClock clock;
-  for (int i = 0; i < 10; ++i) clock.add(0.1 * i, 5, 20);
-  for (int i = 0; i < 5; ++i) clock.add(10 + 0.1 * i, 8 + i, std::nullopt);
-  const DrawStatistics lately = clock.lately(10.5);
-  EXPECT_EQ(lately.frames_hz, 5);
-  EXPECT_EQ(lately.draw_ms_median, 10);
-  EXPECT_EQ(lately.latency_ms_median, 0);
-  EXPECT_EQ(clock.frames(), 15u);
-  EXPECT_EQ(clock.draw_ms_median(), 5);
-  EXPECT_EQ(clock.latency_ms_median(), 20);
-  EXPECT_EQ(clock.lately(20).frames_hz, 0);
 }
 
 }  // namespace

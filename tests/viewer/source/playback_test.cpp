@@ -98,27 +98,6 @@ TEST(Playback, StopsAtTheEndWithoutLoopAndRestarts) {
   EXPECT_FALSE(playback.playing());
 }
 
-TEST(Playback, StopsWhereTheLoopEndsAtTheLastFrame) {
-  Playback playback = head(3, 10);
-  playback.play(kStart);
-  ASSERT_EQ(all_due(playback, kStart + milliseconds(200)), (std::vector<std::uint64_t>{1, 2}));
-  playback.set_loop(false);
-  EXPECT_EQ(playback.next(kStart + milliseconds(300)), std::nullopt);
-  EXPECT_FALSE(playback.playing());
-  EXPECT_EQ(playback.frame(), 2U);
-}
-
-TEST(Playback, OneFrameAloneCanBePlayed) {
-  Playback playback = head(1, 10);
-  playback.play(kStart);
-  EXPECT_EQ(all_due(playback, kStart + milliseconds(350)), (std::vector<std::uint64_t>{0, 0, 0}));
-  playback.set_loop(false);
-  playback.pause();
-  playback.play(kStart + seconds(1));
-  EXPECT_EQ(all_due(playback, kStart + seconds(2)), (std::vector<std::uint64_t>{0}));
-  EXPECT_FALSE(playback.playing());
-}
-
 TEST(Playback, PauseHoldsAndPlayGoesOn) {
   Playback playback = head(100, 10);
   playback.play(kStart);
@@ -201,26 +180,6 @@ TEST(Playback, StepsPauseWrapAndClamp) {
   steps_to(-1, 0);
 }
 
-TEST(Playback, SpeedChangesInTheMiddleOfAPeriod) {
-  Playback playback = head(100, 1);
-  playback.play(kStart);
-  playback.set_speed(2, kStart + milliseconds(500));
-  EXPECT_EQ(*playback.next_due(), kStart + milliseconds(750)) << "half a period is left";
-  playback.set_rate(4, kStart + milliseconds(500));
-  EXPECT_EQ(*playback.next_due(), kStart + milliseconds(562) + microseconds(500));
-  EXPECT_EQ(playback.next(*playback.next_due()), 1U);
-}
-
-TEST(Playback, LatenessStaysWhenTheSpeedChanges) {
-  Playback playback = head(100, 10);
-  playback.play(kStart);
-  const Time late = kStart + milliseconds(400);
-  for (const double speed : {4.0, 0.2}) {
-    playback.set_speed(speed, late);
-    EXPECT_EQ(playback.behind(late), milliseconds(300));
-  }
-}
-
 TEST(Playback, SpeedAndRateHaveLimits) {
   Playback playback(10, -3);
   EXPECT_GT(playback.rate_hz(), 0);
@@ -264,24 +223,6 @@ TEST(Playback, PlaysIntoFramesThatWereAdded) {
   playback.seek(4, kStart);
   playback.set_frames(2, kStart);
   EXPECT_EQ(playback.next(kStart), 1U) << "the source shrank";
-}
-
-TEST(Playback, AgainMakesTheFrameOnceMoreAndEndsNothing) {
-  Playback playing(10, 100);
-  static_cast<void>(playing.next(Time(0)));
-  playing.play(Time(0));
-  const auto due = playing.next_due();
-  playing.again(Time(1));
-  EXPECT_EQ(playing.next(Time(2)), 0U);
-  EXPECT_TRUE(playing.playing());
-  EXPECT_EQ(playing.next_due(), due);
-  Playback following(10, 100);
-  following.set_follow(true, Time(0));
-  EXPECT_EQ(following.next(Time(1)), 9U);
-  following.again(Time(2));
-  EXPECT_EQ(following.next(Time(3)), 9U);
-  EXPECT_TRUE(following.follows());
-  EXPECT_EQ(following.next(Time(4)), std::nullopt);
 }
 
 }  // namespace

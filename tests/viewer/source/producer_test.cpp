@@ -101,18 +101,6 @@ TEST(SceneProducer, DescribesTheScene) {
                       {"demo.toml", "no frame 4", "4 frames"}));
 }
 
-TEST(SceneProducer, SimulatesNoMoreThanFits) {
-  const std::uint64_t frame_bytes = load_scene(kDemo).skin.sensels();
-  const auto producer = open_producer(kDemo, {.memory_bytes = 3 * frame_bytes + 1});
-  EXPECT_EQ(producer->info().frames, 3U);
-  ASSERT_EQ(producer->info().warnings.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().warnings[0], {"3 of 60 frames", "do not fit"}));
-  const auto too_little = [&] {
-    static_cast<void>(open_producer(kDemo, {.memory_bytes = frame_bytes - 1}));
-  };
-  EXPECT_TRUE(has_all(error_of(too_little), {"demo.toml", "memory"}));
-}
-
 TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {
   std::vector<double> shares;
   const auto thread = std::this_thread::get_id();

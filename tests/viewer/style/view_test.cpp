@@ -113,15 +113,6 @@ TEST(Views, PickFindsNothingBesideTheSkin) {
   }
 }
 
-TEST(Views, PickFindsNothingInTheSky) {
-  const SkinSize skin{100, 100};
-  const Viewport viewport{0, 0, 800, 600};
-  OrbitView view;
-  view.elevation = 0.1;
-  EXPECT_TRUE(pick(view, {}, skin, viewport, {400, 300}));
-  EXPECT_FALSE(pick(view, {}, skin, viewport, {400, 5}));
-}
-
 TEST(Views, MatrixShowsPointsWhereProjectSays) {
   std::mt19937 random(4);
   for (int i = 0; i < kSituations; ++i) {
@@ -170,22 +161,6 @@ TEST(Views, DepthIsWithinVulkansRangeForAllArrowsAndGrowsWithTheWay) {
   }
 }
 
-TEST(Views, DepthUsesItsRange) {
-  const SkinSize skin{100, 100};
-  const Viewport viewport{0, 0, 800, 600};
-  const Situation top{fit_top(skin, viewport), {}, skin, viewport};
-  EXPECT_NEAR(clipped(top, {0, 0, kArrowMarginMm}).z, 0, 1e-6);
-  EXPECT_NEAR(clipped(top, {0, 0, -kArrowMarginMm}).z, 1, 1e-6);
-  OrbitView straight_down;
-  straight_down.elevation = std::numbers::pi / 2;
-  straight_down.distance_mm = 400;
-  const Situation orbit{straight_down, {}, skin, viewport};
-  const Clip nearest = clipped(orbit, {0, 0, kArrowMarginMm});
-  const Clip farthest = clipped(orbit, {0, 0, -kArrowMarginMm});
-  EXPECT_NEAR(nearest.z / nearest.w, 0, 1e-6);
-  EXPECT_NEAR(farthest.z / farthest.w, 1, 1e-6);
-}
-
 TEST(TopView, HasXToTheRightAndYUp) {
   const Viewport viewport{10, 20, 800, 600};
   const Situation situation{TopView{{5, 7}, 4}, {}, {100, 100}, viewport};
@@ -196,91 +171,6 @@ TEST(TopView, HasXToTheRightAndYUp) {
   EXPECT_DOUBLE_EQ(other.x, 414);
   EXPECT_DOUBLE_EQ(other.y, 312) << "y goes down in pixels; height changes nothing";
   EXPECT_DOUBLE_EQ(pixels_per_mm(situation.view, viewport), 4);
-}
-
-TEST(TopView, IgnoresTheSurface) {
-  std::mt19937 random(6);
-  for (int i = 0; i < 100; ++i) {
-    Situation bent = random_situation(random);
-    bent.view = TopView{{3, 4}, 2};
-    bent.surface = {SurfaceKind::cylinder, bent.skin.width_mm};
-    Situation flat = bent;
-    flat.surface = {};
-    EXPECT_EQ(clip_from_world(bent.view, bent.surface, bent.skin, bent.viewport),
-              clip_from_world(flat.view, flat.surface, flat.skin, flat.viewport));
-    const auto pixel = projected(flat, {1, 2, 0});
-    EXPECT_EQ(picked(bent, *pixel)->x, picked(flat, *pixel)->x);
-  }
-}
-
-TEST(OrbitView, LooksAtItsTargetFromWhereItSays) {
-  std::mt19937 random(7);
-  for (int i = 0; i < 300; ++i) {
-    Situation situation = random_situation(random);
-    auto* view = std::get_if<OrbitView>(&situation.view);
-    if (view == nullptr) continue;
-    const SurfaceFrame target = frame_at(situation.surface, view->target_mm);
-    const Vec2 pixel = *projected(situation, target.position);
-    EXPECT_NEAR(pixel.x, situation.viewport.x + situation.viewport.width / 2, 1e-9);
-    EXPECT_NEAR(pixel.y, situation.viewport.y + situation.viewport.height / 2, 1e-9);
-    const Vec3 to_eye =
-        camera_of(*view, situation.surface, situation.viewport).eye - target.position;
-    EXPECT_NEAR(length(to_eye), view->distance_mm, 1e-9);
-    EXPECT_NEAR(dot(to_eye, target.normal) / length(to_eye), std::sin(view->elevation), 1e-12);
-    EXPECT_NEAR(
-        std::remainder(std::atan2(dot(to_eye, target.tangent_x), -dot(to_eye, target.tangent_y)) -
-                           view->azimuth,
-                       2 * std::numbers::pi),
-        0, 1e-9);
-  }
-}
-
-TEST(OrbitView, FromBelowTheLowerEdgeHasXToTheRightAndHeightUp) {
-  const Viewport viewport{0, 0, 800, 600};
-  OrbitView view;
-  view.azimuth = 0;
-  const Situation situation{view, {}, {100, 100}, viewport};
-  EXPECT_GT(projected(situation, {10, 0, 0})->x, 400 + 10);
-  EXPECT_NEAR(projected(situation, {10, 0, 0})->y, 300, 1e-9);
-  EXPECT_LT(projected(situation, {0, 0, 10})->y, 300) << "arrows go up";
-  EXPECT_LT(projected(situation, {0, 10, 0})->y, 300) << "farther is higher";
-}
-
-TEST(OrbitView, SeesItsFieldOfViewFromTopToBottom) {
-  std::mt19937 random(8);
-  for (int i = 0; i < 100; ++i) {
-    const Viewport viewport{0, 50, random_between(random, 200, 2000), 600};
-    OrbitView view;
-    view.elevation = std::numbers::pi / 2;
-    view.azimuth = 0;
-    view.field_of_view = random_between(random, 0.2, 2);
-    const double top_mm = view.distance_mm * std::tan(view.field_of_view / 2);
-    const Situation situation{view, {}, {100, 100}, viewport};
-    EXPECT_NEAR(projected(situation, {0, top_mm, 0})->y, 50, 1e-9);
-    EXPECT_NEAR(projected(situation, {0, -top_mm, 0})->y, 650, 1e-9);
-  }
-}
-
-TEST(OrbitView, StraightFromAboveIsATopViewInPerspective) {
-  const Viewport viewport{0, 0, 800, 600};
-  OrbitView orbit;
-  orbit.azimuth = 0;
-  orbit.elevation = std::numbers::pi / 2;
-  const Situation above{orbit, {}, {100, 100}, viewport};
-  const double scale = pixels_per_mm(orbit, viewport);
-  const Vec2 pixel = *projected(above, {10, 20, 0});
-  EXPECT_NEAR(pixel.x, 400 + 10 * scale, 1e-9);
-  EXPECT_NEAR(pixel.y, 300 - 20 * scale, 1e-9);
-}
-
-TEST(OrbitView, ShowsNothingBehindTheEye) {
-  OrbitView view;
-  view.elevation = std::numbers::pi / 2;
-  view.distance_mm = 100;
-  const Situation situation{view, {}, {100, 100}, {0, 0, 800, 600}};
-  EXPECT_TRUE(projected(situation, {0, 0, 99}));
-  EXPECT_FALSE(projected(situation, {0, 0, 100.001}));
-  EXPECT_FALSE(projected(situation, {0, 0, 150}));
 }
 
 }  // namespace

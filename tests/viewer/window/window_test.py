@@ -239,26 +239,6 @@ class KeyTest(WindowTest):
         self.assertIn(statistics["produced"] - statistics["taken"] - statistics["not_shown"],
                       (0, 1))
 
-    def test_exports(self):
-        window = self.open(SCENES / "spin.toml", "--paused")
-        self.screen.still_pixels()
-        for key in ("p", "c", "ctrl+p"):
-            window.key(key)
-            self.screen.still_pixels()
-        self.wait_for(lambda: [path.suffix for path in self.folder.iterdir()].count(".png") >= 2
-                      and any(self.folder.glob("*.csv")), "no exports")
-        self.shoot("exported")
-        statistics = self.assert_quiet(window)
-        written = sorted(path.suffix for path in self.folder.iterdir())
-        self.assertGreaterEqual(written.count(".png"), 2, list(self.folder.iterdir()))
-        self.assertEqual(written.count(".csv"), 1)
-        self.assertNotIn(".part", written)
-        (x, y, width, height) = statistics["field"]
-        for picture in self.folder.glob("*.png"):
-            self.assertEqual(read_png(picture).shape, (height, width, 3))
-        table = next(self.folder.glob("*.csv")).read_text(encoding="utf-8")
-        self.assertGreater(len(table.splitlines()), 100)
-
 
 class MouseTest(WindowTest):
     def test_hover_pin_region_zoom_and_pan(self):
@@ -308,29 +288,6 @@ class WidgetTest(WindowTest):
         ]
         for (name, action) in steps:
             before = self.act("widget_" + name, action, before)
-        self.assert_quiet(window)
-
-    def test_pin_and_region_over_time(self):
-        window = self.open(SCENES / "demo.toml", "--paused")
-        self.screen.still_pixels()
-        window.click(300, 120)
-        time.sleep(0.6)
-        window.drag((380, 200), (470, 300))
-        for _ in range(3):
-            window.key("shift+Right")
-            self.screen.still_pixels()
-        self.shoot("over_time")
-        self.assert_quiet(window)
-
-    def test_curves_zoom_pan_and_seek(self):
-        window = self.open(SCENES / "demo.toml", "--paused", "--frame", 2)
-        before = self.shoot("curves_0")
-        steps = [("zoomed", lambda: window.click(180, 590, button=4, times=4)),
-                 ("panned", lambda: window.drag((180, 590), (120, 590))),
-                 ("sought", lambda: window.click(220, 590)),
-                 ("whole", lambda: window.click(220, 590, times=2))]
-        for (name, action) in steps:
-            before = self.act("curves_" + name, action, before)
         self.assert_quiet(window)
 
     def test_panels_move_and_are_remembered(self):
@@ -444,21 +401,6 @@ class SourceTest(WindowTest):
 
 
 class WholeWindowTest(WindowTest):
-    def test_sizes(self):
-        window = self.open(SCENES / "demo.toml")
-        for (width, height) in ((700, 500), (1300, 800), (321, 243), (60, 40), (WIDTH, HEIGHT)):
-            self.screen.xdotool("windowsize", "--sync", window.id, width, height)
-            time.sleep(0.5)
-            self.shoot(f"size_{width}x{height}", still=False)
-            self.assertIsNone(window.process.poll(), window.error_text())
-        self.screen.xdotool("windowunmap", "--sync", window.id)
-        time.sleep(0.5)
-        self.screen.xdotool("windowmap", "--sync", window.id)
-        time.sleep(0.5)
-        self.screen.xdotool("windowfocus", "--sync", window.id)
-        self.wait_for_motion()
-        self.assertGreater(self.assert_quiet(window)["frames"], 3)
-
     def test_large_letters(self):
         window = self.open(SCENES / "demo.toml", "--paused", "--scale", 1.5)
         self.shoot("scale_1_5")
