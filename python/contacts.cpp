@@ -5,12 +5,15 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "io/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
+#include "pillarfield/version.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
@@ -116,6 +119,13 @@ std::string contact_text(const TrackedContact& contact) {
                      name_of(q.slip));
 }
 
+std::string total_text(const ContactQuantities& q) {
+  return fmt::format(
+      "<ContactTotal: {} {}, normal {:.3g} N{}>", q.pillars, q.has_shear ? "pillars" : "sensels",
+      q.normal_n,
+      q.has_shear ? fmt::format(", shear ({:.3g}, {:.3g}) N", q.shear_x_n, q.shear_y_n) : "");
+}
+
 using SharedContacts = std::shared_ptr<FrameContacts>;
 
 TrackedContact contact_at(const FrameContacts& self, py::ssize_t index) {
@@ -130,6 +140,111 @@ py::list ended_of(const FrameContacts& self) {
     ended.append(py::make_tuple(contact.track_id, contact.merged_into));
   }
   return ended;
+}
+
+/// Columns of rows as numbers, row by row.
+template <class Row>
+void add_numbers(std::vector<double>& to, std::span<const ContactColumn<Row>> columns,
+                 const Row& row) {
+  for (const auto& column : columns) to.push_back(column.get(row));
+}
+
+template <class Row>
+void set_numbers(std::span<const double>& from, std::span<const ContactColumn<Row>> columns,
+                 Row& row) {
+  if (from.size() < columns.size()) throw Error("FrameContacts", "its pickle is damaged");
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i].set(row, from[i]);
+  from = from.subspan(columns.size());
+}
+
+/// Version, time, whether there are pillars, numbers of contacts and of ended ones, all their
+/// columns.
+py::tuple contacts_state(const FrameContacts& self) {
+  std::vector<double> numbers;
+  add_numbers(numbers, quantity_columns(true), self.total);
+  for (const TrackedContact& contact : self.contacts) {
+    add_numbers(numbers, identity_columns(), contact);
+    add_numbers(numbers, quantity_columns(true), contact.quantities);
+  }
+  for (const EndedContact& contact : self.ended) add_numbers(numbers, ended_columns(), contact);
+  const auto size = static_cast<py::ssize_t>(numbers.size());
+  return py::make_tuple(kVersion, self.time_s, self.total.has_shear, self.contacts.size(),
+                        self.ended.size(), array_of(std::move(numbers), {size}));
+}
+
+SharedContacts contacts_from(const py::tuple& state) {
+  if (state[0].cast<std::string>() != kVersion) {
+    throw Error("FrameContacts", "another version of pillarfield pickled it", "save() forces");
+  }
+  const auto array = state[5].cast<py::array_t<double>>();
+  std::span<const double> numbers(array.data(), static_cast<std::size_t>(array.size()));
+  auto contacts = std::make_shared<FrameContacts>();
+  contacts->time_s = state[1].cast<double>();
+  contacts->total.has_shear = state[2].cast<bool>();
+  contacts->contacts.resize(state[3].cast<std::size_t>());
+  contacts->ended.resize(state[4].cast<std::size_t>());
+  set_numbers(numbers, quantity_columns(true), contacts->total);
+  for (TrackedContact& contact : contacts->contacts) {
+    contact.quantities.has_shear = contacts->total.has_shear;
+    set_numbers(numbers, identity_columns(), contact);
+    set_numbers(numbers, quantity_columns(true), contact.quantities);
+  }
+  for (EndedContact& contact : contacts->ended) set_numbers(numbers, ended_columns(), contact);
+  return contacts;
+}
+
+/// A column of a table, with a value for each row: integers, numbers or words.
+template <class Row>
+py::object column_of(const ContactColumn<Row>& column, const std::vector<const Row*>& rows) {
+  const auto size = static_cast<py::ssize_t>(rows.size());
+  if (column.kind == ColumnKind::word) {
+    py::list words;
+    for (const Row* row : rows) words.append(column.word(column.get(*row)));
+    return py::module_::import("numpy").attr("array")(words, "str");  // Empty ones, too.
+  }
+  const auto array = [&]<class T>(T) {
+    std::vector<T> values;
+    for (const Row* row : rows) values.push_back(static_cast<T>(column.get(*row)));
+    return array_of(std::move(values), {size});
+  };
+  if (column.kind == ColumnKind::number) return array(double{});
+  return array(std::int64_t{});
+}
+
+/// {"frame": ..., "time_s": ..., ...}: a row for each frame, or for each contact of each frame.
+py::dict columns_of(const std::vector<SharedContacts>& frames, bool totals) {
+  std::vector<std::int64_t> indices;
+  std::vector<double> times;
+  std::vector<const TrackedContact*> contacts;
+  std::vector<const ContactQuantities*> quantities;
+  const auto add = [&](std::size_t frame, const ContactQuantities& row) {
+    indices.push_back(static_cast<std::int64_t>(frame));
+    times.push_back(frames[frame]->time_s);
+    quantities.push_back(&row);
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (totals) add(i, frames[i]->total);
+    for (const TrackedContact& contact : frames[i]->contacts) {
+      if (totals) break;
+      add(i, contact.quantities);
+      contacts.push_back(&contact);
+    }
+  }
+  const auto size = static_cast<py::ssize_t>(quantities.size());
+  py::dict columns;
+  columns["frame"] = array_of(std::move(indices), {size});
+  columns["time_s"] = array_of(std::move(times), {size});
+  if (!totals) {
+    for (const auto& column : identity_columns())
+      columns[column.name] = column_of(column, contacts);
+  }
+  const bool on_surface = !frames.empty() && frames.front()->total.wrench;
+  const bool has_pillars = frames.empty() || frames.front()->total.has_shear;
+  for (const auto& column :
+       quantity_columns(on_surface, has_pillars ? SkinLayout::pillars : SkinLayout::sensels)) {
+    columns[column.name] = column_of(column, quantities);
+  }
+  return columns;
 }
 
 /// A ContactTracker with the plan's constants, used by one thread at a time.
@@ -174,6 +289,7 @@ void bind_contacts(py::module_& module) {
   py::class_<ContactQuantities> total(module, "ContactTotal", kTotal);
   add_quantities(
       total, [](const ContactQuantities& self) -> const auto& { return self; });
+  total.def("__repr__", &total_text);
   py::class_<TrackedContact> contact(module, "Contact", kContact);
   add_quantities(
       contact, [](const TrackedContact& self) -> const auto& { return self.quantities; });
@@ -189,12 +305,21 @@ void bind_contacts(py::module_& module) {
                              "[(track_id, track_id that it merged into or None), ...]")
       .def("__len__", [](const FrameContacts& self) { return self.contacts.size(); })
       .def("__getitem__", &contact_at, py::arg("index"))
-      .def("__repr__", [](const FrameContacts& self) {
-        return fmt::format("<FrameContacts: {} contacts, {:.3g} N>", self.contacts.size(),
-                           self.total.normal_n);
-      });
+      .def("__repr__",
+           [](const FrameContacts& self) {
+             return fmt::format("<FrameContacts: {} contacts, {:.3g} N>", self.contacts.size(),
+                                self.total.normal_n);
+           })
+      .def(py::pickle(&contacts_state, &contacts_from));
+  module.def("contact_columns", &columns_of, py::arg("frames"), py::arg("totals"),
+             "Columns of a table of contacts, or of the totals of frames, by name.");
   py::class_<Tracker>(module, "Tracker", kTracker)
-      .def(py::init<const SolverPlan&, std::uint64_t, double>(), py::arg("plan"), py::kw_only(),
+      .def(py::init([](const SolverPlan& plan, std::uint64_t minimum_pillars, double reach_mm,
+                       const py::kwargs& unknown) {
+             refuse("Contacts", unknown, {"minimum_pillars", "reach_mm"});
+             return std::make_unique<Tracker>(plan, minimum_pillars, reach_mm);
+           }),
+           py::arg("plan"), py::kw_only(),
            py::arg("minimum_pillars") = ContactOptions{}.minimum_pillars,
            py::arg("reach_mm") = ContactOptions{}.reach_mm)
       .def("update_planes", &Tracker::update, py::arg("planes"), py::arg("times"),

@@ -141,7 +141,9 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
 
 void bind_force_files(py::module_& module) {
   py::class_<ForceFileInfo>(module, "SolvedBy", "How forces were solved.")
-      .def(py::init(&solved_by), py::arg("plan"));
+      .def(py::init(&solved_by), py::arg("plan"))
+      .def_property_readonly("layout",
+                             [](const ForceFileInfo& self) { return name_of(self.layout); });
   py::class_<ForceReader>(module, "ForceReader", kReader)
       .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
            py::arg("trust") = false)

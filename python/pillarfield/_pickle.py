@@ -1,0 +1,56 @@
+"""Pickling, and so copying, of what files hold whole: calibrations, and how forces were solved."""
+
+from __future__ import annotations
+
+import copyreg
+import pathlib
+import tempfile
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from . import _core
+
+
+def _bytes_of(write: Callable[[pathlib.Path], Any]) -> bytes:
+    """The bytes of a file that `write` writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder, "pickled.h5")
+        write(path)
+        return path.read_bytes()
+
+
+def _read_from(data: bytes, read: Callable[[pathlib.Path], Any]) -> Any:
+    """What `read` reads from a file of these bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder, "pickled.h5")
+        path.write_bytes(data)
+        return read(path)
+
+
+def _calibration(data: bytes) -> Any:
+    return _read_from(data, lambda path: _core.Calibration.load(path, trust=True))
+
+
+def _solved_by(data: bytes) -> Any:
+    return _read_from(data, lambda path: _core.ForceReader(path, trust=True).solved_by)
+
+
+def _reduce_calibration(calibration: _core.Calibration) -> tuple[Any, ...]:
+    return _calibration, (_bytes_of(calibration.save),)
+
+
+def _reduce_solved_by(solved_by: Any) -> tuple[Any, ...]:
+    """It travels as a force file without frames."""
+    skin = _core.Skin(2, 2, layout=solved_by.layout)
+    shape = (0, skin.element_rows, skin.element_cols)
+    names = ("normal",) if solved_by.layout == "sensels" else ("normal", "shear_x", "shear_y")
+    planes = {name: np.zeros(shape, np.float32) for name in names}
+    planes["status"] = np.zeros(shape, np.uint8)
+    return _solved_by, (_bytes_of(lambda path: _core.save_forces(
+        path, planes, [], [], skin, solved_by, False)),)
+
+
+copyreg.pickle(_core.Calibration, _reduce_calibration)
+copyreg.pickle(_core.SolvedBy, _reduce_solved_by)
