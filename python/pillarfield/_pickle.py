@@ -37,11 +37,11 @@ def _solved_by(data: bytes) -> Any:
     return _read_from(data, lambda path: _core.ForceReader(path, trust=True).solved_by)
 
 
-def _reduce_calibration(calibration: _core.Calibration) -> tuple[Any, ...]:
+def _reduce_calibration(calibration: _core.Calibration) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
     return _calibration, (_bytes_of(calibration.save),)
 
 
-def _reduce_solved_by(solved_by: Any) -> tuple[Any, ...]:
+def _reduce_solved_by(solved_by: Any) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
     """It travels as a force file without frames."""
     skin = _core.Skin(2, 2, layout=solved_by.layout)
     shape = (0, skin.element_rows, skin.element_cols)

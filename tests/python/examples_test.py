@@ -1,5 +1,8 @@
 """The examples run, and their numbers are what they promise. LEARN=1: the one that trains, too."""
 
+import ast
+import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -34,6 +37,23 @@ class Examples(unittest.TestCase):
         self.assertAlmostEqual(number(r"(\d+) counts per newton", text), 1400, delta=20)
         self.assertAlmostEqual(number(r"solved ([\d.]+) N", text), 40, delta=0.2)
         self.assertLess(number(r"RMS ([\d.]+) N", text), 0.002)
+
+    def test_first_look(self):
+        """Each cell of the notebook runs, and shows what its last line is."""
+        book = json.loads((SOURCE / "examples/python/first_look.ipynb").read_text())
+        self.assertEqual((book["nbformat"], {cell["cell_type"] for cell in book["cells"]}), (4, {"code", "markdown"}))
+        os.environ["MPLBACKEND"] = "Agg"
+        names, shown = {}, []
+        for cell in book["cells"]:
+            source = "".join(cell["source"])
+            if cell["cell_type"] == "markdown" or "matplotlib" in source and not importlib.util.find_spec("matplotlib"):
+                continue
+            *before, last = ast.parse(source).body
+            exec(compile(ast.Module(before, []), "notebook", "exec"), names)
+            shown.append(eval(compile(ast.Expression(last.value), "notebook", "eval"), names))
+        self.assertEqual(shown[1]._repr_png_()[:4], b"\x89PNG")
+        self.assertAlmostEqual(names["totals"]["normal_n"][-1], 19.7, delta=0.5)  # 20 N after the last frame
+        self.assertLess(names["errors"].loaded.rms_n / names["errors"].true_rms_n, 0.1)
 
     def test_hold_without_slip(self):
         text = run("hold_without_slip")
