@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -142,55 +141,43 @@ py::list ended_of(const FrameContacts& self) {
   return ended;
 }
 
-/// Columns of rows as numbers, row by row.
-template <class Row>
-void add_numbers(std::vector<double>& to, std::span<const ContactColumn<Row>> columns,
-                 const Row& row) {
-  for (const auto& column : columns) to.push_back(column.get(row));
+/// Calls visit(columns, row) for all rows of a frame.
+template <class Visit>
+void visit_rows(FrameContacts& frame, Visit visit) {
+  visit(quantity_columns(true), frame.total);
+  for (TrackedContact& contact : frame.contacts) {
+    contact.quantities.has_shear = frame.total.has_shear;
+    visit(identity_columns(), contact);
+    visit(quantity_columns(true), contact.quantities);
+  }
+  for (EndedContact& contact : frame.ended) visit(ended_columns(), contact);
 }
 
-template <class Row>
-void set_numbers(std::span<const double>& from, std::span<const ContactColumn<Row>> columns,
-                 Row& row) {
-  if (from.size() < columns.size()) throw Error("FrameContacts", "its pickle is damaged");
-  for (std::size_t i = 0; i < columns.size(); ++i) columns[i].set(row, from[i]);
-  from = from.subspan(columns.size());
-}
-
-/// Version, time, whether there are pillars, numbers of contacts and of ended ones, all their
-/// columns.
+/// Version, time, whether there are pillars, numbers of contacts and of ended ones, all numbers.
 py::tuple contacts_state(const FrameContacts& self) {
   std::vector<double> numbers;
-  add_numbers(numbers, quantity_columns(true), self.total);
-  for (const TrackedContact& contact : self.contacts) {
-    add_numbers(numbers, identity_columns(), contact);
-    add_numbers(numbers, quantity_columns(true), contact.quantities);
-  }
-  for (const EndedContact& contact : self.ended) add_numbers(numbers, ended_columns(), contact);
-  const auto size = static_cast<py::ssize_t>(numbers.size());
+  FrameContacts frame = self;
+  visit_rows(frame, [&](auto columns, const auto& row) {
+    for (const auto& column : columns) numbers.push_back(column.get(row));
+  });
   return py::make_tuple(kVersion, self.time_s, self.total.has_shear, self.contacts.size(),
-                        self.ended.size(), array_of(std::move(numbers), {size}));
+                        self.ended.size(), numbers);
 }
 
 SharedContacts contacts_from(const py::tuple& state) {
   if (state[0].cast<std::string>() != kVersion) {
     throw Error("FrameContacts", "another version of pillarfield pickled it", "save() forces");
   }
-  const auto array = state[5].cast<py::array_t<double>>();
-  std::span<const double> numbers(array.data(), static_cast<std::size_t>(array.size()));
-  auto contacts = std::make_shared<FrameContacts>();
-  contacts->time_s = state[1].cast<double>();
-  contacts->total.has_shear = state[2].cast<bool>();
-  contacts->contacts.resize(state[3].cast<std::size_t>());
-  contacts->ended.resize(state[4].cast<std::size_t>());
-  set_numbers(numbers, quantity_columns(true), contacts->total);
-  for (TrackedContact& contact : contacts->contacts) {
-    contact.quantities.has_shear = contacts->total.has_shear;
-    set_numbers(numbers, identity_columns(), contact);
-    set_numbers(numbers, quantity_columns(true), contact.quantities);
-  }
-  for (EndedContact& contact : contacts->ended) set_numbers(numbers, ended_columns(), contact);
-  return contacts;
+  auto frame = std::make_shared<FrameContacts>();
+  frame->time_s = state[1].cast<double>();
+  frame->total.has_shear = state[2].cast<bool>();
+  frame->contacts.resize(state[3].cast<std::size_t>());
+  frame->ended.resize(state[4].cast<std::size_t>());
+  const auto numbers = state[5].cast<std::vector<double>>();
+  visit_rows(*frame, [&, next = std::size_t{0}](auto columns, auto& row) mutable {
+    for (const auto& column : columns) column.set(row, numbers.at(next++));
+  });
+  return frame;
 }
 
 /// A column of a table, with a value for each row: integers, numbers or words.

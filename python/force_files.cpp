@@ -124,6 +124,7 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   info.uncertainty = planes.contains("uncertainty_normal");
   info.surface = skin.surface;
   if (!contacts || !is_hdf5_name(path)) info.contacts.reset();
+  if (info.contacts) info.contacts->surface = skin.surface;
   const py::gil_scoped_release unlocked;
   const auto sink = create_force_sink(path, info, overwrite ? Replace::anything : Replace::results);
   SignalCheck check_signals;

@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -194,9 +193,8 @@ auto scalars_of(auto& plan) {
                   plan.pressure);
 }
 
-template <class... Value>
-std::tuple<std::decay_t<Value>...> values_of(const std::tuple<Value...>& references) {
-  return references;
+auto values_of(const auto& references) {
+  return std::apply([](const auto&... value) { return std::make_tuple(value...); }, references);
 }
 
 py::tuple plan_state(const SolverPlan& plan) {

@@ -13,32 +13,25 @@ import numpy as np
 from . import _core
 
 
-def _bytes_of(write: Callable[[pathlib.Path], Any]) -> bytes:
-    """The bytes of a file that `write` writes."""
+def _file(data: bytes, use: Callable[[pathlib.Path], Any]) -> tuple[Any, bytes]:
+    """What `use` returns for the path of a file of these bytes, or of none, and its bytes after that."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder, "pickled.h5")
-        write(path)
-        return path.read_bytes()
-
-
-def _read_from(data: bytes, read: Callable[[pathlib.Path], Any]) -> Any:
-    """What `read` reads from a file of these bytes."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder, "pickled.h5")
-        path.write_bytes(data)
-        return read(path)
+        if data:
+            path.write_bytes(data)
+        return use(path), path.read_bytes()
 
 
 def _calibration(data: bytes) -> Any:
-    return _read_from(data, lambda path: _core.Calibration.load(path, trust=True))
+    return _file(data, lambda path: _core.Calibration.load(path, trust=True))[0]
 
 
 def _solved_by(data: bytes) -> Any:
-    return _read_from(data, lambda path: _core.ForceReader(path, trust=True).solved_by)
+    return _file(data, lambda path: _core.ForceReader(path, trust=True).solved_by)[0]
 
 
 def _reduce_calibration(calibration: _core.Calibration) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
-    return _calibration, (_bytes_of(calibration.save),)
+    return _calibration, (_file(b"", calibration.save)[1],)
 
 
 def _reduce_solved_by(solved_by: Any) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
@@ -48,8 +41,8 @@ def _reduce_solved_by(solved_by: Any) -> tuple[Callable[[bytes], Any], tuple[byt
     names = ("normal",) if solved_by.layout == "sensels" else ("normal", "shear_x", "shear_y")
     planes = {name: np.zeros(shape, np.float32) for name in names}
     planes["status"] = np.zeros(shape, np.uint8)
-    return _solved_by, (_bytes_of(lambda path: _core.save_forces(
-        path, planes, [], [], skin, solved_by, False)),)
+    return _solved_by, (_file(b"", lambda path: _core.save_forces(
+        path, planes, [], [], skin, solved_by, False))[1],)
 
 
 copyreg.pickle(_core.Calibration, _reduce_calibration)

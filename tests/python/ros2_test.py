@@ -34,8 +34,8 @@ class Node(unittest.TestCase):
         (node,) = re.findall(r"^```python\n(.*?)^```$", (SOURCE / "docs/ros2.md").read_text(), re.M | re.S)
         published, streams = {}, []
 
-        def ok():
-            if not streams:  # The node listens now.
+        def ok():  # Called first when the node listens.
+            if not streams:
                 streams.append(subprocess.Popen([os.environ["PILLARFIELD"], "stream", SCENE, "--frames", "20",
                                                  "--to", f"udp:127.0.0.1:{port}", "--quiet"]))
             return streams[0].poll() is None
@@ -44,10 +44,9 @@ class Node(unittest.TestCase):
             published[name] = []
             return types.SimpleNamespace(publish=published[name].append)
 
-        messages = types.SimpleNamespace(WrenchStamped=Message)
-        sys.modules.update({"rclpy": types.SimpleNamespace(
-            init=lambda: None, ok=ok, create_node=lambda _: types.SimpleNamespace(create_publisher=publisher)),
-            "geometry_msgs": types.SimpleNamespace(msg=messages), "geometry_msgs.msg": messages})
+        made = types.SimpleNamespace(create_publisher=publisher)
+        sys.modules["rclpy"] = types.SimpleNamespace(init=lambda: None, ok=ok, create_node=lambda _: made)
+        sys.modules["geometry_msgs"] = sys.modules["geometry_msgs.msg"] = types.SimpleNamespace(WrenchStamped=Message)
         exec(compile(node.replace("9871", port), "docs/ros2.md", "exec"), {})
 
         forces = pf.solve(pf.simulate(SCENE))
@@ -56,8 +55,7 @@ class Node(unittest.TestCase):
         moment = np.cross(points.position_m, points.force_n).sum(1)
         self.assertGreater(len(published["skin/contacts/1"]), 5)
         for message in published["skin/total"]:
-            got = message.wrench.force, message.wrench.torque
-            got = [[getattr(vector, axis) for axis in "xyz"] for vector in got]
+            got = [[getattr(vector, axis) for axis in "xyz"] for vector in (message.wrench.force, message.wrench.torque)]
             near = np.abs(force - got[0]).sum(1).argmin()  # A datagram may be lost.
             np.testing.assert_allclose(got[0], force[near], rtol=1e-4, atol=1e-4)
             np.testing.assert_allclose(got[1], moment[near], rtol=1e-3, atol=1e-4)
