@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <vector>
 
 #include "pillarfield/comparison.h"
@@ -12,14 +11,6 @@
 
 namespace pillarfield::python {
 namespace {
-
-double squares_of(const ForceFieldView& forces) {
-  double sum = 0;
-  for (const auto plane : {forces.shear_x, forces.shear_y, forces.normal}) {
-    for (const double value : plane) sum += value * value;
-  }
-  return sum;
-}
 
 /// A view with shear of zeros, if it has none.
 ForceFieldView with_shear(ForceFieldView forces, const std::vector<float>& zeros) {
@@ -36,28 +27,23 @@ py::tuple compare(const py::dict& solved_planes, const py::dict& true_planes, do
   }
   Comparison comparison;
   ResultantComparison resultants(pitch_mm);
-  double squares = 0;
   {
     const py::gil_scoped_release unlocked;
     const std::vector<float> zeros(std::size_t{truth.rows()} * truth.cols());
     for (std::size_t i = 0; i < solved.frames(); ++i) {
       comparison.add(solved.frame(i), truth.frame(i));
       resultants.add(with_shear(solved.frame(i), zeros), with_shear(truth.frame(i), zeros));
-      squares += squares_of(truth.frame(i));
     }
   }
   std::vector<RegionErrors> regions;
   for (int region = 0; region < kRegions; ++region) {
     regions.push_back(comparison.region(static_cast<Region>(region)));
   }
-  const RegionErrors loaded = comparison.loaded();
-  const double true_rms_n =
-      loaded.pillars > 0 ? std::sqrt(squares / static_cast<double>(loaded.pillars)) : 0;
   const ResultantErrors& patch = resultants.patch();
   const ContactErrors& contacts = resultants.contacts();
   using namespace py::literals;
   return py::make_tuple(
-      loaded, regions, true_rms_n, py::dict("force"_a = patch.force, "torque"_a = patch.torque),
+      comparison.loaded(), regions, py::dict("force"_a = patch.force, "torque"_a = patch.torque),
       py::dict("found"_a = contacts.found, "missed"_a = contacts.missed, "extra"_a = contacts.extra,
                "missed_normal_n"_a = contacts.missed_normal_n,
                "extra_normal_n"_a = contacts.extra_normal_n, "force"_a = contacts.force,
@@ -96,7 +82,7 @@ void bind_compare(py::module_& module) {
                            self.cases, self.rms, self.true_rms, self.worst);
       });
   module.def("compare", &compare, py::arg("solved"), py::arg("truth"), py::arg("pitch_mm"),
-             "RegionErrors of all loaded pillars and of each Region, RMS of their true forces (N), "
+             "RegionErrors of all loaded pillars and of each Region, "
              "errors of the resultant, errors of contacts.");
 }
 

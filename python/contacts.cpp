@@ -198,29 +198,21 @@ py::object column_of(const ContactColumn<Row>& column, const std::vector<const R
   return array(std::int64_t{});
 }
 
-/// {"frame": ..., "time_s": ..., ...}: a row for each frame, or for each contact of each frame.
+/// {"id": ..., "normal_n": ..., ...}: a row for each frame, or for each contact of each frame.
 py::dict columns_of(const std::vector<SharedContacts>& frames, bool totals) {
-  std::vector<std::int64_t> indices;
-  std::vector<double> times;
   std::vector<const TrackedContact*> contacts;
   std::vector<const ContactQuantities*> quantities;
-  const auto add = [&](std::size_t frame, const ContactQuantities& row) {
-    indices.push_back(static_cast<std::int64_t>(frame));
-    times.push_back(frames[frame]->time_s);
-    quantities.push_back(&row);
-  };
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (totals) add(i, frames[i]->total);
-    for (const TrackedContact& contact : frames[i]->contacts) {
-      if (totals) break;
-      add(i, contact.quantities);
+  for (const SharedContacts& frame : frames) {
+    if (totals) {
+      quantities.push_back(&frame->total);
+      continue;
+    }
+    for (const TrackedContact& contact : frame->contacts) {
       contacts.push_back(&contact);
+      quantities.push_back(&contact.quantities);
     }
   }
-  const auto size = static_cast<py::ssize_t>(quantities.size());
   py::dict columns;
-  columns["frame"] = array_of(std::move(indices), {size});
-  columns["time_s"] = array_of(std::move(times), {size});
   if (!totals) {
     for (const auto& column : identity_columns())
       columns[column.name] = column_of(column, contacts);

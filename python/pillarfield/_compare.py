@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Optional
+
+import numpy as np
 
 from . import _core
 from ._field import ForceField
@@ -87,8 +90,10 @@ def compare(solved: ForceField, truth: ForceField) -> Comparison:
     """
     skin = truth.skin or solved.skin
     pitch_mm = skin.element_pitch_mm if skin else 1.0
-    loaded, regions, true_rms_n, resultant, contacts = _core.compare(
-        solved._batch(), truth._batch(), pitch_mm)
+    loaded, regions, resultant, contacts = _core.compare(solved._batch(), truth._batch(), pitch_mm)
+    squares = sum(float(np.square(truth._planes[name], dtype=float).sum())
+                  for name in ("shear_x", "shear_y", "normal") if name in truth._planes)
+    true_rms_n = math.sqrt(squares / max(1, loaded.pillars))
     if not skin or not truth.has_pillars:
         resultant["torque"] = contacts["torque"] = None
     if not skin:

@@ -275,12 +275,12 @@ class ForceField:
 
     def _records(self, totals: bool) -> npt.NDArray[Any]:
         contacts = [self.contacts] if self.normal.ndim == 2 else self.contacts
-        columns: dict[str, npt.NDArray[Any]] = _core.contact_columns(contacts, totals)
-        records = np.empty(len(columns["frame"]), [(name, column.dtype)
-                                                   for name, column in columns.items()])
-        for name, column in columns.items():
-            records[name] = column
-        return records
+        rows = [1 if totals else len(each) for each in contacts]
+        columns: dict[str, npt.NDArray[Any]] = {
+            "frame": np.repeat(np.arange(len(contacts)), rows),
+            "time_s": np.repeat([each.time_s for each in contacts], rows),
+            **_core.contact_columns(contacts, totals)}
+        return np.rec.fromarrays(list(columns.values()), [(name, each.dtype) for name, each in columns.items()])
 
     def to_pandas(self, *, totals: bool = False) -> pandas.DataFrame:
         """contact_records(), or with totals total_records(), as a DataFrame.
