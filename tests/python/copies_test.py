@@ -1,6 +1,7 @@
 """Copies and pickles, tables of contacts, comparisons, devices, and how a misspelt option is answered."""
 
 import copy
+import importlib.util
 import math
 import os
 import pathlib
@@ -116,14 +117,12 @@ class Tables(unittest.TestCase):
 
     def test_pandas(self):
         _, forces = solved()
-        try:
-            import pandas  # noqa: F401
-        except ImportError:
+        if importlib.util.find_spec("pandas"):
+            self.assertEqual(list(forces.to_pandas()["normal_n"]), list(forces.contact_records()["normal_n"]))
+            self.assertEqual(len(forces.to_pandas(totals=True)), len(forces))
+        else:
             with self.assertRaisesRegex(pf.Error, "pandas is not installed; install it"):
                 forces.to_pandas()
-            return
-        self.assertEqual(list(forces.to_pandas()["normal_n"]), list(forces.contact_records()["normal_n"]))
-        self.assertEqual(len(forces.to_pandas(totals=True)), len(forces))
 
 
 class Comparisons(unittest.TestCase):
@@ -184,7 +183,6 @@ class Answers(unittest.TestCase):
         for value in (forces.contacts[0], forces.contacts[0].total, forces.contacts[0][0], found, found.loaded,
                       found.resultant.force, pf.Surface.sphere(40), pf.Skin(8, 12), simulation):
             self.assertRegex(repr(value), rf"^<?{type(value).__name__}\W")
-            self.assertNotIn(" object at ", repr(value))
 
 
 if __name__ == "__main__":
