@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -171,9 +172,9 @@ SharedContacts contacts_from(const py::tuple& state) {
   auto frame = std::make_shared<FrameContacts>();
   frame->time_s = state[1].cast<double>();
   frame->total.has_shear = state[2].cast<bool>();
-  frame->contacts.resize(state[3].cast<std::size_t>());
-  frame->ended.resize(state[4].cast<std::size_t>());
-  const auto numbers = state[5].cast<std::vector<double>>();
+  const auto numbers = state[5].cast<std::vector<double>>();  // Each contact has some.
+  frame->contacts.resize(std::min(state[3].cast<std::size_t>(), numbers.size()));
+  frame->ended.resize(std::min(state[4].cast<std::size_t>(), numbers.size()));
   visit_rows(*frame, [&, next = std::size_t{0}](auto columns, auto& row) mutable {
     for (const auto& column : columns) column.set(row, numbers.at(next++));
   });
