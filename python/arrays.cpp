@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "base/nearest_word.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::python {
@@ -51,6 +52,14 @@ template std::vector<float> plane_from<float>(const py::object&, std::uint32_t, 
                                               std::string_view);
 template std::vector<std::uint8_t> plane_from<std::uint8_t>(const py::object&, std::uint32_t,
                                                             std::uint32_t, std::string_view);
+
+void refuse(const std::string& function, const py::dict& unknown,
+            const std::vector<std::string>& known) {
+  if (unknown.empty()) return;
+  const auto name = py::str(unknown.begin()->first).cast<std::string>();
+  throw py::type_error(
+      fmt::format("{}() has no argument '{}'{}", function, name, suggestion(name, known)));
+}
 
 SenselType sensel_type_of(const py::array& readings) {
   if (is_of<std::uint8_t>(readings)) return SenselType::u8;

@@ -65,6 +65,11 @@ T argument(const py::handle& value, const std::string& name) {
   }
 }
 
+/// Throws TypeError if there are arguments, of a function that knows those of other names; it
+/// suggests one of them.
+void refuse(const std::string& function, const py::dict& unknown,
+            const std::vector<std::string>& known);
+
 /// The type of readings of an array. Throws Error for types other than uint8, uint16 and float32.
 [[nodiscard]] SenselType sensel_type_of(const py::array& readings);
 /// The NumPy type of readings.

@@ -33,7 +33,11 @@ SkinCalibration make_calibration(std::uint32_t rows, std::uint32_t cols, const p
                                  const py::object& gain, const py::object& dead_zone,
                                  const py::object& mask, const py::object& noise,
                                  std::optional<double> threshold_counts,
-                                 std::optional<double> counts_per_newton) {
+                                 std::optional<double> counts_per_newton,
+                                 const py::kwargs& unknown) {
+  refuse("Calibration", unknown,
+         {"rows", "cols", "tare", "gain", "dead_zone", "mask", "noise", "threshold_counts",
+          "counts_per_newton"});
   SkinCalibration made;
   made.rows = rows;
   made.cols = cols;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -9,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "io/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
+#include "pillarfield/version.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
@@ -116,6 +119,13 @@ std::string contact_text(const TrackedContact& contact) {
                      name_of(q.slip));
 }
 
+std::string total_text(const ContactQuantities& q) {
+  return fmt::format(
+      "<ContactTotal: {} {}, normal {:.3g} N{}>", q.pillars, q.has_shear ? "pillars" : "sensels",
+      q.normal_n,
+      q.has_shear ? fmt::format(", shear ({:.3g}, {:.3g}) N", q.shear_x_n, q.shear_y_n) : "");
+}
+
 using SharedContacts = std::shared_ptr<FrameContacts>;
 
 TrackedContact contact_at(const FrameContacts& self, py::ssize_t index) {
@@ -130,6 +140,91 @@ py::list ended_of(const FrameContacts& self) {
     ended.append(py::make_tuple(contact.track_id, contact.merged_into));
   }
   return ended;
+}
+
+/// Calls visit(columns, row) for all rows of a frame.
+template <class Visit>
+void visit_rows(FrameContacts& frame, Visit visit) {
+  visit(quantity_columns(true), frame.total);
+  for (TrackedContact& contact : frame.contacts) {
+    contact.quantities.has_shear = frame.total.has_shear;
+    visit(identity_columns(), contact);
+    visit(quantity_columns(true), contact.quantities);
+  }
+  for (EndedContact& contact : frame.ended) visit(ended_columns(), contact);
+}
+
+/// Version, time, whether there are pillars, numbers of contacts and of ended ones, all numbers.
+py::tuple contacts_state(const FrameContacts& self) {
+  std::vector<double> numbers;
+  FrameContacts frame = self;
+  visit_rows(frame, [&](auto columns, const auto& row) {
+    for (const auto& column : columns) numbers.push_back(column.get(row));
+  });
+  return py::make_tuple(kVersion, self.time_s, self.total.has_shear, self.contacts.size(),
+                        self.ended.size(), numbers);
+}
+
+SharedContacts contacts_from(const py::tuple& state) {
+  if (state[0].cast<std::string>() != kVersion) {
+    throw Error("FrameContacts", "another version of pillarfield pickled it", "save() forces");
+  }
+  auto frame = std::make_shared<FrameContacts>();
+  frame->time_s = state[1].cast<double>();
+  frame->total.has_shear = state[2].cast<bool>();
+  const auto numbers = state[5].cast<std::vector<double>>();  // Each contact has some.
+  frame->contacts.resize(std::min(state[3].cast<std::size_t>(), numbers.size()));
+  frame->ended.resize(std::min(state[4].cast<std::size_t>(), numbers.size()));
+  visit_rows(*frame, [&, next = std::size_t{0}](auto columns, auto& row) mutable {
+    for (const auto& column : columns) column.set(row, numbers.at(next++));
+  });
+  return frame;
+}
+
+/// A column of a table, with a value for each row: integers, numbers or words.
+template <class Row>
+py::object column_of(const ContactColumn<Row>& column, const std::vector<const Row*>& rows) {
+  const auto size = static_cast<py::ssize_t>(rows.size());
+  if (column.kind == ColumnKind::word) {
+    py::list words;
+    for (const Row* row : rows) words.append(column.word(column.get(*row)));
+    return py::module_::import("numpy").attr("array")(words, "str");  // Empty ones, too.
+  }
+  const auto array = [&]<class T>(T) {
+    std::vector<T> values;
+    for (const Row* row : rows) values.push_back(static_cast<T>(column.get(*row)));
+    return array_of(std::move(values), {size});
+  };
+  if (column.kind == ColumnKind::number) return array(double{});
+  return array(std::int64_t{});
+}
+
+/// {"id": ..., "normal_n": ..., ...}: a row for each frame, or for each contact of each frame.
+py::dict columns_of(const std::vector<SharedContacts>& frames, bool totals) {
+  std::vector<const TrackedContact*> contacts;
+  std::vector<const ContactQuantities*> quantities;
+  for (const SharedContacts& frame : frames) {
+    if (totals) {
+      quantities.push_back(&frame->total);
+      continue;
+    }
+    for (const TrackedContact& contact : frame->contacts) {
+      contacts.push_back(&contact);
+      quantities.push_back(&contact.quantities);
+    }
+  }
+  py::dict columns;
+  if (!totals) {
+    for (const auto& column : identity_columns())
+      columns[column.name] = column_of(column, contacts);
+  }
+  const bool on_surface = !frames.empty() && frames.front()->total.wrench;
+  const bool has_pillars = frames.empty() || frames.front()->total.has_shear;
+  for (const auto& column :
+       quantity_columns(on_surface, has_pillars ? SkinLayout::pillars : SkinLayout::sensels)) {
+    columns[column.name] = column_of(column, quantities);
+  }
+  return columns;
 }
 
 /// A ContactTracker with the plan's constants, used by one thread at a time.
@@ -174,6 +269,7 @@ void bind_contacts(py::module_& module) {
   py::class_<ContactQuantities> total(module, "ContactTotal", kTotal);
   add_quantities(
       total, [](const ContactQuantities& self) -> const auto& { return self; });
+  total.def("__repr__", &total_text);
   py::class_<TrackedContact> contact(module, "Contact", kContact);
   add_quantities(
       contact, [](const TrackedContact& self) -> const auto& { return self.quantities; });
@@ -189,12 +285,21 @@ void bind_contacts(py::module_& module) {
                              "[(track_id, track_id that it merged into or None), ...]")
       .def("__len__", [](const FrameContacts& self) { return self.contacts.size(); })
       .def("__getitem__", &contact_at, py::arg("index"))
-      .def("__repr__", [](const FrameContacts& self) {
-        return fmt::format("<FrameContacts: {} contacts, {:.3g} N>", self.contacts.size(),
-                           self.total.normal_n);
-      });
+      .def("__repr__",
+           [](const FrameContacts& self) {
+             return fmt::format("<FrameContacts: {} contacts, {:.3g} N>", self.contacts.size(),
+                                self.total.normal_n);
+           })
+      .def(py::pickle(&contacts_state, &contacts_from));
+  module.def("contact_columns", &columns_of, py::arg("frames"), py::arg("totals"),
+             "Columns of a table of contacts, or of the totals of frames, by name.");
   py::class_<Tracker>(module, "Tracker", kTracker)
-      .def(py::init<const SolverPlan&, std::uint64_t, double>(), py::arg("plan"), py::kw_only(),
+      .def(py::init([](const SolverPlan& plan, std::uint64_t minimum_pillars, double reach_mm,
+                       const py::kwargs& unknown) {
+             refuse("Contacts", unknown, {"minimum_pillars", "reach_mm"});
+             return std::make_unique<Tracker>(plan, minimum_pillars, reach_mm);
+           }),
+           py::arg("plan"), py::kw_only(),
            py::arg("minimum_pillars") = ContactOptions{}.minimum_pillars,
            py::arg("reach_mm") = ContactOptions{}.reach_mm)
       .def("update_planes", &Tracker::update, py::arg("planes"), py::arg("times"),

@@ -124,6 +124,7 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
   info.uncertainty = planes.contains("uncertainty_normal");
   info.surface = skin.surface;
   if (!contacts || !is_hdf5_name(path)) info.contacts.reset();
+  if (info.contacts) info.contacts->surface = skin.surface;
   const py::gil_scoped_release unlocked;
   const auto sink = create_force_sink(path, info, overwrite ? Replace::anything : Replace::results);
   SignalCheck check_signals;
@@ -141,7 +142,9 @@ void save_forces(const std::filesystem::path& path, const py::dict& planes,
 
 void bind_force_files(py::module_& module) {
   py::class_<ForceFileInfo>(module, "SolvedBy", "How forces were solved.")
-      .def(py::init(&solved_by), py::arg("plan"));
+      .def(py::init(&solved_by), py::arg("plan"))
+      .def_property_readonly("layout",
+                             [](const ForceFileInfo& self) { return name_of(self.layout); });
   py::class_<ForceReader>(module, "ForceReader", kReader)
       .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
            py::arg("trust") = false)

@@ -10,10 +10,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/nearest_word.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/plan_builder.h"
@@ -112,6 +114,15 @@ bool set(PlanSettings& settings, const std::string& name, const py::handle& valu
   return true;
 }
 
+/// Names of all arguments that set() takes, and of the others of Plan().
+std::vector<std::string> plan_options() {
+  std::vector<std::string> names = {"skin",    "sensel_type",    "calibration",
+                                    "scene",   "layout",         "estimator",
+                                    "outputs", "friction_prior", "unrelated_frames"};
+  for (const PlanSetting& setting : kPlanSettings) names.emplace_back(setting.name);
+  return names;
+}
+
 PlanSettings settings_of(const py::kwargs& given) {
   PlanSettings settings;
   for (const auto& [key, value] : given) {
@@ -120,9 +131,8 @@ PlanSettings settings_of(const py::kwargs& given) {
     if (name == "segment_point") {
       throw Error("Plan", "segment_point is not a setting any more", "leave it out");
     }
-    if (!set(settings, name, value)) {
-      throw py::type_error(fmt::format("Plan() has no argument '{}'", name));
-    }
+    if (!set(settings, name, value))
+      refuse("Plan", py::dict(py::arg(name.c_str()) = value), plan_options());
   }
   return settings;
 }
@@ -174,6 +184,37 @@ SolverPlan plan_of(Frames& frames, const Skin& skin, const CalibrationOrPath& ca
   });
 }
 
+/// The scalars of a plan that are neither its skin nor its calibration.
+auto scalars_of(auto& plan) {
+  return std::tie(plan.parity_tolerance_counts, plan.noise_counts, plan.segment_point,
+                  plan.friction.median, plan.friction.spread, plan.friction.given,
+                  plan.friction.bound, plan.friction.memory, plan.baseline_rate,
+                  plan.baseline_interval, plan.frame_interval_s, plan.angles, plan.uncertainty,
+                  plan.pressure);
+}
+
+auto values_of(const auto& references) {
+  return std::apply([](const auto&... value) { return std::make_tuple(value...); }, references);
+}
+
+py::tuple plan_state(const SolverPlan& plan) {
+  SkinCalibration calibration = blank_calibration(plan.skin);
+  calibration.planes = plan.calibration;
+  return py::make_tuple(plan.skin, name_of(plan.sensel_type), name_of(plan.estimator), calibration,
+                        values_of(scalars_of(plan)));
+}
+
+SolverPlan plan_from(const py::tuple& state) {
+  SolverPlan plan;
+  plan.skin = state[0].cast<Skin>();
+  plan.sensel_type = choice_named(state[1].cast<std::string>(), kTypes, "type of readings");
+  plan.estimator = choice_named(state[2].cast<std::string>(), kEstimators, "estimator");
+  plan.calibration = state[3].cast<SkinCalibration>().planes;
+  scalars_of(plan) = state[4].cast<decltype(values_of(scalars_of(plan)))>();
+  check(plan, "Plan");
+  return plan;
+}
+
 std::string plan_text(const SolverPlan& plan) {
   return fmt::format("<Plan {} x {} {}, estimator '{}'{}{}>", plan.skin.rows, plan.skin.cols,
                      name_of(plan.sensel_type), name_of(plan.estimator),
@@ -198,7 +239,11 @@ void bind_plan(py::module_& module) {
       .def_property_readonly(
           "stages", [](const SolverPlan& plan) { return kernel_stages(plan); },
           "names of the stages that are compiled into the kernel")
-      .def("__repr__", &plan_text);
+      .def("__repr__", &plan_text)
+      .def(py::pickle(&plan_state, &plan_from));
+  module.def("suggestion", &suggestion, py::arg("word"), py::arg("candidates"),
+             "'; did you mean ...?' for the nearest candidate, if one is near.");
+  module.attr("plan_options") = py::cast(plan_options());
   module.def("plan_of", &plan_of, py::arg("frames"), py::arg("skin"), py::kw_only(),
              py::arg("calibration") = unset, py::arg("scene") = unset,
              "A Plan for frames, with their type and time from frame to frame.");

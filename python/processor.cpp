@@ -1,5 +1,6 @@
 #include "pillarfield/processor.h"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <array>
@@ -190,9 +191,39 @@ class Ring {
   MissingPillars missing_;
 };
 
+std::string device_text(const DeviceInfo& device) {
+  return fmt::format("<Device {}: {}, {} lanes{}>",
+                     device.index < 0 ? "'host'" : std::to_string(device.index), device.name,
+                     device.lanes,
+                     device.unsuitable.empty() ? "" : "; unsuitable: " + device.unsuitable);
+}
+
+std::vector<DeviceInfo> devices() {
+  const py::gil_scoped_release unlocked;
+  std::vector<DeviceInfo> all = list_devices();
+  all.insert(all.begin(), open_device("host").info());
+  return all;
+}
+
 }  // namespace
 
 void bind_processor(py::module_& module) {
+  py::class_<DeviceInfo>(module, "Device", "A device that solves; devices() lists them.")
+      .def_readonly("name", &DeviceInfo::name, "of the processor or graphics card")
+      .def_readonly("platform", &DeviceInfo::platform, "its driver; empty for the host")
+      .def_readonly("type", &DeviceInfo::type, "'CPU', 'GPU', 'accelerator', 'other' or 'host'")
+      .def_readonly("lanes", &DeviceInfo::lanes, "pillars that it solves in one instruction")
+      .def_readonly("unsuitable", &DeviceInfo::unsuitable, "why it is passed over; empty: it fits")
+      .def_property_readonly(
+          "index",
+          [](const DeviceInfo& self) {
+            return self.index < 0 ? std::nullopt : std::optional<int>(self.index);
+          },
+          "for device=; None: the host without OpenCL, device='host'")
+      .def("__repr__", &device_text);
+  module.def("devices", &devices,
+             "The devices that solve: the host, and those of OpenCL. device= of solve() takes an "
+             "index or a part of a name.");
   py::class_<Ring>(module, "Processor", kProcessor)
       .def(py::init<const SolverPlan&, int, int, bool, const std::string&>(), py::arg("plan"),
            py::arg("frames_in_flight"), py::arg("lent"), py::arg("contacts"), py::arg("device"))

@@ -81,10 +81,22 @@ void bind_scene(py::module_& module) {
           py::kw_only(), py::arg("frames") = py::none(), py::arg("seed") = py::none(),
           "A copy with another number of frames or another seed.")
       .def_readonly("warnings", &Scene::warnings, "one sentence each")
-      .def("__repr__", [](const Scene& scene) {
-        return fmt::format("<Scene '{}': {} frames of {} x {} sensels>", scene.title, scene.frames,
-                           scene.skin.rows, scene.skin.cols);
-      });
+      .def("__repr__",
+           [](const Scene& scene) {
+             return fmt::format("<Scene '{}': {} frames of {} x {} sensels>", scene.title,
+                                scene.frames, scene.skin.rows, scene.skin.cols);
+           })
+      .def(py::pickle(
+          [](const Scene& scene) {
+            return py::make_tuple(scene.text, scene.file, scene.frames, scene.seed);
+          },
+          [](const py::tuple& state) {
+            Scene scene = parse_scene(state[0].cast<std::string>(),
+                                      state[1].cast<std::filesystem::path>().string());
+            scene.frames = state[2].cast<std::uint32_t>();
+            scene.seed = state[3].cast<std::uint64_t>();
+            return scene;
+          }));
   py::class_<Simulator>(module, "Simulator", "Makes frames with exact truth from a Scene.")
       .def(py::init([](const Scene& scene) {
              const py::gil_scoped_release unlocked;

@@ -4,7 +4,9 @@
 #include <pybind11/stl.h>
 
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
@@ -33,6 +35,17 @@ power_law: (exponent, reference_counts) of sensels whose response is a power of 
 surface: Surface under the skin; None: unknown
 
 Raises Error for a value out of range.)";
+
+/// Names of the arguments of Skin(), and of the members that hold them.
+const std::vector<std::string> kArguments = {"rows",
+                                             "cols",
+                                             "sensel_pitch_mm",
+                                             "counts_per_newton",
+                                             "threshold_counts",
+                                             "full_scale_counts",
+                                             "power_law",
+                                             "surface",
+                                             "layout"};
 
 using Law = std::pair<double, double>;
 
@@ -64,7 +77,9 @@ SkinLayout layout_of(const std::string& name) {
 Skin make_skin(std::uint32_t rows, std::uint32_t cols, double sensel_pitch_mm,
                double counts_per_newton, double threshold_counts,
                std::optional<double> full_scale_counts, const std::optional<Law>& power_law,
-               std::optional<Surface> surface, const std::string& layout) {
+               std::optional<Surface> surface, const std::string& layout,
+               const py::kwargs& unknown) {
+  refuse("Skin", unknown, kArguments);
   Skin skin;
   skin.rows = rows;
   skin.cols = cols;
@@ -83,6 +98,14 @@ std::string skin_text(const Skin& skin) {
   return fmt::format("Skin({}, {}, counts_per_newton={:.6g}, threshold_counts={:.6g}{})", skin.rows,
                      skin.cols, skin.counts_per_newton, skin.threshold_counts,
                      skin.has_pillars() ? "" : ", layout='sensels'");
+}
+
+std::string surface_text(const Surface& surface) {
+  std::string text = fmt::format("<Surface: {}", name_of(surface.shape));
+  if (surface.shape == SurfaceShape::cylinder || surface.shape == SurfaceShape::sphere) {
+    text += fmt::format(", radius {:.6g} mm", surface.radius_mm);
+  }
+  return text + ">";
 }
 
 /// Position, tangent_x, tangent_y and normal of each pillar: [4, rows, cols, 3], mm and unit
@@ -133,7 +156,17 @@ void bind_surface(py::module_& module) {
           "shape", [](const Surface& self) { return name_of(self.shape); },
           "'plane', 'cylinder', 'sphere' or 'height_map'")
       .def_readonly("radius_mm", &Surface::radius_mm, "radius of cylinder or sphere, mm")
-      .def_readonly("axis_deg", &Surface::axis_deg, "direction of the cylinder's axis, degrees");
+      .def_readonly("axis_deg", &Surface::axis_deg, "direction of the cylinder's axis, degrees")
+      .def("__repr__", &surface_text)
+      .def(py::pickle(
+          [](const Surface& self) {
+            return py::make_tuple(static_cast<int>(self.shape), self.radius_mm, self.axis_deg,
+                                  self.heights_mm);
+          },
+          [](const py::tuple& state) {
+            return Surface{static_cast<SurfaceShape>(state[0].cast<int>()), state[1].cast<double>(),
+                           state[2].cast<double>(), state[3].cast<decltype(Surface::heights_mm)>()};
+          }));
 }
 
 }  // namespace
@@ -173,7 +206,15 @@ void bind_skin(py::module_& module) {
       .def_property_readonly("element_cols", &Skin::element_cols, "columns of the forces")
       .def_property_readonly("element_pitch_mm", &Skin::element_pitch_mm,
                              "distance of pillars, or of sensels without pillars, mm")
-      .def("__repr__", &skin_text);
+      .def("__repr__", &skin_text)
+      .def(py::pickle(
+          [](const py::object& self) {
+            py::dict values;
+            for (const std::string& name : kArguments)
+              values[name.c_str()] = self.attr(name.c_str());
+            return values;
+          },
+          [](const py::dict& values) { return py::type::of<Skin>()(**values).cast<Skin>(); }));
   module.def("regions", &regions, "The Region of each status byte, 256 bytes.");
   module.def("poses", &poses, py::arg("skin"),
              "Position (mm), tangents and normal of each pillar: [4, pillar rows, cols, 3].");

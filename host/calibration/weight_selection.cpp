@@ -76,7 +76,8 @@ std::vector<double> copies_of(const Calibration& planes, const Skin& skin) {
   for (std::size_t i = 0; i < copies.size(); ++i) {
     if (state_of(planes, i) != kMissing) continue;
     std::vector<std::size_t> good;
-    for (const std::size_t n : Neighbours(skin, i).edges()) {
+    const Neighbours around(skin, i);
+    for (const std::size_t n : around.edges()) {
       if (state_of(planes, n) == kGood) good.push_back(n);
     }
     for (const std::size_t n : good) copies[n] += 1 / static_cast<double>(good.size());

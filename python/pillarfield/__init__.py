@@ -12,10 +12,11 @@
 docs/python.md is the manual.
 """
 
+from . import _pickle as _pickle  # Registers what it pickles.
 from . import calibrate, distributed
-from ._compare import Comparison, compare
-from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, RegionErrors, Scene,
-                    Skin, Surface, __version__)
+from ._compare import Comparison, ContactErrors, ResultantErrors, compare
+from ._core import (Calibration, Contact, ContactTotal, Device, FrameContacts, Plan, RegionErrors,
+                    Scene, Skin, Surface, VectorErrors, __version__, devices)
 from ._error import Error
 from ._field import ForceField, Intervals, Points, Uncertainty
 from ._live import Frame, LiveSink, LiveSource, live, sink
@@ -26,9 +27,10 @@ from ._solve import solve
 from ._status import Region, Status
 from .calibrate import SenselFinding
 
-__all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
-           "ForceFile", "Frame", "FrameContacts", "Intervals", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
-           "RegionErrors", "Scene", "SenselFinding", "Simulation", "Skin", "Status", "Surface",
-           "Uncertainty", "__version__", "calibrate", "compare",
-           "distributed", "live", "open", "save_recording", "scene",
+__all__ = ["Calibration", "Comparison", "Contact", "ContactErrors", "ContactTotal", "Contacts",
+           "Device", "Error", "ForceField", "ForceFile", "Frame", "FrameContacts", "Intervals",
+           "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
+           "RegionErrors", "ResultantErrors", "Scene", "SenselFinding", "Simulation", "Skin",
+           "Status", "Surface", "Uncertainty", "VectorErrors", "__version__", "calibrate",
+           "compare", "devices", "distributed", "live", "open", "save_recording", "scene",
            "simulate", "sink", "solve"]

@@ -17,6 +17,8 @@ _Vector = tuple[float, float, float]
 
 __version__: str
 
+def devices() -> list[Device]: ...
+
 def __getattr__(name: str) -> Any: ...
 
 class Calibration:
@@ -70,6 +72,14 @@ class Contact(_Quantities):
     parent: Optional[int]
     first_time_s: float
     age_s: float
+
+class Device:
+    index: Optional[int]
+    lanes: int
+    name: str
+    platform: str
+    type: str
+    unsuitable: str
 
 class ForceReader:
     estimator: str
@@ -208,3 +218,11 @@ class Tracker:
     def __init__(self, plan: Plan, *, minimum_pillars: int = ..., reach_mm: float = ...) -> None: ...
     def update_planes(self, planes: dict[str, Any],
                       times: npt.ArrayLike) -> list[FrameContacts]: ...
+
+class VectorErrors:
+    cases: int
+    rms: float
+    true_rms: float
+    worst: float
+    worst_frame: int
+    worst_true: float

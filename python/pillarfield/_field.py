@@ -17,6 +17,7 @@ from ._picture import picture
 from ._status import REGIONS, Status
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 Floats = npt.NDArray[np.float32]
@@ -252,6 +253,46 @@ class ForceField:
         if self._contacts is None:
             raise Error("ForceField", "it has no contacts", "solve with contacts=True")
         return self._contacts if self.normal.ndim == 3 else self._contacts[0]
+
+    def contact_records(self) -> npt.NDArray[Any]:
+        """The contacts of all frames as NumPy records, a row for each contact in each frame.
+
+        Fields are frame, time_s, id and the columns of contact files (docs/formats.md), N, mm, kPa.
+        """
+        return self._records(False)
+
+    def total_records(self) -> npt.NDArray[Any]:
+        """Force, centre of pressure, area and the like of the whole patch, a record for each frame.
+
+        Fields are frame, time_s and the columns of contact files (docs/formats.md), N, mm, kPa.
+
+        >>> import numpy as np, pillarfield as pf
+        >>> forces = pf.solve(np.full((3, 8, 12), 32), counts_per_newton=320, contacts=True)
+        >>> forces.total_records()["normal_n"].round(2)
+        array([9.6, 9.6, 9.6])
+        """
+        return self._records(True)
+
+    def _records(self, totals: bool) -> npt.NDArray[Any]:
+        contacts = [self.contacts] if self.normal.ndim == 2 else self.contacts
+        rows = [1 if totals else len(each) for each in contacts]
+        columns: dict[str, npt.NDArray[Any]] = {
+            "frame": np.repeat(np.arange(len(contacts)), rows),
+            "time_s": np.repeat([each.time_s for each in contacts], rows),
+            **_core.contact_columns(contacts, totals)}
+        return np.rec.fromarrays(list(columns.values()), [(name, each.dtype) for name, each in columns.items()])
+
+    def to_pandas(self, *, totals: bool = False) -> pandas.DataFrame:
+        """contact_records(), or with totals total_records(), as a DataFrame.
+
+        Raises Error where pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise Error("ForceField.to_pandas", "pandas is not installed",
+                        "install it, or use contact_records()") from None
+        return pandas.DataFrame(self._records(totals))
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import os
 from collections.abc import Iterable
@@ -56,6 +57,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     >>> pf.solve(frames, counts_per_newton=320, layout="pillars")
     <ForceField: 5 frames of 4 x 6 pillars, 0.1..0.1 N, 0 % ambiguous>
     """
+    _refuse_unknown(options)
     calibration = _calibration_of(calibration)
     if isinstance(frames, Simulation):
         options = {"scene": frames.scene, **options}
@@ -80,6 +82,14 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+
+
+def _refuse_unknown(options: dict[str, Any]) -> None:
+    """Raises TypeError for an option that there is not; it suggests one."""
+    for name in options:
+        if name not in _core.plan_options:
+            known = [*inspect.signature(solve).parameters, *_core.plan_options]
+            raise TypeError(f"solve() has no argument '{name}'{_core.suggestion(name, known)}")
 
 
 def _calibration_of(given: Any) -> Optional[_core.Calibration]:

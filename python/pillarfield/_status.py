@@ -22,7 +22,7 @@ class Status(enum.IntFlag):
     AMBIGUOUS = 16  #: the readings allow a segment of forces, or two regions
     SATURATED = 32  #: a sensel is at full scale
     INCONSISTENT = 64  #: a sensel is missing, or readings contradict
-    FROM_NEIGHBOURS = 128  #: resolved by the friction of its contact
+    FROM_CONTACT = 128  #: resolved by the friction of its contact
 
 
 class Region(enum.IntEnum):

@@ -40,6 +40,11 @@ class Links(unittest.TestCase):
         self.assertGreater(len(page.PAGES), 30)
         self.assertEqual([fault for path in sorted(page.PAGES) for fault in broken(path)], [])
 
+    def test_tables_are_whole(self):
+        """A row stands below another one, or heads a table."""
+        for path in sorted(page.PAGES):
+            self.assertEqual(re.findall(r"\n\n(\|.*)\n(?!\|[-:|\s]+\|\n)", prose(path)), [], path)
+
     def test_every_scene_is_in_the_gallery(self):
         shown = set(re.findall(r"^`scenes/(.*?)`\.", (SOURCE / "docs/gallery.md").read_text(), re.MULTILINE))
         self.assertEqual(shown, {path.name for path in (SOURCE / "scenes").glob("*.toml")})

@@ -37,9 +37,9 @@ def main():
 
     run("cmake", "--install", os.environ["PILLARFIELD_BUILD"], "--prefix", WORK / "prefix",
         "--component", "python")
-    (place,) = (WORK / "prefix").glob("lib/python3.*/dist-packages")
+    (place,) = (WORK / "prefix").glob("lib/python3.*/site-packages")
     assert (place / "pillarfield/py.typed").exists()
-    printed = run(sys.executable, "-c", TRY, PYTHONPATH=str(place))
+    printed = run(sys.executable, "-c", TRY, PYTHONUSERBASE=str(WORK / "prefix"))  # Mostly ~/.local.
     assert str(place) in printed, printed
 
 

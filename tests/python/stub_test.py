@@ -44,8 +44,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         pathlib.Path("allowed").write_text(ALLOWED, encoding="ascii")
-        pathlib.Path("mypy.ini").write_text("[mypy]\n[mypy-xarray]\nignore_missing_imports = True\n",
-                                            encoding="ascii")  # It is optional.
+        pathlib.Path("mypy.ini").write_text("[mypy]\n[mypy-xarray,pandas]\nignore_missing_imports = True\n",
+                                            encoding="ascii")  # They are optional.
         for what in (["-p", "pillarfield"], examples):
             run(mypy.main.main, ["mypy", "--strict", *what])
         run(mypy.stubtest.main, ["stubtest", "pillarfield", "--allowlist", "allowed",

@@ -95,6 +95,8 @@ struct DirectionSweep {
 /// A scene (docs/scenes.md): the skin, its sensor, the frames, and what touches it.
 struct Scene {
   std::string title;
+  std::string text;            ///< TOML that it was parsed from
+  std::filesystem::path file;  ///< its file; the name given to parse_scene()
   Skin skin;
   SensorModel sensor;
   std::optional<Bending> bending;

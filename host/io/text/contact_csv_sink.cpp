@@ -65,7 +65,8 @@ void ContactCsvSink::add_ended(const EndedContact& contact) {
 
 void ContactCsvSink::append(const SolvedFrame& frame) {
   file_.require_open();
-  const FrameContacts& found = contacts_of(frame, path_.string());
+  const std::string where = path_.string();
+  const FrameContacts& found = contacts_of(frame, where);
   frame_cells_ = fmt::format("{},{},", frames_, frame.time_s);
   file_.write(fmt::format("patch,{},,,,", frame_cells_));
   add_quantities(found.total);

@@ -83,7 +83,8 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info,
 
 void JsonSink::append(const SolvedFrame& frame) {
   file_.require_open();
-  const FrameContacts& found = contacts_of(frame, path_.string());
+  const std::string where = path_.string();
+  const FrameContacts& found = contacts_of(frame, where);
   file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
                           frames_ == 0 ? "" : ",", frames_, frame.time_s,
                           members_of(columns_, found.total, unit_)));

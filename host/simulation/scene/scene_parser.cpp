@@ -390,6 +390,8 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     Scene scene = read_scene(TomlSection(&table, "the scene", name),
                              std::filesystem::path(name).parent_path());
     check(scene, name.c_str());
+    scene.text = text;
+    scene.file = name;
     return scene;
   } catch (const toml::parse_error& error) {
     throw Error(fmt::format("{}:{}", name, error.source().begin.line),

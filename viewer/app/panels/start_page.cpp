@@ -59,7 +59,7 @@ std::string name_line() {
   static std::array<char, 4096> name{};
   caption("A file, or a sensor: udp:ADDRESS:PORT, shm:NAME, serial:DEVICE");
   ImGui::SetNextItemWidth(-100);
-  const bool entered = ImGui::InputTextWithHint("##name", "udp:127.0.0.1:4242", name.data(),
+  const bool entered = ImGui::InputTextWithHint("##name", "udp:127.0.0.1:9870", name.data(),
                                                 name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   const bool pressed = ImGui::Button("Open", ImVec2(-1, 0));
