@@ -48,8 +48,13 @@ float quantile(std::vector<float> values, double share) {
   return values[static_cast<std::size_t>(place)];
 }
 
+float typical_value(FieldProducer& producer, Quantity quantity, double share) {
+  const float value = quantile(survey(producer, quantity), share);
+  return without_rounding(quantity, value, quantile(survey(producer, Quantity::normal), share));
+}
+
 double full_arrow(FieldProducer& producer, Quantity quantity) {
-  const float typical = quantile(survey(producer, quantity), kArrowQuantile);
+  const float typical = typical_value(producer, quantity, kArrowQuantile);
   return typical > 0 ? round_ceiling(typical) : 1;
 }
 
@@ -73,7 +78,7 @@ Range in_unit_of(const Range& shown, Quantity quantity, const PressureUnit& unit
 }
 
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
-  return fitting_range(quantity, quantile(survey(producer, quantity), kRangeQuantile));
+  return fitting_range(quantity, typical_value(producer, quantity, kRangeQuantile));
 }
 
 std::uint64_t most_loaded_frame(FieldProducer& producer) {
@@ -96,17 +101,17 @@ std::uint64_t most_loaded_frame(FieldProducer& producer) {
   return most_loaded;
 }
 
-View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {
+View first_view(const Options& options, const SourceInfo& source, const Layout& layout) {
   const SkinSize size = skin_size(source);
   if (options.orbit) {
-    OrbitView view = fit_orbit(size, surface_of(options, source), plot);
+    OrbitView view = fitted_orbit(size, surface_of(options, source), layout);
     view.azimuth = options.azimuth.value_or(view.azimuth);
     view.elevation = options.elevation.value_or(view.elevation);
     view.target_mm = options.centre_mm.value_or(view.target_mm);
     view.distance_mm /= options.zoom;
     return view;
   }
-  TopView view = fit_top(size, plot);
+  TopView view = fitted_top(size, layout);
   view.pixels_per_mm *= options.zoom;
   view.centre_mm = options.centre_mm.value_or(view.centre_mm);
   return view;

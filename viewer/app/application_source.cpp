@@ -68,8 +68,8 @@ void Application::show(LoadedSource loaded) {
   place_.source = &source;
   set_beside();
   arrange();
-  const Viewport plot = layout_of(place_.area.width, place_.area.height, state_.settings).plot;
-  state_.settings.view = first_view(options_, source, plot);
+  state_.settings.view = first_view(
+      options_, source, layout_of(place_.area.width, place_.area.height, state_.settings));
   drawn_settings_.reset();
   listen();
   if (options_.first_frame != 0) state_.player->seek(options_.first_frame);
@@ -87,6 +87,7 @@ void Application::close() {
   if (loaded_.beside != nullptr) loaded_.beside->on_new_field({});
   if (loaded_.survey != nullptr) loaded_.survey->on_progress({});
   presenter_.clear();
+  held_.reset();
   state_.field.reset();
   state_.beside_field.reset();
   state_.player = state_.beside = nullptr;

@@ -21,9 +21,9 @@ std::optional<Range>& remembered(AppState& state) {
 }
 
 View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
-  const Viewport plot = layout_of(place.area.width, place.area.height, state.settings).plot;
-  if (orbit) return fit_orbit(place.skin(), state.settings.surface, plot);
-  return fit_top(place.skin(), plot);
+  const Layout layout = layout_of(place.area.width, place.area.height, state.settings);
+  if (orbit) return fitted_orbit(place.skin(), state.settings.surface, layout);
+  return fitted_top(place.skin(), layout);
 }
 
 }  // namespace
@@ -106,6 +106,18 @@ void reset_view(AppState& state, const FieldPlace& place) {
   state.settings.view = fitted(state, place, shows_orbit(state.settings));
   state.view_is_fitted = true;
   state.other_view.reset();
+}
+
+void stop_at_skin(AppState& state, const FieldPlace& place) {
+  const Layout layout = layout_of(place.area.width, place.area.height, state.settings);
+  if (const auto* const top = std::get_if<TopView>(&state.settings.view)) {
+    const double least = fitted_top(place.skin(), layout).pixels_per_mm;
+    if (top->pixels_per_mm <= least) reset_view(state, place);
+    return;
+  }
+  auto& view = std::get<OrbitView>(state.settings.view);
+  const OrbitView whole = fitted_orbit(place.skin(), state.settings.surface, layout, view);
+  if (view.distance_mm >= whole.distance_mm) view = whole;
 }
 
 void set_surface(AppState& state, const FieldPlace& place, const Surface& surface) {

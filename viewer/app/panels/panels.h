@@ -37,6 +37,9 @@ void contacts_panel(AppState& state, const FieldPlace& place);
 /// and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
 
+/// Marks the panels that have something to show.
+void mark_used(AppState& state);
+
 /// A sensor: record and tare, rate, losses, faulty sensels.
 void sensor_panel(const Command& command);
 
@@ -46,8 +49,9 @@ inline constexpr double kSilentSeconds = 1;
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
 
-/// Draws the help on mouse and keys, as far as they apply to the source, over the field.
-void help_overlay(const Viewport& area, const SourceInfo& source);
+/// Draws the help on mouse and keys, as far as they apply to the source, over the window, and
+/// returns its place. Where it does not fit, it scrolls.
+[[nodiscard]] Viewport help_overlay(const Viewport& area, const SourceInfo& source);
 
 /// Settings of the picture: quantity, range, colours, layers, view, surface, theme.
 void view_panel(const Command& command);

@@ -9,14 +9,15 @@
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
+#include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {
 
 constexpr double kLiveSeconds = 20;  ///< shown of a sensor at first
 constexpr std::size_t kMostShownPoints = 8192;
-constexpr double kChartHeight = 130;  ///< least, nominal pixels
-constexpr double kChartWidth = 250;   ///< least beside others
+constexpr double kChartHeight = 72;  ///< least, nominal pixels
+constexpr double kChartWidth = 150;  ///< least beside others
 
 using Points = std::vector<CurvePoint>;
 using Component = double (*)(const CurvePoint&);
@@ -32,6 +33,7 @@ struct Chart {
   std::string title;
   const char* unit;
   std::vector<Curve> curves;
+  double rounding = 0;  ///< values up to here are zero but for rounding
 };
 
 double normal_of(const CurvePoint& point) { return static_cast<double>(point.normal); }
@@ -97,6 +99,22 @@ void add_selection(std::vector<Chart>& charts, const AppState& state, const Span
   charts.push_back(force_chart("Selection", points, colours, pillars));
 }
 
+/// Forces are sums in single precision, torques those times a length.
+void set_rounding(std::vector<Chart>& charts, const SourceInfo& source) {
+  constexpr double kRounding = 1e-6;
+  double most_n = 0;
+  for (const CurvePoint& point : charts.front().curves.front().points) {
+    most_n = std::max(most_n, std::abs(normal_of(point)));
+  }
+  const SkinSize size = skin_size(source);
+  const double length_mm = std::max(size.width_mm, size.height_mm);
+  for (Chart& chart : charts) {
+    const bool force = std::string_view(chart.unit) == "N";
+    const bool torque = std::string_view(chart.unit) == "N mm";
+    chart.rounding = kRounding * (force ? most_n : torque ? most_n * length_mm : length_mm);
+  }
+}
+
 std::vector<Chart> charts_of(const AppState& state, const Span& time, const PanelStyle& style) {
   const Colours colours = colours_of(style, state.settings.theme);
   const bool pillars = state.player->info().skin.has_pillars();
@@ -104,6 +122,7 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours, pillars);
   add_pins(charts, state, time, pillars);
   add_selection(charts, state, time, colours, pillars);
+  set_rounding(charts, state.player->info());
   return charts;
 }
 
@@ -119,7 +138,7 @@ Span value_span(const Chart& chart) {
   for (const Curve& curve : chart.curves) {
     for (const CurvePoint& point : curve.points) values.push_back(curve.value(point));
   }
-  return round_span(values);
+  return round_span(values, chart.rounding);
 }
 
 /// The point nearest in time; null without points.
@@ -200,7 +219,8 @@ void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const double title = style.line + 2 * style.unit;
+  // The axes begin half a line lower.
+  const double title = 0.9 * style.line;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
   const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
   draw_title(list, chart, outer, style);
@@ -238,7 +258,7 @@ void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   const double height =
-      std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 6 * style.unit,
+      std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 4 * style.unit,
                kChartHeight * style.unit);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
