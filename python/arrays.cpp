@@ -8,6 +8,7 @@
 
 #include "base/nearest_word.h"
 #include "pillarfield/error.h"
+#include "pillarfield/version.h"
 
 namespace pillarfield::python {
 namespace {
@@ -59,6 +60,11 @@ void refuse(const std::string& function, const py::dict& unknown,
   const auto name = py::str(unknown.begin()->first).cast<std::string>();
   throw py::type_error(
       fmt::format("{}() has no argument '{}'{}", function, name, suggestion(name, known)));
+}
+
+void check_version(const py::tuple& state, const char* type) {
+  if (state[0].cast<std::string>() == kVersion) return;
+  throw Error(type, "another version of pillarfield pickled it", "pickle it again by this one");
 }
 
 SenselType sensel_type_of(const py::array& readings) {

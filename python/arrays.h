@@ -70,6 +70,9 @@ T argument(const py::handle& value, const std::string& name) {
 void refuse(const std::string& function, const py::dict& unknown,
             const std::vector<std::string>& known);
 
+/// Throws Error unless this version pickled the state of a `type`, which begins with its version.
+void check_version(const py::tuple& state, const char* type);
+
 /// The type of readings of an array. Throws Error for types other than uint8, uint16 and float32.
 [[nodiscard]] SenselType sensel_type_of(const py::array& readings);
 /// The NumPy type of readings.

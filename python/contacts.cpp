@@ -166,9 +166,7 @@ py::tuple contacts_state(const FrameContacts& self) {
 }
 
 SharedContacts contacts_from(const py::tuple& state) {
-  if (state[0].cast<std::string>() != kVersion) {
-    throw Error("FrameContacts", "another version of pillarfield pickled it", "save() forces");
-  }
+  check_version(state, "FrameContacts");
   auto frame = std::make_shared<FrameContacts>();
   frame->time_s = state[1].cast<double>();
   frame->total.has_shear = state[2].cast<bool>();

@@ -22,6 +22,7 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/tuning.h"
+#include "pillarfield/version.h"
 #include "pipeline/plan_settings.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
@@ -200,17 +201,18 @@ auto values_of(const auto& references) {
 py::tuple plan_state(const SolverPlan& plan) {
   SkinCalibration calibration = blank_calibration(plan.skin);
   calibration.planes = plan.calibration;
-  return py::make_tuple(plan.skin, name_of(plan.sensel_type), name_of(plan.estimator), calibration,
-                        values_of(scalars_of(plan)));
+  return py::make_tuple(kVersion, plan.skin, name_of(plan.sensel_type), name_of(plan.estimator),
+                        calibration, values_of(scalars_of(plan)));
 }
 
 SolverPlan plan_from(const py::tuple& state) {
+  check_version(state, "Plan");
   SolverPlan plan;
-  plan.skin = state[0].cast<Skin>();
-  plan.sensel_type = choice_named(state[1].cast<std::string>(), kTypes, "type of readings");
-  plan.estimator = choice_named(state[2].cast<std::string>(), kEstimators, "estimator");
-  plan.calibration = state[3].cast<SkinCalibration>().planes;
-  scalars_of(plan) = state[4].cast<decltype(values_of(scalars_of(plan)))>();
+  plan.skin = state[1].cast<Skin>();
+  plan.sensel_type = choice_named(state[2].cast<std::string>(), kTypes, "type of readings");
+  plan.estimator = choice_named(state[3].cast<std::string>(), kEstimators, "estimator");
+  plan.calibration = state[4].cast<SkinCalibration>().planes;
+  scalars_of(plan) = state[5].cast<decltype(values_of(scalars_of(plan)))>();
   check(plan, "Plan");
   return plan;
 }

@@ -37,10 +37,9 @@ def _reduce_calibration(calibration: _core.Calibration) -> tuple[Callable[[bytes
 def _reduce_solved_by(solved_by: Any) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
     """It travels as a force file without frames."""
     skin = _core.Skin(2, 2, layout=solved_by.layout)
-    shape = (0, skin.element_rows, skin.element_cols)
     names = ("normal",) if solved_by.layout == "sensels" else ("normal", "shear_x", "shear_y")
-    planes = {name: np.zeros(shape, np.float32) for name in names}
-    planes["status"] = np.zeros(shape, np.uint8)
+    planes = dict.fromkeys(names, np.zeros((0, 1, 1), np.float32))
+    planes["status"] = np.zeros((0, 1, 1), np.uint8)
     return _solved_by, (_file(b"", lambda path: _core.save_forces(
         path, planes, [], [], skin, solved_by, False))[1],)
 

@@ -64,10 +64,14 @@ GuiContext::GuiContext(const gpu::Instance& instance, const gpu::Device& device,
   info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   info.CheckVkResultFn = check_result;
   ImGui_ImplVulkan_Init(&info, render_pass);
+#if IMGUI_VERSION_NUM < 19000
   device.run([](const vk::raii::CommandBuffer& commands) {
     ImGui_ImplVulkan_CreateFontsTexture(*commands);
   });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
+#else
+  ImGui_ImplVulkan_CreateFontsTexture();
+#endif
 }
 
 GuiContext::~GuiContext() {

@@ -12,6 +12,12 @@
 namespace pillarfield::viewer {
 namespace {
 
+#if IMGUI_VERSION_NUM < 18700
+constexpr auto kKeypadEnter = ImGuiKey_KeyPadEnter;
+#else
+constexpr auto kKeypadEnter = ImGuiKey_KeypadEnter;
+#endif
+
 constexpr std::array kImGuiKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
                                 std::pair{ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
                                 std::pair{ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
@@ -21,7 +27,7 @@ constexpr std::array kImGuiKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
                                 std::pair{ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
                                 std::pair{ImGuiKey_Enter, GLFW_KEY_ENTER},
                                 std::pair{ImGuiKey_Escape, GLFW_KEY_ESCAPE},
-                                std::pair{ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+                                std::pair{kKeypadEnter, GLFW_KEY_KP_ENTER},
                                 std::pair{ImGuiKey_A, GLFW_KEY_A},
                                 std::pair{ImGuiKey_C, GLFW_KEY_C},
                                 std::pair{ImGuiKey_V, GLFW_KEY_V},
