@@ -11,7 +11,7 @@ import unittest
 import h5py
 import numpy
 
-from command import PROGRAM, CommandTest, datasets, run, run_json
+from command import PROGRAM, CommandTest, datasets, run
 
 SCENE = """
 [skin]

@@ -317,16 +317,6 @@ TEST(Processor, TheTopLeftSenselIsNumberTwo) {
   EXPECT_EQ(forces.status[0], 7);
 }
 
-TEST(Processor, AFullRingRefusesAnotherFrame) {
-  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
-  Processor processor(test_device(), plan, {.frames_in_flight = 1});
-  EXPECT_THROW(static_cast<void>(processor.receive()), Error);
-  const RandomFrame frame(plan, 0, 1);
-  processor.submit(frame.view());
-  EXPECT_THROW(processor.submit(frame.view()), Error);
-  expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
-}
-
 TEST(Processor, AProcessorMayBeDestroyedWhileFramesAreInFlight) {
   const SolverPlan plan = bare_plan(512, 512, SenselType::u8);
   const RandomFrame frame(plan, 0, 1);

@@ -159,21 +159,4 @@ SourceInfo MadeField::source() const {
   return info;
 }
 
-std::vector<CurvePoint> made_curve(const PillarValues& last, std::size_t points) {
-  std::vector<CurvePoint> curve;
-  for (std::size_t i = 0; i < points; ++i) {
-    const double age = static_cast<double>(points - 1 - i) / 100;
-    const auto fade = static_cast<float>(0.5 + 0.5 * std::cos(0.9 * age) * std::exp(-0.08 * age));
-    const auto turn = static_cast<float>(1.2 * std::sin(1.3 * age));
-    const float x = last.shear_x * std::cos(turn) - last.shear_y * std::sin(turn);
-    const float y = last.shear_x * std::sin(turn) + last.shear_y * std::cos(turn);
-    curve.push_back({.time_s = 4 - age,
-                     .index = 400 - points + 1 + i,
-                     .shear_x = x * fade,
-                     .shear_y = y * fade,
-                     .normal = last.normal * fade * (1 + 0.5f * std::abs(turn))});
-  }
-  return curve;
-}
-
 }  // namespace pillarfield::viewer

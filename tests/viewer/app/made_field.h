@@ -23,7 +23,4 @@ struct MadeField {
   std::array<double, 4> read(PillarIndex pillar, const std::array<double, 4>& model);
 };
 
-/// A curve of `points` frames at 100 Hz that ends in a force.
-[[nodiscard]] std::vector<CurvePoint> made_curve(const PillarValues& last, std::size_t points);
-
 }  // namespace pillarfield::viewer
