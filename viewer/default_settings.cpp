@@ -96,17 +96,17 @@ std::uint64_t most_loaded_frame(FieldProducer& producer) {
   return most_loaded;
 }
 
-View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {
+View first_view(const Options& options, const SourceInfo& source, const Layout& layout) {
   const SkinSize size = skin_size(source);
   if (options.orbit) {
-    OrbitView view = fit_orbit(size, surface_of(options, source), plot);
+    OrbitView view = fitted_orbit(size, surface_of(options, source), layout);
     view.azimuth = options.azimuth.value_or(view.azimuth);
     view.elevation = options.elevation.value_or(view.elevation);
     view.target_mm = options.centre_mm.value_or(view.target_mm);
     view.distance_mm /= options.zoom;
     return view;
   }
-  TopView view = fit_top(size, plot);
+  TopView view = fitted_top(size, layout);
   view.pixels_per_mm *= options.zoom;
   view.centre_mm = options.centre_mm.value_or(view.centre_mm);
   return view;

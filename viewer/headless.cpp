@@ -206,8 +206,7 @@ void run_headless(const Options& options) {
   check_exports(options, pictures, replace);
   RenderSettings settings =
       default_settings(options, *producer, HeadlessRenderer::scale_of(options));
-  const Viewport plot = layout_of(options.width, options.height, settings).plot;
-  settings.view = first_view(options, source, plot);
+  settings.view = first_view(options, source, layout_of(options.width, options.height, settings));
 
   if (!options.csv.empty()) {
     const Viewport picture{0, 0, static_cast<double>(options.width),

@@ -80,8 +80,8 @@ struct Options {
 /// Range of the colour bar fitted to up to 16 evenly spaced frames.
 [[nodiscard]] Range range_that_fits(FieldProducer& producer, Quantity quantity);
 
-/// Initial view in the plot of a picture's layout.
+/// Initial view of a picture.
 [[nodiscard]] View first_view(const Options& options, const SourceInfo& source,
-                              const Viewport& plot);
+                              const Layout& layout);
 
 }  // namespace pillarfield::viewer

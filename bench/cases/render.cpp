@@ -109,7 +109,7 @@ viewer::RenderSettings settings_of(viewer::FieldProducer& producer, const Pictur
   options.legend = kind.overlay;
   viewer::RenderSettings settings = viewer::default_settings(options, producer, 1);
   const viewer::Layout layout = viewer::layout_of(Pictures::kWidth, Pictures::kHeight, settings);
-  settings.view = viewer::first_view(options, producer.info(), layout.plot);
+  settings.view = viewer::first_view(options, producer.info(), layout);
   return settings;
 }
 

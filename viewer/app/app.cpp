@@ -129,7 +129,7 @@ void Application::route_key(const KeyEvent& key) {
 /// The second picture has the view of the first, so a place in it means the one in the first.
 InputEvent Application::in_first_half(InputEvent event) const {
   if (state_.beside == nullptr) return event;
-  const Viewport second = second_half(screen_.field, scale());
+  const Viewport second = second_half(screen_.field);
   std::visit(
       [&](auto& each) {
         if constexpr (requires { each.pixel; }) {

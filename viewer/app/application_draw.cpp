@@ -23,7 +23,7 @@ bool Application::fit_to_window() {
   std::vector<Presenter::Place> places;
   if (shows_source()) places.push_back(place_in_window(place_.area));
   if (shows_source() && state_.beside != nullptr) {
-    places.push_back(place_in_window(second_half(screen_.field, scale())));
+    places.push_back(place_in_window(second_half(screen_.field)));
   }
   const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
                     scale() == presenter_.gui().scale();
@@ -39,9 +39,10 @@ void Application::arrange() {
   if (size.width == 0 || size.height == 0) return;
   state_.settings.scale = scale();
   state_.settings.colour_bar = state_.beside == nullptr;
+  if (state_.player != nullptr) mark_used(state_);
   const Viewport before = place_.area;
   screen_ = divide(size.width, size.height, scale(), state_.show_panels ? &state_.panels : nullptr);
-  place_.area = state_.beside != nullptr ? first_half(screen_.field, scale()) : screen_.field;
+  place_.area = state_.beside != nullptr ? first_half(screen_.field) : screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
   if (moved && state_.view_is_fitted && state_.player != nullptr) reset_view(state_, place_);
 }

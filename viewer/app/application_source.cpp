@@ -68,8 +68,8 @@ void Application::show(LoadedSource loaded) {
   place_.source = &source;
   set_beside();
   arrange();
-  const Viewport plot = layout_of(place_.area.width, place_.area.height, state_.settings).plot;
-  state_.settings.view = first_view(options_, source, plot);
+  state_.settings.view = first_view(
+      options_, source, layout_of(place_.area.width, place_.area.height, state_.settings));
   drawn_settings_.reset();
   listen();
   if (options_.first_frame != 0) state_.player->seek(options_.first_frame);

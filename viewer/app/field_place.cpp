@@ -52,14 +52,13 @@ Viewport FieldPlace::plot(const RenderSettings& settings) const {
   return plot;
 }
 
-Viewport first_half(const Viewport& area, double scale) {
-  const double shared = std::max(area.width - kColourBarWidth * scale, 0.0);
-  return {area.x, area.y, std::max(std::floor(0.5 * shared), 1.0), area.height};
+Viewport first_half(const Viewport& area) {
+  return {area.x, area.y, std::max(std::floor(0.5 * area.width), 1.0), area.height};
 }
 
-Viewport second_half(const Viewport& area, double scale) {
-  const double width = first_half(area, scale).width;
-  return {area.x + width, area.y, std::max(area.width - width, 1.0), area.height};
+Viewport second_half(const Viewport& area) {
+  const Viewport first = first_half(area);
+  return {area.x + first.width, area.y, first.width, area.height};
 }
 
 std::optional<Vec2> sheet_point(const FieldPlace& place, const RenderSettings& settings,

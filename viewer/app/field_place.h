@@ -18,10 +18,10 @@ struct FieldPlace {
       const RenderSettings& settings) const;  ///< the skin in the window, pixels
 };
 
-/// Parts of the picture's area where a second source is shown beside the first: plots of one size,
-/// the colour bar at the right of the second.
-[[nodiscard]] Viewport first_half(const Viewport& area, double scale);
-[[nodiscard]] Viewport second_half(const Viewport& area, double scale);
+/// Parts of the picture's area where a second source is shown beside the first, of one size; the
+/// second has the colour bar.
+[[nodiscard]] Viewport first_half(const Viewport& area);
+[[nodiscard]] Viewport second_half(const Viewport& area);
 
 /// Point of the sheet under a window pixel, mm; none outside the skin or the plot.
 [[nodiscard]] std::optional<Vec2> sheet_point(const FieldPlace& place,

@@ -55,21 +55,30 @@ struct Canvas {
     line(box.x - 1, box.y - 1, box.x - 1, box.y + box.height, colour);
     line(box.x + box.width, box.y - 1, box.x + box.width, box.y + box.height, colour);
   }
+  /// Dims what lies behind letters in the plot.
+  void ground(const Viewport& box) const {
+    list.AddRectFilled(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
+                       packed_colour(background_of(settings.theme), 200), 3 * unit());
+  }
   [[nodiscard]] Colour special(Special kind) const { return colour_of(kind, settings.theme); }
 };
 
+/// Name and time in the upper left corner of the plot.
 void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo& source,
                  const Layout& layout) {
-  const double y = layout.plot.y - 25 * canvas.unit();
+  const double x = layout.plot.x + 8 * canvas.unit();
+  const double y = layout.plot.y + 3 * canvas.unit();
   const std::string name = canvas.settings.title.empty() ? source.name : canvas.settings.title;
-  canvas.text(layout.plot.x, y, name);
   const std::uint64_t frames = std::max(field.frames, source.frames);
   const std::string of = frames > 0 ? fmt::format(" of {}", frames) : "";
   const std::string frame = fmt::format("frame {}{}   {:.3f} s", field.index + 1, of, field.time_s);
-  const double right = layout.plot.x + layout.plot.width - Canvas::size_of(frame).x;
-  if (right > layout.plot.x + Canvas::size_of(name).x + 10 * canvas.unit()) {
-    canvas.text(right, y, frame, canvas.faint_colour);
-  }
+  const double gap = 18 * canvas.unit();
+  const double both = Canvas::size_of(name).x + gap + Canvas::size_of(frame).x;
+  const bool fits = both < layout.clear.width - gap;
+  canvas.ground({x - 4 * canvas.unit(), y, (fits ? both : Canvas::size_of(name).x) + gap / 2,
+                 Canvas::size_of(name).y + canvas.unit()});
+  canvas.text(x, y, name);
+  if (fits) canvas.text(x + Canvas::size_of(name).x + gap, y, frame, canvas.faint_colour);
 }
 
 void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout) {
@@ -85,7 +94,8 @@ void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout)
         plot.x + 0.5 * plot.width + (tick.value - view.centre_mm.x) * view.pixels_per_mm;
     const double y = plot.y + plot.height;
     canvas.line(x, y, x, y + mark, canvas.faint_colour);
-    canvas.text(x - 0.5 * Canvas::size_of(tick.label).x, y + mark + 1, tick.label);
+    const double left = x - 0.5 * Canvas::size_of(tick.label).x;
+    if (left > plot.x) canvas.text(left, y + mark, tick.label);
   }
   for (const Tick& tick :
        ticks(view.centre_mm.y - half_height, view.centre_mm.y + half_height, most_y)) {
@@ -95,9 +105,9 @@ void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout)
     canvas.line(plot.x - mark, y, plot.x, y, canvas.faint_colour);
     canvas.text(plot.x - mark - 3 * canvas.unit() - size.x, y - 0.5 * size.y, tick.label);
   }
-  const std::string words = "x, y in mm";
-  canvas.text(plot.x + plot.width - Canvas::size_of(words).x,
-              plot.y + plot.height + 22 * canvas.unit(), words, canvas.faint_colour);
+  const ImVec2 size = Canvas::size_of("mm");
+  canvas.text(plot.x - mark - 3 * canvas.unit() - size.x, plot.y + plot.height + mark, "mm",
+              canvas.faint_colour);
 }
 
 /// The sheet's axes as seen in the picture.
@@ -253,7 +263,8 @@ void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Lay
               canvas.faint_colour);
 }
 
-void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
+/// Returns its lower end.
+double write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
   LegendList list(canvas, layout.legend.x, layout.legend.y);
   const RenderSettings& settings = canvas.settings;
   if (settings.quantity == Quantity::region) {
@@ -273,19 +284,25 @@ void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& 
   }
   list.add(Special::no_reading, "no reading");
   list.add(Special::idle, "no contact");
-  list.skip(12);
-  if (settings.arrows) write_arrow_scale(canvas, source, layout, list.y());
+  if (!settings.arrows) return list.y();
+  list.skip(6);
+  write_arrow_scale(canvas, source, layout, list.y());
+  return list.y() + 54 * canvas.unit();
 }
 
 void write_bar_title(const Canvas& canvas, const Layout& layout) {
   const QuantityInfo info = info_of(canvas.settings.quantity, canvas.settings.pressure_unit);
   const std::string unit = info.unit.empty() ? "" : fmt::format(", {}", info.unit);
-  canvas.text(layout.bar.x, layout.bar.y - 26 * canvas.unit(),
-              fmt::format("{}{}", info.title, unit));
+  const std::string words = fmt::format("{}{}", info.title, unit);
+  const double right = layout.plot.x + layout.plot.width - 6 * canvas.unit();
+  const double x = std::min(layout.bar.x, right - Canvas::size_of(words).x);
+  canvas.text(x, layout.bar.y - 28 * canvas.unit(), words);
 }
 
-/// Colour bar or wheel, and the legend.
+/// Colour bar or wheel, and the legend, over a ground that dims the field.
 void write_scales(const Canvas& canvas, const SourceInfo& source, Layout layout) {
+  canvas.list.ChannelsSplit(2);
+  canvas.list.ChannelsSetCurrent(1);
   write_bar_title(canvas, layout);
   const Scale scale = info_of(canvas.settings.quantity).scale;
   if (scale == Scale::cyclic) {
@@ -295,7 +312,12 @@ void write_scales(const Canvas& canvas, const SourceInfo& source, Layout layout)
   } else {
     layout.legend.y = layout.bar.y;  // The legend replaces the bar.
   }
-  write_legend(canvas, source, layout);
+  const double bottom = write_legend(canvas, source, layout);
+  canvas.list.ChannelsSetCurrent(0);
+  const double left = layout.bar.x - 6 * canvas.unit();
+  canvas.ground({left, layout.plot.y, layout.plot.x + layout.plot.width - left,
+                 bottom + 4 * canvas.unit() - layout.plot.y});
+  canvas.list.ChannelsMerge();
 }
 
 }  // namespace

@@ -40,13 +40,17 @@ struct RenderSettings {
 /// Parts of a picture of `width` x `height` pixels.
 struct Layout {
   Viewport plot;    ///< the skin
-  Viewport bar;     ///< the colour bar
-  Viewport legend;  ///< the meaning of colours and arrows
+  Viewport clear;   ///< the part of the plot at the left of bar and legend
+  Viewport bar;     ///< the colour bar, in the plot
+  Viewport legend;  ///< the meaning of colours and arrows, in the plot
 };
-/// The difference that RenderSettings::colour_bar makes to the width of the plot, nominal pixels.
-inline constexpr double kColourBarWidth = 152;
 
 [[nodiscard]] Layout layout_of(double width, double height, const RenderSettings& settings);
+
+/// The whole skin from above, at the left of the legend, or in space.
+[[nodiscard]] TopView fitted_top(const SkinSize& skin, const Layout& layout);
+[[nodiscard]] OrbitView fitted_orbit(const SkinSize& skin, const Surface& surface,
+                                     const Layout& layout);
 
 /// Pillars along an arrow's cell: the least of 1, 2, 3, 4, 6, 8, 12, 16, ... for which the cell is
 /// at least `least_pixels` wide.

@@ -7,6 +7,7 @@
 #include "viewer/app/trails.h"
 #include "viewer/app/window/panel_layout.h"
 #include "viewer/app/window/redraws.h"
+#include "viewer/options.h"
 #include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {
@@ -34,6 +35,40 @@ TEST(Screen, ItsPartsTileTheWindow) {
         }
       }
     }
+  }
+}
+
+TEST(Screen, TheFieldHasMostOfTheDefaultWindow) {
+  const Options options;
+  PanelLayout layout = default_layout();
+  for (const double scale : {1.0, 1.5}) {
+    const auto width = static_cast<std::uint32_t>(scale * options.width);
+    const auto height = static_cast<std::uint32_t>(scale * options.height);
+    const Screen screen = divide(width, height, scale, &layout);
+    RenderSettings settings;
+    settings.scale = scale;
+    const Layout picture = layout_of(screen.field.width, screen.field.height, settings);
+    EXPECT_GE(area(picture.plot), 0.55 * width * height) << "at scale " << scale;
+  }
+}
+
+TEST(Screen, UnusedPanelsTakeNoPlace) {
+  PanelLayout layout = default_layout();
+  move_panel(layout, PanelId::pillar, Dock::left);
+  EXPECT_GT(divide(1280, 720, 1, &layout).left.width, 0);
+  place_of(layout, PanelId::pillar).used = false;
+  EXPECT_EQ(divide(1280, 720, 1, &layout).left.width, 0);
+}
+
+TEST(Layout, AFittedSkinLiesBesideTheLegend) {
+  for (const SkinSize& skin : {SkinSize{100, 100}, SkinSize{400, 50}, SkinSize{50, 400}}) {
+    const Layout layout = layout_of(1000, 600, {});
+    const TopView view = fitted_top(skin, layout);
+    const double right = layout.plot.x + 0.5 * layout.plot.width +
+                         (0.5 * skin.width_mm - view.centre_mm.x) * view.pixels_per_mm;
+    EXPECT_LE(right, layout.clear.x + layout.clear.width);
+    const double left = right - skin.width_mm * view.pixels_per_mm;
+    EXPECT_GE(left, layout.plot.x);
   }
 }
 

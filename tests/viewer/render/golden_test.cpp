@@ -131,7 +131,7 @@ class Golden : public testing::TestWithParam<GoldenPicture> {
     const double scale = picture.options.scale > 0 ? picture.options.scale : 1;
     RenderSettings settings = default_settings(picture.options, *producer, scale);
     settings.view =
-        first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, settings).plot);
+        first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, settings));
     if (other_map) settings.map = *other_map;
     Drawing drawing;
     ShownField field = producer->produce(picture.frame);

@@ -21,9 +21,9 @@ std::optional<Range>& remembered(AppState& state) {
 }
 
 View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
-  const Viewport plot = layout_of(place.area.width, place.area.height, state.settings).plot;
-  if (orbit) return fit_orbit(place.skin(), state.settings.surface, plot);
-  return fit_top(place.skin(), plot);
+  const Layout layout = layout_of(place.area.width, place.area.height, state.settings);
+  if (orbit) return fitted_orbit(place.skin(), state.settings.surface, layout);
+  return fitted_top(place.skin(), layout);
 }
 
 }  // namespace

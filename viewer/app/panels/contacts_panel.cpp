@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "viewer/app/input/actions.h"
 #include "viewer/app/panels/format_value.h"
@@ -14,24 +15,36 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr int kTableFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
-                            ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit |
-                            ImGuiTableFlags_BordersInnerV;
+constexpr int kTableFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
+                            ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX;
 constexpr std::size_t kMostRows = 9;  ///< visible at a time
 
-/// Columns of fixed width.
-void set_columns(SkinLayout layout) {
-  for (const ContactColumn& column : contact_columns(layout)) {
-    const double width = std::max(width_of(column.head), width_of(column.widest));
-    ImGui::TableSetupColumn(column.head, ImGuiTableColumnFlags_WidthFixed,
-                            static_cast<float>(std::ceil(width)));
+float column_width(const ContactColumn& column) {
+  return static_cast<float>(std::ceil(std::max(width_of(column.head), width_of(column.widest))));
+}
+
+/// The first columns, as far as they fit; a tooltip has the others.
+std::span<const ContactColumn> fitting_columns(SkinLayout layout) {
+  const std::vector<ContactColumn>& all = contact_columns(layout);
+  const ImGuiStyle& style = ImGui::GetStyle();
+  float left = ImGui::GetContentRegionAvail().x + 2 * style.CellPadding.x;
+  std::size_t count = 0;
+  while (count < all.size() && left >= column_width(all[count]) + 2 * style.CellPadding.x) {
+    left -= column_width(all[count++]) + 2 * style.CellPadding.x;
+  }
+  return {all.data(), std::max<std::size_t>(count, 2)};
+}
+
+void set_columns(std::span<const ContactColumn> columns) {
+  for (const ContactColumn& column : columns) {
+    ImGui::TableSetupColumn(column.head, ImGuiTableColumnFlags_WidthFixed, column_width(column));
   }
 }
 
 /// Fixed head row above the scrolled contacts.
-void write_head(SkinLayout layout, const PressureUnit& unit) {
+void write_head(std::span<const ContactColumn> columns, const PressureUnit& unit) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ContactColumn& column : contact_columns(layout)) {
+  for (const ContactColumn& column : columns) {
     ImGui::TableNextColumn();
     ImGui::TableHeader(column.head);
     if (!ImGui::IsItemHovered()) continue;
@@ -47,16 +60,27 @@ void write_right(const std::string& words) {
   ImGui::TextUnformatted(words.c_str());
 }
 
+/// All values of a row, also those that do not fit.
+void show_all(const std::vector<std::string>& words, SkinLayout layout) {
+  const std::vector<ContactColumn>& columns = contact_columns(layout);
+  std::string lines;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    lines += fmt::format("{}{}  {}", i == 0 ? "" : "\n", columns[i].head, words[i]);
+  }
+  ImGui::SetTooltip("%s", lines.c_str());
+}
+
 /// Returns true if clicked.
 bool write_row(const std::string& name, const ContactQuantities& contact, SkinLayout layout,
                const PressureUnit& unit) {
   bool clicked = false;
   const auto words = format_contact(name, contact, layout, unit);
   ImGui::TableNextRow();
-  for (std::size_t i = 0; i < words.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(ImGui::TableGetColumnCount()); ++i) {
     ImGui::TableNextColumn();
     if (i == 0) {
       clicked = ImGui::Selectable(words[i].c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
+      if (ImGui::IsItemHovered()) show_all(words, layout);
     } else {
       write_right(words[i]);
     }
@@ -84,16 +108,16 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayou
 std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts,
                                          SkinLayout layout, const PressureUnit& unit) {
   const std::size_t rows = std::min(contacts.above_noise, kMostRows) + 2;
-  const ImGuiStyle& imgui_style = ImGui::GetStyle();
-  const float row = static_cast<float>(style.line) + 2 * imgui_style.CellPadding.y;
-  const float height = row * static_cast<float>(rows) + imgui_style.ScrollbarSize + 2;
-  if (!ImGui::BeginTable("contacts", static_cast<int>(contact_columns(layout).size()), kTableFlags,
+  const float row = static_cast<float>(style.line) + 2 * ImGui::GetStyle().CellPadding.y;
+  const float height = row * static_cast<float>(rows) + 2;
+  const auto columns = fitting_columns(layout);
+  if (!ImGui::BeginTable("contacts", static_cast<int>(columns.size()), kTableFlags,
                          ImVec2(0, height))) {
     return std::nullopt;
   }
-  ImGui::TableSetupScrollFreeze(1, 2);
-  set_columns(layout);
-  write_head(layout, unit);
+  ImGui::TableSetupScrollFreeze(0, 2);
+  set_columns(columns);
+  write_head(columns, unit);
   write_row("all", contacts.found.total, layout, unit);
   const auto clicked = contact_rows(contacts, layout, unit);
   ImGui::EndTable();

@@ -233,7 +233,7 @@ std::vector<ContactColumn> shear_columns() {
 
 std::vector<ContactColumn> columns_of(SkinLayout layout) {
   std::vector<ContactColumn> columns{
-      {"id", "constant while the contact is tracked", "0000", nullptr},
+      {"id", "constant while the contact is tracked", "000", nullptr},
       {"normal", "normal force, N", "00000",
        [](const ContactQuantities& contact) { return three_digits(contact.normal_n); }}};
   if (layout == SkinLayout::pillars) {

@@ -52,7 +52,7 @@ void hover_panel(const AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   if (!state.field || !state.hovered) {
     const char* const name = element_name(state.player->info().skin);
-    faint_text(style, fmt::format("No {} under the cursor.", name).c_str());
+    faint_text(style, fmt::format("A click pins a {}, a drag selects.", name).c_str());
     return;
   }
   const PillarIndex pillar = *state.hovered;

@@ -37,6 +37,9 @@ void contacts_panel(AppState& state, const FieldPlace& place);
 /// and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
 
+/// Marks the panels that have something to show.
+void mark_used(AppState& state);
+
 /// A sensor: record and tare, rate, losses, faulty sensels.
 void sensor_panel(const Command& command);
 

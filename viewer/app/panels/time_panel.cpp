@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kLiveSeconds = 20;  ///< shown of a sensor at first
 constexpr std::size_t kMostShownPoints = 8192;
-constexpr double kChartHeight = 130;  ///< least, nominal pixels
-constexpr double kChartWidth = 250;   ///< least beside others
+constexpr double kChartHeight = 72;  ///< least, nominal pixels
+constexpr double kChartWidth = 180;  ///< least beside others
 
 using Points = std::vector<CurvePoint>;
 using Component = double (*)(const CurvePoint&);
@@ -200,7 +200,8 @@ void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const double title = style.line + 2 * style.unit;
+  // The axes begin half a line lower.
+  const double title = 0.9 * style.line;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
   const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
   draw_title(list, chart, outer, style);
@@ -238,7 +239,7 @@ void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   const double height =
-      std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 6 * style.unit,
+      std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 4 * style.unit,
                kChartHeight * style.unit);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));

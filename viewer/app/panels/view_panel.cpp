@@ -113,38 +113,50 @@ void choose_map(RenderSettings& settings) {
   ImGui::EndCombo();
 }
 
-void choose_layers(AppState& state) {
+/// Check boxes, two in a row.
+class LayerBoxes {
+ public:
+  /// True if clicked.
+  bool add(const char* words, bool& shown, const char* help) {
+    if (count_ % 2 == 0) labelled(count_ == 0 ? "Layers" : "");
+    if (count_ % 2 == 1) ImGui::SameLine(0.62f * ImGui::GetWindowWidth());
+    ++count_;
+    const bool clicked = ImGui::Checkbox(words, &shown);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+    return clicked;
+  }
+
+ private:
+  int count_ = 0;
+};
+
+void choose_layers(const Command& command) {
+  AppState& state = command.state;
   RenderSettings& settings = state.settings;
   const bool pillars = state.player->info().skin.has_pillars();
-  labelled("Layers");
-  if (pillars) {
-    ImGui::Checkbox("arrows", &settings.arrows);
-    ImGui::SameLine();
-  }
+  LayerBoxes boxes;
+  if (pillars) boxes.add("arrows", settings.arrows, "the forces (A)");
   bool contacts = settings.contacts;
-  if (ImGui::Checkbox("contacts", &contacts)) show_contacts(state, contacts);
-  ImGui::SameLine();
-  bool trails = state.show_trails;
-  if (ImGui::Checkbox("trails", &trails)) show_trails(state, trails);
-  labelled("");
-  ImGui::Checkbox("relief", &settings.relief);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("in 3-D, the normal force raises the skin (B)");
-  if (!pillars) return;
-  ImGui::SameLine();
-  ImGui::Checkbox("hatch", &settings.hatch);
-  ImGui::SameLine();
-  ImGui::Checkbox("sectors", &settings.sectors);
-  if (ImGui::IsItemHovered()) {
-    ImGui::SetTooltip("uncertainty of ambiguous shear, at large zoom (U)");
+  if (boxes.add("contacts", contacts, "extent, force, centre of pressure (K)")) {
+    show_contacts(state, contacts);
   }
-}
-
-void choose_truth(const Command& command) {
-  const AppState& state = command.state;
-  if (!state.has_truth && !state.beside_is_truth) return;
-  labelled("Beside");
-  bool shown = state.beside_is_truth;
-  if (ImGui::Checkbox("the truth", &shown)) command.pending.truth = true;
+  bool trails = state.show_trails;
+  if (boxes.add("trails", trails, "centres of pressure of the last two seconds, dotted (J)")) {
+    show_trails(state, trails);
+  }
+  boxes.add("relief", settings.relief, "in 3-D, the normal force raises the skin (B)");
+  if (pillars) {
+    boxes.add("hatch", settings.hatch, "ambiguous pillars (X)");
+    boxes.add("sectors", settings.sectors, "uncertainty of ambiguous shear, at large zoom (U)");
+  }
+  bool truth = state.beside_is_truth;
+  if ((state.has_truth || truth) && boxes.add("truth", truth, "the true forces beside (W)")) {
+    command.pending.truth = true;
+  }
+  bool light = settings.theme == Theme::light;
+  if (boxes.add("light", light, "dark on white (T)")) {
+    settings.theme = light ? Theme::light : Theme::dark;
+  }
 }
 
 void choose_view(const Command& command) {
@@ -178,14 +190,6 @@ void choose_surface(const Command& command) {
   }
 }
 
-void choose_theme(RenderSettings& settings) {
-  constexpr std::array<const char*, 2> kThemes{"Dark", "Light"};
-  labelled("Theme");
-  int chosen = settings.theme == Theme::dark ? 0 : 1;
-  if (toggle_group("theme", kThemes, chosen))
-    settings.theme = chosen == 0 ? Theme::dark : Theme::light;
-}
-
 }  // namespace
 
 void view_panel(const Command& command) {
@@ -197,11 +201,9 @@ void view_panel(const Command& command) {
     if (ImGui::Button("Hold from now on", ImVec2(-1, 0))) hold_peak(state);
   }
   choose_map(state.settings);
-  choose_layers(state);
-  choose_truth(command);
+  choose_layers(command);
   choose_view(command);
   if (shows_orbit(state.settings)) choose_surface(command);
-  choose_theme(state.settings);
 }
 
 void write_panel(const Command& command) {

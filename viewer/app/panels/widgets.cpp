@@ -49,7 +49,7 @@ Section section(const char* title) {
 void labelled(const char* label) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", label);
-  ImGui::SameLine(ImGui::GetFontSize() * 6.2f);
+  ImGui::SameLine(ImGui::GetFontSize() * 4.9f);
   ImGui::SetNextItemWidth(-1);
 }
 

@@ -14,8 +14,9 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kLeastDock = 160;  ///< nominal pixels
-constexpr float kGrip = 6;          ///< width of an edge that can be dragged, nominal pixels
+constexpr double kLeastColumn = 160;  ///< nominal pixels
+constexpr double kLeastRow = 60;
+constexpr float kGrip = 6;  ///< width of an edge that can be dragged, nominal pixels
 
 void draw_panel(PanelId id, const Command& command) {
   AppState& state = command.state;
@@ -38,10 +39,6 @@ void draw_panel(PanelId id, const Command& command) {
       break;
   }
   time_panel(state);
-}
-
-bool is_shown(const PanelPlace& place, const AppState& state) {
-  return place.id != PanelId::sensor || state.player->live() != nullptr;
 }
 
 const char* title_in(const AppState& state, PanelId id) {
@@ -72,6 +69,23 @@ bool panel_heading(PanelLayout& layout, PanelId id, const char* title) {
   return heading.open;
 }
 
+/// The curves, whose charts have titles, beside the fold of their panel.
+void curves_in_row(const Command& command) {
+  PanelLayout& layout = command.state.panels;
+  const bool open = place_of(layout, PanelId::curves).open;
+  const float side = ImGui::GetFontSize();
+  ImGui::BeginChild("fold", ImVec2(open ? 1.6f * side : 0, 0), false,
+                    ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::SetCursorPosX(-0.5f * side);
+  panel_heading(layout, PanelId::curves, open ? "##fold" : title_of(PanelId::curves, {}));
+  ImGui::EndChild();
+  if (!open) return;
+  ImGui::SameLine();
+  ImGui::BeginChild("charts", ImVec2(0, 0), false, ImGuiWindowFlags_NoScrollWithMouse);
+  time_panel(command.state);
+  ImGui::EndChild();
+}
+
 void docked_panel(const Command& command, PanelId id) {
   PanelLayout& layout = command.state.panels;
   ImGui::PushID(static_cast<int>(id));
@@ -83,7 +97,7 @@ void docked_panel(const Command& command, PanelId id) {
 std::vector<PanelId> panels_in(const AppState& state, Dock dock) {
   std::vector<PanelId> ids;
   for (const PanelPlace& place : state.panels.places) {
-    if (place.dock == dock && is_shown(place, state)) ids.push_back(place.id);
+    if (place.dock == dock && place.used) ids.push_back(place.id);
   }
   return ids;
 }
@@ -98,8 +112,11 @@ void draw_column(const Command& command, const char* name, Dock dock, const View
 /// Panels side by side.
 void draw_row(const Command& command, const Viewport& box) {
   if (box.height < 1) return;
+  const float padding = ImGui::GetStyle().WindowPadding.x;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(padding, 0.4f * padding));
   begin_part("bottom", box, command.state.settings.theme,
              ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
+  ImGui::PopStyleVar();
   const std::vector<PanelId> ids = panels_in(command.state, Dock::bottom);
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const auto count = static_cast<float>(std::max<std::size_t>(ids.size(), 1));
@@ -108,7 +125,11 @@ void draw_row(const Command& command, const Viewport& box) {
     if (id != ids.front()) ImGui::SameLine();
     ImGui::BeginChild(title_in(command.state, id), ImVec2(width, 0), false,
                       id == PanelId::curves ? ImGuiWindowFlags_NoScrollWithMouse : 0);
-    docked_panel(command, id);
+    if (id == PanelId::curves) {
+      curves_in_row(command);
+    } else {
+      docked_panel(command, id);
+    }
     ImGui::EndChild();
   }
   ImGui::End();
@@ -156,8 +177,8 @@ void draw_edges(AppState& state, const Screen& screen) {
   const double grip = static_cast<double>(kGrip) * scale;
   const Theme theme = state.settings.theme;
   PanelLayout& layout = state.panels;
-  const auto change = [&](double& size, float pixels) {
-    size = std::max(size + static_cast<double>(pixels) / scale, kLeastDock);
+  const auto change = [&](double& size, float pixels, double least = kLeastColumn) {
+    if (pixels != 0) size = std::max(size + static_cast<double>(pixels) / scale, least);
   };
   const Viewport& left = screen.left;
   const Viewport& right = screen.right;
@@ -170,8 +191,9 @@ void draw_edges(AppState& state, const Screen& screen) {
     change(layout.right_width, -drag_edge("right edge", {right.x, 0, grip, right.height}, theme).x);
   }
   if (bottom.height > grip) {
-    change(layout.bottom_height,
-           -drag_edge("bottom edge", {bottom.x, bottom.y, bottom.width, grip}, theme).y);
+    const ImVec2 way = drag_edge("bottom edge", {bottom.x, bottom.y, bottom.width, grip}, theme);
+    if (way.y != 0 && layout.bottom_height == 0) layout.bottom_height = bottom.height / scale;
+    change(layout.bottom_height, -way.y, kLeastRow);
   }
 }
 
@@ -256,6 +278,33 @@ int fixed_window_flags() {
   return ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
          ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
          ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_NoBringToFrontOnFocus;
+}
+
+void mark_used(AppState& state) {
+  const bool live = state.player->live() != nullptr;
+  for (PanelPlace& place : state.panels.places) {
+    switch (place.id) {
+      case PanelId::sensor:
+        place.used = live;
+        break;
+      case PanelId::selection:
+        place.used = state.selection.has_value();
+        break;
+      case PanelId::contacts:
+        place.used = state.settings.contacts;
+        break;
+      case PanelId::pillar:
+        place.used = !state.pins.empty();
+        break;
+      case PanelId::curves:
+        place.used = live || state.player->info().frames > 1;
+        break;
+      case PanelId::view:
+      case PanelId::cursor:
+      case PanelId::write:
+        break;
+    }
+  }
 }
 
 void draw_docks(const Command& command, const Screen& screen) {

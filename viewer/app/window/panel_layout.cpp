@@ -10,9 +10,9 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr std::array<const char*, kPanels> kPanelTitles{
-    "Sensor", "View", "Write", "Contacts", "Under the cursor", "Pillar", "Selection", "Over time"};
-constexpr std::array<const char*, kPanels> kPanelNames{"sensor", "view",   "write",     "contacts",
-                                                       "cursor", "pillar", "selection", "curves"};
+    "Sensor", "View", "Selection", "Contacts", "Under the cursor", "Pillar", "Write", "Over time"};
+constexpr std::array<const char*, kPanels> kPanelNames{"sensor", "view",   "selection", "contacts",
+                                                       "cursor", "pillar", "write",     "curves"};
 constexpr std::array<const char*, kDocks> kDockTitles{"Left", "Right", "Bottom", "Window"};
 constexpr std::array<const char*, kDocks> kDockNames{"left", "right", "bottom", "floating"};
 
@@ -46,10 +46,10 @@ std::optional<PanelPlace> panel_from(std::istream& line) {
 }
 
 void take_size(PanelLayout& layout, const std::string& name, double size) {
-  size = std::clamp(size, kLeastSize, kMostSize);
-  if (name == "left_width") layout.left_width = size;
-  if (name == "right_width") layout.right_width = size;
-  if (name == "bottom_height") layout.bottom_height = size;
+  const double width = std::clamp(size, kLeastSize, kMostSize);
+  if (name == "left_width") layout.left_width = width;
+  if (name == "right_width") layout.right_width = width;
+  if (name == "bottom_height") layout.bottom_height = std::clamp(size, 0.0, kMostSize);
 }
 
 }  // namespace
@@ -78,13 +78,14 @@ void move_panel(PanelLayout& layout, PanelId id, Dock dock) {
 }
 
 bool has_panels(const PanelLayout& layout, Dock dock) {
-  return std::ranges::find(layout.places, dock, &PanelPlace::dock) != layout.places.end();
+  return std::ranges::any_of(
+      layout.places, [&](const PanelPlace& place) { return place.dock == dock && place.used; });
 }
 
 bool covers(const PanelLayout& layout, Vec2 pixel, double scale) {
   return std::ranges::any_of(layout.places, [&](const PanelPlace& place) {
     const Viewport& box = place.window;
-    return place.dock == Dock::floating &&
+    return place.dock == Dock::floating && place.used &&
            contains({box.x * scale, box.y * scale, box.width * scale, box.height * scale}, pixel);
   });
 }
@@ -124,19 +125,22 @@ PanelLayout layout_from(std::string_view text) {
 
 namespace {
 
-constexpr double kTransport = 46;
-constexpr double kStatus = 26;
-constexpr double kFoldedRow = 44;
+constexpr double kTransport = 36;
+constexpr double kStatus = 24;
+constexpr double kFoldedRow = 28;
+constexpr double kShareOfRow = 0.12;  ///< of the window's height, until the user drags its edge
 
 bool has_open_panels(const PanelLayout& layout, Dock dock) {
-  return std::ranges::any_of(
-      layout.places, [&](const PanelPlace& place) { return place.dock == dock && place.open; });
+  return std::ranges::any_of(layout.places, [&](const PanelPlace& place) {
+    return place.dock == dock && place.used && place.open;
+  });
 }
 
-/// Height of the row, nominal pixels.
-double row_height(const PanelLayout& layout) {
+/// Height of the row, pixels.
+double row_height(const PanelLayout& layout, double above, double scale) {
   if (!has_panels(layout, Dock::bottom)) return 0;
-  return has_open_panels(layout, Dock::bottom) ? layout.bottom_height : kFoldedRow;
+  if (!has_open_panels(layout, Dock::bottom)) return kFoldedRow * scale;
+  return layout.bottom_height > 0 ? layout.bottom_height * scale : kShareOfRow * above;
 }
 
 }  // namespace
@@ -155,7 +159,7 @@ Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Pan
   const double transport = std::min(std::round(kTransport * scale), high - 1 - status);
   const double above = high - status;
   const double row =
-      layout == nullptr ? 0 : std::round(std::min(row_height(*layout) * scale, 0.4 * above));
+      layout == nullptr ? 0 : std::round(std::min(row_height(*layout, above, scale), 0.4 * above));
   const double middle = std::max(wide - left - right, 1.0);
   const double field = std::max(above - transport - row, 1.0);
   Screen screen;

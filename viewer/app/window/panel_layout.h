@@ -15,11 +15,11 @@ namespace pillarfield::viewer {
 enum class PanelId : std::uint8_t {
   sensor,
   view,
-  write,
+  selection,
   contacts,
   cursor,
   pillar,
-  selection,
+  write,
   curves
 };
 inline constexpr std::size_t kPanels = 8;
@@ -34,6 +34,7 @@ struct PanelPlace {
   PanelId id = PanelId::view;
   Dock dock = Dock::right;
   bool open = true;                     ///< not folded
+  bool used = true;                     ///< has something to show; else it takes no place
   Viewport window{160, 120, 360, 300};  ///< while floating, nominal pixels
 };
 
@@ -41,8 +42,8 @@ struct PanelPlace {
 struct PanelLayout {
   std::vector<PanelPlace> places;
   double left_width = 300;
-  double right_width = 340;
-  double bottom_height = 210;
+  double right_width = 280;
+  double bottom_height = 0;             ///< 0: by the window
   std::optional<PanelId> dragged = {};  ///< its heading is being dragged
 };
 
@@ -54,6 +55,7 @@ struct PanelLayout {
 /// Moves a panel to the end of a dock.
 void move_panel(PanelLayout& layout, PanelId id, Dock dock);
 
+/// True for a dock with a panel in use.
 [[nodiscard]] bool has_panels(const PanelLayout& layout, Dock dock);
 
 /// True if a floating panel covers a pixel.

@@ -32,11 +32,11 @@ ImVec4 vector(unsigned rgb, float alpha = 1) {
 }
 
 void set_sizes(ImGuiStyle& style) {
-  style.WindowPadding = {14, 10};
-  style.FramePadding = {7, 4};
-  style.ItemSpacing = {8, 6};
+  style.WindowPadding = {8, 6};
+  style.FramePadding = {7, 3};
+  style.ItemSpacing = {8, 5};
   style.ItemInnerSpacing = {6, 4};
-  style.CellPadding = {4, 3};
+  style.CellPadding = {3, 2};
   style.IndentSpacing = 12;
   style.ScrollbarSize = 10;
   style.GrabMinSize = 10;
