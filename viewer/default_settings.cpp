@@ -48,8 +48,13 @@ float quantile(std::vector<float> values, double share) {
   return values[static_cast<std::size_t>(place)];
 }
 
+float typical_value(FieldProducer& producer, Quantity quantity, double share) {
+  const float value = quantile(survey(producer, quantity), share);
+  return without_rounding(quantity, value, quantile(survey(producer, Quantity::normal), share));
+}
+
 double full_arrow(FieldProducer& producer, Quantity quantity) {
-  const float typical = quantile(survey(producer, quantity), kArrowQuantile);
+  const float typical = typical_value(producer, quantity, kArrowQuantile);
   return typical > 0 ? round_ceiling(typical) : 1;
 }
 
@@ -73,7 +78,7 @@ Range in_unit_of(const Range& shown, Quantity quantity, const PressureUnit& unit
 }
 
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
-  return fitting_range(quantity, quantile(survey(producer, quantity), kRangeQuantile));
+  return fitting_range(quantity, typical_value(producer, quantity, kRangeQuantile));
 }
 
 std::uint64_t most_loaded_frame(FieldProducer& producer) {

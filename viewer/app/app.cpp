@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
@@ -99,14 +100,16 @@ void Application::route(const InputEvent& event) {
   const bool covered = GuiInput::has_open_list();
   const auto* const button = std::get_if<ButtonEvent>(&event);
   const bool presses = button != nullptr && button->pressed;
-  if (presses && state_.show_help) {
+  const auto* const wheel = std::get_if<WheelEvent>(&event);
+  if (state_.show_help && (presses || wheel != nullptr)) {  // The help scrolls, or goes.
+    if (wheel != nullptr || contains(state_.help_place, button->pixel))
+      return gui_input_.take(event);
     state_.show_help = false;
     return;
   }
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const bool over_panel =
       !controls_.is_dragging() && covers(state_.panels, {mouse.x, mouse.y}, scale());
-  const auto* const wheel = std::get_if<WheelEvent>(&event);
   const bool in_field =
       wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered && !over_panel;
   if (!in_field) gui_input_.take(event);
@@ -142,16 +145,24 @@ InputEvent Application::in_first_half(InputEvent event) const {
 
 void Application::take_newest_field() {
   if (!shows_source()) return;
+  if (!held_) {
+    taken_s_ = produced_s_;
+    held_ = taken_field();
+    if (held_ && state_.beside != nullptr) state_.beside->seek(held_->index);
+  }
   take_beside();
-  const double came_s = produced_s_;
-  auto field = taken_field();
-  if (!field) return;
-  take_field(state_, std::move(*field));
+  if (!held_ || !is_in_step()) return;
+  take_field(state_, *std::exchange(held_, std::nullopt));
   if (fits_first_load_) fit_first_load();
-  if (state_.beside != nullptr) state_.beside->seek(state_.field->index);
-  taken_s_ = came_s;
   field_is_new_ = true;
   redraws_.field();
+}
+
+/// True once the second source shows the frame of the one that is held.
+bool Application::is_in_step() const {
+  if (state_.beside == nullptr || state_.beside->live() != nullptr) return true;
+  const std::uint64_t last = state_.beside->info().frames - 1;
+  return state_.beside_field && state_.beside_field->index == std::min(held_->index, last);
 }
 
 /// Progress of other threads, and of a sensor without frames.

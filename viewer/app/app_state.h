@@ -63,6 +63,7 @@ struct AppState {
   std::optional<Selection> selection;
   DrawStatistics draw;
   bool show_help = false;
+  Viewport help_place;  ///< in the window, pixels
   bool show_panels = true;
   bool show_counters = false;  ///< times and counts of solving and drawing
   /// The last range of each quantity shown so far.

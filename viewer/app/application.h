@@ -59,6 +59,7 @@ class Application {
   [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();
   void take_beside();
+  [[nodiscard]] bool is_in_step() const;
   [[nodiscard]] std::optional<ShownField> taken_field();
   void fit_first_load();
   void take_news();
@@ -114,7 +115,8 @@ class Application {
   std::uint64_t live_messages_ = 0;
   std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::optional<RenderSettings> drawn_settings_;
-  bool fits_first_load_ = false;  ///< of a sensor
+  bool fits_first_load_ = false;    ///< of a sensor
+  std::optional<ShownField> held_;  ///< until the second source has its frame
   bool field_is_new_ = false;
   bool beside_is_new_ = false;
   double taken_s_ = 0;  ///< produced_s_ of the field on display

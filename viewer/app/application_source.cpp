@@ -87,6 +87,7 @@ void Application::close() {
   if (loaded_.beside != nullptr) loaded_.beside->on_new_field({});
   if (loaded_.survey != nullptr) loaded_.survey->on_progress({});
   presenter_.clear();
+  held_.reset();
   state_.field.reset();
   state_.beside_field.reset();
   state_.player = state_.beside = nullptr;

@@ -69,9 +69,10 @@ TopView fit_top(const SkinSize& skin, const Viewport& viewport) {
                                  share * viewport.height / skin.height_mm))};
 }
 
-OrbitView fit_orbit(const SkinSize& skin, const Surface& surface, const Viewport& viewport) {
+OrbitView fit_orbit(const SkinSize& skin, const Surface& surface, const Viewport& viewport,
+                    OrbitView view) {
   constexpr int kSteps = 32;
-  OrbitView view;
+  view.target_mm = {};
   const Camera camera = camera_of(view, surface, viewport);
   double distance = 0;
   for (int row = -kSteps; row <= kSteps; ++row) {

@@ -196,6 +196,7 @@ float kpa_per_newton(const Skin& skin) {
 float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {
   const ShownField& field = field_with(quantity, shown);
   float largest = 0;
+  float normal = 0;
   for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
     const std::size_t first = std::size_t{row} * field.forces.cols;
     for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
@@ -203,9 +204,17 @@ float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {
       if (!is_pressed(status) || is_faulty(status)) continue;
       const float size = std::abs(pressed_value(quantity, field, skin, row, col));
       if (std::isfinite(size) && size > largest) largest = size;
+      normal = std::max(normal, field.forces.normal[first + col]);
     }
   }
-  return largest;
+  return without_rounding(quantity, largest, normal);
+}
+
+float without_rounding(Quantity quantity, float value, float normal_n) {
+  constexpr float kRounding = 1e-6f;
+  const bool shear =
+      quantity == Quantity::shear || quantity == Quantity::shear_x || quantity == Quantity::shear_y;
+  return shear && value < kRounding * normal_n ? 0 : value;
 }
 
 Range fitting_range(Quantity quantity, float largest_value) {

@@ -77,6 +77,9 @@ struct Range {
 /// none.
 [[nodiscard]] float largest(Quantity quantity, const ShownField& shown, const Skin& skin);
 
+/// 0 for a shear that is rounding beside the normal force, so that no range is fitted to it.
+[[nodiscard]] float without_rounding(Quantity quantity, float value, float normal_n);
+
 /// Range for a largest value: its round_ceiling(), 1 for a value of 0; always [0, pi/2] for theta,
 /// [-pi, pi] for phi and [0, number of classes] for classes.
 [[nodiscard]] Range fitting_range(Quantity quantity, float largest_value);

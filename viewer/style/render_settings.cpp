@@ -44,10 +44,11 @@ TopView fitted_top(const SkinSize& skin, const Layout& layout) {
   return view;
 }
 
-OrbitView fitted_orbit(const SkinSize& skin, const Surface& surface, const Layout& layout) {
+OrbitView fitted_orbit(const SkinSize& skin, const Surface& surface, const Layout& layout,
+                       const OrbitView& angles) {
   Viewport middle = layout.plot;
   middle.width = std::max(2 * layout.clear.width - layout.plot.width, 0.5 * layout.plot.width);
-  return fit_orbit(skin, surface, middle);
+  return fit_orbit(skin, surface, middle, angles);
 }
 
 std::uint32_t arrow_block(double pixels_per_pillar, double least_pixels) {

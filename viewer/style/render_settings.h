@@ -50,7 +50,7 @@ struct Layout {
 /// The whole skin from above, at the left of the legend, or in space.
 [[nodiscard]] TopView fitted_top(const SkinSize& skin, const Layout& layout);
 [[nodiscard]] OrbitView fitted_orbit(const SkinSize& skin, const Surface& surface,
-                                     const Layout& layout);
+                                     const Layout& layout, const OrbitView& angles = {});
 
 /// Pillars along an arrow's cell: the least of 1, 2, 3, 4, 6, 8, 12, 16, ... for which the cell is
 /// at least `least_pixels` wide.

@@ -65,8 +65,9 @@ struct Viewport {
 
 /// The whole skin in the viewport, with a margin of at least 4 % at each side.
 [[nodiscard]] TopView fit_top(const SkinSize& skin, const Viewport& viewport);
+/// `view` gives the angles.
 [[nodiscard]] OrbitView fit_orbit(const SkinSize& skin, const Surface& surface,
-                                  const Viewport& viewport);
+                                  const Viewport& viewport, OrbitView view = {});
 
 /// Arrows up to this length lie between the near and the far plane.
 inline constexpr double kArrowMarginMm = 60;

@@ -108,6 +108,18 @@ void reset_view(AppState& state, const FieldPlace& place) {
   state.other_view.reset();
 }
 
+void stop_at_skin(AppState& state, const FieldPlace& place) {
+  const Layout layout = layout_of(place.area.width, place.area.height, state.settings);
+  if (const auto* const top = std::get_if<TopView>(&state.settings.view)) {
+    const double least = fitted_top(place.skin(), layout).pixels_per_mm;
+    if (top->pixels_per_mm <= least) reset_view(state, place);
+    return;
+  }
+  auto& view = std::get<OrbitView>(state.settings.view);
+  const OrbitView whole = fitted_orbit(place.skin(), state.settings.surface, layout, view);
+  if (view.distance_mm >= whole.distance_mm) view = whole;
+}
+
 void set_surface(AppState& state, const FieldPlace& place, const Surface& surface) {
   state.settings.surface = surface;
   if (state.view_is_fitted) reset_view(state, place);

@@ -35,6 +35,9 @@ void show_trails(AppState& state, bool shown);
 /// Fits the view to the whole skin.
 void reset_view(AppState& state, const FieldPlace& place);
 
+/// Ends zooming out at the whole skin.
+void stop_at_skin(AppState& state, const FieldPlace& place);
+
 /// Sets the surface; refits a view that the user has not moved.
 void set_surface(AppState& state, const FieldPlace& place, const Surface& surface);
 

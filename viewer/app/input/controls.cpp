@@ -127,6 +127,7 @@ void Controls::turn_wheel(const WheelEvent& event, const Command& command) {
   zoom(command.state.settings.view, plot_of(command), in_picture(command, event.pixel),
        std::pow(kZoomOfStep, event.steps));
   settle(command);
+  if (event.steps < 0) stop_at_skin(command.state, command.place);
 }
 
 }  // namespace pillarfield::viewer

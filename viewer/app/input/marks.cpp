@@ -60,24 +60,30 @@ class Marker {
                   words.c_str());
   }
 
-  /// Older places are fainter.
+  /// A dotted line, in a colour of its own; older places are fainter.
   void trail(const std::deque<Trails::Place>& places) const {
     if (places.empty()) return;
+    const double every = 7 * settings_.scale;  // pixels between dots
     const double last_s = places.back().time_s;
-    std::optional<ImVec2> before;
+    std::optional<Vec2> before;
+    double to_next = 0;
     for (const Trails::Place& place : places) {
-      const auto pixel = pixel_of(place_, settings_, {place.x_mm, place.y_mm});
-      if (!pixel) continue;
-      const ImVec2 here = to_imgui(*pixel);
+      const auto here = pixel_of(place_, settings_, {place.x_mm, place.y_mm});
+      if (!here) continue;
       const double fresh = 1 - (last_s - place.time_s) / Trails::kSeconds;
-      const int alpha = static_cast<int>(std::clamp(255 * fresh, 30.0, 255.0));
-      if (before) {
-        list_.AddLine(*before, here, IM_COL32(0, 0, 0, alpha), 4 * unit_);
-        list_.AddLine(*before, here, IM_COL32(120, 240, 200, alpha), 2 * unit_);
+      const int alpha = static_cast<int>(std::clamp(255 * fresh, 60.0, 255.0));
+      const Vec2 from = before.value_or(*here);
+      const double length = std::hypot(here->x - from.x, here->y - from.y);
+      for (; to_next <= length; to_next += every) {
+        const double share = length > 0 ? to_next / length : 0;
+        const ImVec2 dot =
+            to_imgui({from.x + share * (here->x - from.x), from.y + share * (here->y - from.y)});
+        list_.AddCircleFilled(dot, 2.9f * unit_, IM_COL32(0, 0, 0, alpha));
+        list_.AddCircleFilled(dot, 1.9f * unit_, IM_COL32(255, 150, 205, alpha));
       }
+      to_next -= length;
       before = here;
     }
-    if (before) list_.AddCircleFilled(*before, 4 * unit_, IM_COL32(120, 240, 200, 255));
   }
 
   void clip() const {

@@ -47,9 +47,11 @@ void mouse() {
 
 }  // namespace
 
-void help_overlay(const Viewport& area, const SourceInfo& source) {
-  constexpr int kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
+Viewport help_overlay(const Viewport& area, const SourceInfo& source) {
+  constexpr int kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                         ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                         ImGuiWindowFlags_HorizontalScrollbar;
   const ImVec2 middle(static_cast<float>(area.x + area.width / 2),
                       static_cast<float>(area.y + area.height / 2));
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, ImVec2(0.5f, 0.5f));
@@ -60,7 +62,7 @@ void help_overlay(const Viewport& area, const SourceInfo& source) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4);
   const float em = ImGui::GetFontSize();
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(1.6f * em, 1.3f * em));
-  if (ImGui::Begin("help", nullptr, kFlags | ImGuiWindowFlags_HorizontalScrollbar)) {
+  if (ImGui::Begin("help", nullptr, kFlags)) {
     ImGui::BeginGroup();
     group(ShortcutGroup::play, source);
     group(ShortcutGroup::view, source);
@@ -76,9 +78,13 @@ void help_overlay(const Viewport& area, const SourceInfo& source) {
     mouse();
     ImGui::EndGroup();
   }
+  const ImVec2 corner = ImGui::GetWindowPos();
+  const ImVec2 size = ImGui::GetWindowSize();
   ImGui::End();
   ImGui::PopStyleVar(3);
   ImGui::PopStyleColor();
+  return {static_cast<double>(corner.x), static_cast<double>(corner.y), static_cast<double>(size.x),
+          static_cast<double>(size.y)};
 }
 
 }  // namespace pillarfield::viewer

@@ -49,8 +49,9 @@ inline constexpr double kSilentSeconds = 1;
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
 
-/// Draws the help on mouse and keys, as far as they apply to the source, over the field.
-void help_overlay(const Viewport& area, const SourceInfo& source);
+/// Draws the help on mouse and keys, as far as they apply to the source, over the window, and
+/// returns its place. Where it does not fit, it scrolls.
+[[nodiscard]] Viewport help_overlay(const Viewport& area, const SourceInfo& source);
 
 /// Settings of the picture: quantity, range, colours, layers, view, surface, theme.
 void view_panel(const Command& command);

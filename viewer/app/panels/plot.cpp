@@ -40,7 +40,7 @@ Vec2 PlotArea::value_at(Vec2 pixel) const {
           y.to - (y.to - y.from) * (pixel.y - box.y) / box.height};
 }
 
-Span round_span(std::span<const double> values) {
+Span round_span(std::span<const double> values, double rounding) {
   double low = 0;
   double high = 0;
   for (const double value : values) {
@@ -48,7 +48,7 @@ Span round_span(std::span<const double> values) {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  if (low == high) return {0, 1};
+  if (std::max(high, -low) <= rounding) return {0, 1};
   const double step = nice_ceiling((high - low) / 5);
   return {step * std::floor(low / step), step * std::ceil(high / step)};
 }

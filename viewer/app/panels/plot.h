@@ -30,8 +30,8 @@ struct PlotArea {
 };
 
 /// Interval that contains 0 and all finite values, with round ends and at least three ticks();
-/// [0, 1] for zeros only.
-[[nodiscard]] Span round_span(std::span<const double> values);
+/// [0, 1] where no value is above `rounding`.
+[[nodiscard]] Span round_span(std::span<const double> values, double rounding = 0);
 
 /// Thins a curve in ascending x, in pixels: keeps the first, lowest, highest and last point of each
 /// pixel column; drops NaN.

@@ -27,25 +27,32 @@ ShownValue shown(const char* label, double value, std::string_view unit) {
   return {label, three_digits(value), {}, std::string(unit)};
 }
 
-/// Total force of the selection, without pillars with the pressure.
+/// A length to 0.01 mm.
+ShownValue shown_mm(const char* label, double value) {
+  return shown(label, std::round(100 * value) / 100, "mm");
+}
+
+/// Total force and pressure of the selection.
 std::vector<ShownValue> force_lines(const SelectionSums& sums, const Skin& skin,
                                     const PressureUnit& unit) {
-  if (!skin.has_pillars()) {
-    const double pressure = static_cast<double>(kpa_per_newton(skin)) / unit.kpa;
-    return {shown("normal", sums.normal, "N"),
-            shown("mean pressure", pressure * sums.mean_normal, unit.name),
-            shown("peak pressure", pressure * sums.peak_normal, unit.name)};
-  }
-  return {shown("normal", sums.normal, "N"),
-          shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"),
-          shown("shear x", sums.shear_x, "N"), shown("shear y", sums.shear_y, "N"),
-          shown("moment z", sums.moment_z, "N mm")};
+  const double pressure = static_cast<double>(kpa_per_newton(skin)) / unit.kpa;
+  std::vector<ShownValue> lines{shown("normal", sums.normal, "N"),
+                                shown("mean", pressure * sums.mean_normal, unit.name),
+                                shown("peak", pressure * sums.peak_normal, unit.name)};
+  if (!skin.has_pillars()) return lines;
+  lines.push_back(shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"));
+  lines.push_back(shown("shear x", sums.shear_x, "N"));
+  lines.push_back(shown("shear y", sums.shear_y, "N"));
+  const double rounding = 1e-6 * sums.normal * std::sqrt(sums.area_mm2);
+  lines.push_back(
+      shown("moment z", std::abs(sums.moment_z) < rounding ? 0 : sums.moment_z, "N mm"));
+  return lines;
 }
 
 /// Centre of pressure, area, mean and peak.
 std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
   std::vector<ShownValue> lines{
-      shown("centre x", sums.centre_x_mm, "mm"), shown("centre y", sums.centre_y_mm, "mm"),
+      shown_mm("centre x", sums.centre_x_mm), shown_mm("centre y", sums.centre_y_mm),
       shown("area", sums.area_mm2, "mm²"), shown("mean", sums.mean_normal, "N"),
       shown("peak", sums.peak_normal, "N")};
   if (sums.in_contact > 0) {

@@ -9,6 +9,7 @@
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
+#include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kLiveSeconds = 20;  ///< shown of a sensor at first
 constexpr std::size_t kMostShownPoints = 8192;
 constexpr double kChartHeight = 72;  ///< least, nominal pixels
-constexpr double kChartWidth = 180;  ///< least beside others
+constexpr double kChartWidth = 150;  ///< least beside others
 
 using Points = std::vector<CurvePoint>;
 using Component = double (*)(const CurvePoint&);
@@ -32,6 +33,7 @@ struct Chart {
   std::string title;
   const char* unit;
   std::vector<Curve> curves;
+  double rounding = 0;  ///< values up to here are zero but for rounding
 };
 
 double normal_of(const CurvePoint& point) { return static_cast<double>(point.normal); }
@@ -97,6 +99,22 @@ void add_selection(std::vector<Chart>& charts, const AppState& state, const Span
   charts.push_back(force_chart("Selection", points, colours, pillars));
 }
 
+/// Forces are sums in single precision, torques those times a length.
+void set_rounding(std::vector<Chart>& charts, const SourceInfo& source) {
+  constexpr double kRounding = 1e-6;
+  double most_n = 0;
+  for (const CurvePoint& point : charts.front().curves.front().points) {
+    most_n = std::max(most_n, std::abs(normal_of(point)));
+  }
+  const SkinSize size = skin_size(source);
+  const double length_mm = std::max(size.width_mm, size.height_mm);
+  for (Chart& chart : charts) {
+    const bool force = std::string_view(chart.unit) == "N";
+    const bool torque = std::string_view(chart.unit) == "N mm";
+    chart.rounding = kRounding * (force ? most_n : torque ? most_n * length_mm : length_mm);
+  }
+}
+
 std::vector<Chart> charts_of(const AppState& state, const Span& time, const PanelStyle& style) {
   const Colours colours = colours_of(style, state.settings.theme);
   const bool pillars = state.player->info().skin.has_pillars();
@@ -104,6 +122,7 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours, pillars);
   add_pins(charts, state, time, pillars);
   add_selection(charts, state, time, colours, pillars);
+  set_rounding(charts, state.player->info());
   return charts;
 }
 
@@ -119,7 +138,7 @@ Span value_span(const Chart& chart) {
   for (const Curve& curve : chart.curves) {
     for (const CurvePoint& point : curve.points) values.push_back(curve.value(point));
   }
-  return round_span(values);
+  return round_span(values, chart.rounding);
 }
 
 /// The point nearest in time; null without points.

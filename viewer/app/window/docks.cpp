@@ -344,7 +344,9 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 
-  if (state.show_help) help_overlay(screen.field, state.player->info());
+  if (!state.show_help) return;
+  const Viewport window{0, 0, screen.status.width, screen.status.y};
+  state.help_place = help_overlay(window, state.player->info());
 }
 
 }  // namespace pillarfield::viewer
