@@ -37,7 +37,8 @@ PF_CONSTANT uint kQuantityConstant = 0u;  // kNormal, ...
 PF_CONSTANT uint kScaleConstant = 1u;     // kSequential, ...
 PF_CONSTANT uint kReadingsConstant = 2u;  // kReadings8, ...
 PF_CONSTANT uint kMeansConstant = 3u;     // true: a pixel may show the mean of several pillars
-PF_CONSTANT uint kReliefConstant = 4u;    // true: the surface is raised by the normal force
+PF_CONSTANT uint kReliefConstant =
+    4u;  // true: in space, lit and perhaps raised by the normal force
 
 // Quantities, in the order of Quantity in viewer/style/quantity.h.
 PF_CONSTANT uint kNormal = 0u;
@@ -101,8 +102,9 @@ struct Scene {
   uvec4 block;          // pillars along a cell; 1: top view; none
   vec4 arrow;           // mm per newton; least length, half width: pixels; fraction of the length
                         // before the anchor
-  uvec4 layer_colours;  // colours of an arrow's fill, its outline, a sector; none
+  uvec4 layer_colours;  // colours of an arrow's fill, its outline, a sector, the floor
   vec4 relief;          // height: mm per newton of normal force, 0 without; largest: mm; none, none
+  vec4 ground;          // floor: height, distance of its lines, half its side: mm; none
 };
 
 // 256 colours of the map and, from kFirstSpecial on, those of Special, for a single look-up. Each
@@ -121,7 +123,7 @@ struct Cell {
 #ifdef __cplusplus
 #undef PF_CONSTANT
 #undef PF_ARRAY
-static_assert(sizeof(Scene) == 64 + 17 * 16);
+static_assert(sizeof(Scene) == 64 + 18 * 16);
 static_assert(sizeof(Colours) == 272 * 16);
 static_assert(sizeof(Cell) == 32);
 

@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "viewer/render/imgui_point.h"
-#include "viewer/render/overlay.h"
-#include "viewer/render/scene.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -24,9 +22,9 @@ constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< distinct from the a
 constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< behind labels
 
 /// Bounding box of points, pixels.
-Viewport box_about(const std::vector<Vec2>& points) {
-  const auto [left, right] = std::ranges::minmax(points, {}, &Vec2::x);
-  const auto [top, bottom] = std::ranges::minmax(points, {}, &Vec2::y);
+Viewport box_about(const std::vector<SeenPoint>& points) {
+  const auto [left, right] = std::ranges::minmax(points, {}, &SeenPoint::x);
+  const auto [top, bottom] = std::ranges::minmax(points, {}, &SeenPoint::y);
   return {left.x, top.y, right.x - left.x, bottom.y - top.y};
 }
 
@@ -34,31 +32,21 @@ bool overlap(const Viewport& a, const Viewport& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// Pixel of the point `right` and `up`, in mm, along the tangents from another.
-std::optional<Vec2> seen(const SourceInfo& source, const RenderSettings& settings,
-                         const Viewport& plot, const PatchPlace& place, double right, double up) {
-  const bool from_above = std::holds_alternative<TopView>(settings.view);
-  const SurfaceFrame frame =
-      frame_at(from_above ? Surface{} : settings.surface, {place.x_mm, place.y_mm});
-  const Vec3& x = frame.tangent_x;
-  const Vec3& y = frame.tangent_y;
-  return project(
-      settings.view, settings.surface, skin_size(source), plot,
-      {frame.position.x + right * x.x + up * y.x, frame.position.y + right * x.y + up * y.y,
-       frame.position.z + right * x.z + up * y.z});
+Vec2 place_of(const ContactQuantities& contact) {
+  return {contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm};
 }
 
 /// `longest`: limit of the arrow, pixels.
-std::optional<Vec2> tip_of(const ContactQuantities& contact, const SourceInfo& source,
-                           const RenderSettings& settings, const Viewport& plot, double longest) {
+std::optional<Vec2> tip_of(const ContactQuantities& contact, const Ground& ground, double longest) {
   const double shear = std::hypot(contact.shear_x_n, contact.shear_y_n);
   if (!(contact.normal_n > 0) || shear < kLeastRatio * contact.normal_n) return std::nullopt;
-  const double pixels = std::min(
-      kContactArrowPixels * settings.scale * std::min(shear / contact.normal_n, kMostRatio),
-      longest);
-  const double mm_per_newton = pixels / pixels_per_mm(settings.view, plot) / shear;
-  return seen(source, settings, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
-              mm_per_newton * contact.shear_y_n);
+  const double pixels = std::min(kContactArrowPixels * ground.settings().scale *
+                                     std::min(shear / contact.normal_n, kMostRatio),
+                                 longest);
+  const double mm_per_newton =
+      pixels / pixels_per_mm(ground.settings().view, ground.plot()) / shear;
+  return ground.beside(place_of(contact),
+                       {mm_per_newton * contact.shear_x_n, mm_per_newton * contact.shear_y_n});
 }
 
 /// Draws the lines and labels of one picture.
@@ -67,14 +55,12 @@ class Brush {
   Brush(ImDrawList& list, double scale) : list_(list), unit_(static_cast<float>(scale)) {}
 
   void outline(const ContactMark& mark) const {
-    std::vector<ImVec2> points;
-    for (const Vec2& point : mark.outline) points.push_back(to_imgui(point));
-    const auto count = static_cast<int>(points.size());
-    list_.AddPolyline(points.data(), count, kEdge, ImDrawFlags_Closed, 2.6f * unit_);
-    list_.AddPolyline(points.data(), count, kLine, ImDrawFlags_Closed, 1.2f * unit_);
+    draw_outline(list_, mark.outline, kEdge, 2.6f * unit_);
+    draw_outline(list_, mark.outline, kLine, 1.2f * unit_);
   }
 
   void force(const ContactMark& mark) const {
+    if (mark.centre.hidden) return;
     const ImVec2 centre = to_imgui(mark.centre);
     if (mark.tip) {
       arrow(mark.centre, *mark.tip, 3, IM_COL32(0, 0, 0, 255));
@@ -129,7 +115,9 @@ void write_words(const Brush& brush, const std::vector<ContactMark>& marks, cons
                  double scale) {
   std::vector<Viewport> taken;
   for (const ContactMark& mark : marks) {
-    const Viewport box = box_about(mark.outline);
+    if (mark.centre.hidden && std::ranges::all_of(mark.outline, &SeenPoint::hidden)) continue;
+    Viewport box = box_about(mark.outline);
+    box.y = std::min(box.y, mark.centre.y - 6 * scale);  // Above its hill.
     const Viewport label = brush.box_of(mark.words, {box.x, box.y - 3 * scale}, plot);
     if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(label, other); })) {
       continue;
@@ -141,23 +129,21 @@ void write_words(const Brush& brush, const std::vector<ContactMark>& marks, cons
 
 }  // namespace
 
-std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const SourceInfo& source,
-                                       const RenderSettings& settings, const Viewport& plot) {
+std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Ground& ground) {
   std::vector<ContactMark> marks;
   const std::size_t count = std::min(contacts.above_noise, kMostContactsDrawn);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = contacts.heaviest[i];
     const TrackedContact& contact = contacts.found.contacts[place];
     const ContactQuantities& quantities = contact.quantities;
-    auto outline = outline_of(contacts.extents[place], source, settings, plot);
-    if (outline.empty() || !overlap(box_about(outline), plot)) continue;
-    const auto centre = seen(source, settings, plot, quantities.centre_of_pressure, 0, 0);
+    auto outline = ground.outline(contacts.extents[place]);
+    if (outline.empty() || !overlap(box_about(outline), ground.plot())) continue;
+    const auto centre = ground.seen(place_of(quantities));
     if (!centre) continue;
     const Viewport box = box_about(outline);
     const double longest =
-        std::max(std::hypot(box.width, box.height), kLeastArrowLimit * settings.scale);
-    marks.push_back({std::move(outline), *centre,
-                     tip_of(quantities, source, settings, plot, longest),
+        std::max(std::hypot(box.width, box.height), kLeastArrowLimit * ground.settings().scale);
+    marks.push_back({std::move(outline), *centre, tip_of(quantities, ground, longest),
                      fmt::format("{}  {} N", contact.track_id, three_digits(quantities.normal_n))});
   }
   return marks;
@@ -169,17 +155,18 @@ std::string contacts_left_out(const ShownContacts& contacts) {
                      contacts.above_noise);
 }
 
-void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,
-                        const RenderSettings& settings, const Viewport& plot) {
-  const auto marks = contact_marks(contacts, source, settings, plot);
-  const Brush brush(list, settings.scale);
+void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const Ground& ground) {
+  const auto marks = contact_marks(contacts, ground);
+  const Viewport& plot = ground.plot();
+  const double scale = ground.settings().scale;
+  const Brush brush(list, scale);
   list.PushClipRect(to_imgui({plot.x, plot.y}),
                     to_imgui({plot.x + plot.width, plot.y + plot.height}));
   for (const ContactMark& mark : marks) brush.outline(mark);
   for (const ContactMark& mark : marks) brush.force(mark);
-  write_words(brush, marks, plot, settings.scale);
+  write_words(brush, marks, plot, scale);
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
-    const double gap = 4 * settings.scale;
+    const double gap = 4 * scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
     brush.words(brush.box_of(warning, corner, plot), warning);
   }

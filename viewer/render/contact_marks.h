@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/source/field_producer.h"
-#include "viewer/style/render_settings.h"
+#include "viewer/render/ground.h"
 
 struct ImDrawList;
 
@@ -20,25 +19,23 @@ inline constexpr double kContactArrowPixels = 48;
 
 /// Graphics of a contact, in pixels of the picture.
 struct ContactMark {
-  std::vector<Vec2> outline;  ///< of its bounding rectangle, see outline_of()
-  Vec2 centre;                ///< centre of pressure
-  std::optional<Vec2> tip;    ///< of the shear arrow; none below 3 % of the normal force
-  std::string words;          ///< "3  50.1 N": id and normal force
+  std::vector<SeenPoint> outline;  ///< of its bounding rectangle, see Ground::outline()
+  SeenPoint centre;                ///< centre of pressure
+  std::optional<Vec2> tip;         ///< of the shear arrow; none below 3 % of the normal force
+  std::string words;               ///< "3  50.1 N": id and normal force
 };
 
 /// Marks of the kMostContactsDrawn heaviest contacts above the noise, heaviest first, without those
 /// out of sight or partly behind the eye. An arrow is at most 3 kContactArrowPixels long, and no
 /// longer than the diagonal of its contact or 16 pixels at scale 1.
 [[nodiscard]] std::vector<ContactMark> contact_marks(const ShownContacts& contacts,
-                                                     const SourceInfo& source,
-                                                     const RenderSettings& settings,
-                                                     const Viewport& plot);
+                                                     const Ground& ground);
 
 /// "256 of 1031 contacts are drawn, the heaviest"; empty if all are drawn.
 [[nodiscard]] std::string contacts_left_out(const ShownContacts& contacts);
 
-/// Draws marks into the plot; omits a label that would cover that of a heavier contact.
-void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,
-                        const RenderSettings& settings, const Viewport& plot);
+/// Draws marks into the plot, as far as no hill hides them; omits a label that would cover that of
+/// a heavier contact.
+void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const Ground& ground);
 
 }  // namespace pillarfield::viewer

@@ -145,6 +145,22 @@ void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& l
   }
 }
 
+/// A round length at the middle of the view.
+void write_scale_bar(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
+  const double pixels = pixels_per_mm(canvas.settings.view, layout.plot);
+  const double length_mm = nice_ceiling(0.08 * layout.clear.width / pixels);
+  const double length = length_mm * pixels;
+  const double x = layout.plot.x + 100 * canvas.unit();
+  const double y = layout.plot.y + layout.plot.height - 16 * canvas.unit();
+  const double end = 4 * canvas.unit();
+  canvas.line(x, y, x + length, y, canvas.text_colour);
+  canvas.line(x, y - end, x, y, canvas.text_colour);
+  canvas.line(x + length, y - end, x + length, y, canvas.text_colour);
+  canvas.text(x, y - 22 * canvas.unit(), fmt::format("{:g} mm", length_mm));
+  canvas.text(x + length + 10 * canvas.unit(), y - 12 * canvas.unit(),
+              fmt::format("grid {:g} mm", floor_step_mm(skin_size(source))), canvas.faint_colour);
+}
+
 void write_bar(const Canvas& canvas, const Layout& layout) {
   const RenderSettings& settings = canvas.settings;
   const Viewport& bar = layout.bar;
@@ -330,8 +346,8 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
   io.DeltaTime = 1;
   ImGui::NewFrame();
   if (settings.contacts && field.contacts != nullptr) {
-    draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts, source, settings,
-                       layout.plot);
+    draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts,
+                       Ground(&field, source, settings, layout.plot));
   }
   if (settings.legend) {
     const bool dark = settings.theme == Theme::dark;
@@ -344,40 +360,11 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
       write_axes(canvas, *top, layout);
     } else {
       write_triad(canvas, source, layout);
+      write_scale_bar(canvas, source, layout);
     }
     if (settings.colour_bar) write_scales(canvas, source, layout);
   }
   ImGui::Render();
-}
-
-std::vector<Vec2> outline_of(const PillarRect& rect, const SourceInfo& source,
-                             const RenderSettings& settings, const Viewport& plot) {
-  const Skin& skin = source.skin;
-  const double pitch = skin.element_pitch_mm();
-  const double left = (rect.col_begin - 0.5 * skin.element_cols()) * pitch;
-  const double right = (rect.col_end - 0.5 * skin.element_cols()) * pitch;
-  const double top = (0.5 * skin.element_rows() - rect.row_begin) * pitch;
-  const double bottom = (0.5 * skin.element_rows() - rect.row_end) * pitch;
-  const std::array<Vec2, 5> corners{
-      {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}};
-  const bool from_above = std::holds_alternative<TopView>(settings.view);
-  const bool straight = from_above || settings.surface.kind == SurfaceKind::plane;
-  const int pieces = straight ? 1 : 32;
-  std::vector<Vec2> points;
-  for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
-    const Vec2& from = corners.at(side);
-    const Vec2& to = corners.at(side + 1);
-    for (int i = 0; i < pieces; ++i) {
-      const double share = static_cast<double>(i) / pieces;
-      const Vec2 sheet{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
-      const Vec3 place =
-          from_above ? Vec3{sheet.x, sheet.y, 0} : frame_at(settings.surface, sheet).position;
-      const auto pixel = project(settings.view, settings.surface, skin_size(source), plot, place);
-      if (!pixel) return {};
-      points.push_back(*pixel);
-    }
-  }
-  return points;
 }
 
 }  // namespace pillarfield::viewer

@@ -6,6 +6,8 @@
 #include "shaders/arrow_frag.h"
 #include "shaders/arrow_vert.h"
 #include "shaders/cells_comp.h"
+#include "shaders/floor_frag.h"
+#include "shaders/floor_vert.h"
 #include "shaders/heat_frag.h"
 #include "shaders/heat_vert.h"
 #include "shaders/shared.h"
@@ -115,6 +117,8 @@ Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
   sectors_ =
       make_pipeline(device, *layout_, render_pass, make_module(device, uncertainty_sector_vert),
                     make_module(device, uncertainty_sector_frag), Depth::tested);
+  floor_ = make_pipeline(device, *layout_, render_pass, make_module(device, floor_vert),
+                         make_module(device, floor_frag), Depth::tested);
 }
 
 vk::Pipeline Pipelines::heat(const HeatKind& kind) {

@@ -43,6 +43,7 @@ class Pipelines {
   [[nodiscard]] vk::Pipeline heat(const HeatKind& kind);
   [[nodiscard]] vk::Pipeline arrows() const { return *arrows_; }
   [[nodiscard]] vk::Pipeline sectors() const { return *sectors_; }
+  [[nodiscard]] vk::Pipeline floor() const { return *floor_; }
 
  private:
   const gpu::Device* device_;
@@ -57,6 +58,7 @@ class Pipelines {
   std::map<HeatKind, vk::raii::Pipeline> heat_;
   vk::raii::Pipeline arrows_ = nullptr;
   vk::raii::Pipeline sectors_ = nullptr;
+  vk::raii::Pipeline floor_ = nullptr;
 };
 
 }  // namespace pillarfield::viewer

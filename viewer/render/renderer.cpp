@@ -100,6 +100,10 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField&
   set_viewport(commands, layout.plot);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_.layout(), 0, set,
                               nullptr);
+  if (std::holds_alternative<OrbitView>(settings.view)) {
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.floor());
+    commands.draw(6, 1, 0, 0);
+  }
   if (is_available(settings.quantity, source)) {  // A second source may lack its planes.
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
                           pipelines_.heat(heat_kind_of(field, source, settings, layout.plot)));

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer/render/ground.h"
 #include "viewer/style/surface.h"
+#include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -18,18 +20,6 @@ constexpr float kSmallestForceFraction =
 constexpr double kSinglePillarPixels = 0.7;
 
 constexpr std::uint32_t kMostReliefTiles = 256;  ///< along a side of the skin
-constexpr double kMostRelief = 1.5;              ///< of the height of RenderSettings::relief_full_n
-
-bool shows_relief(const RenderSettings& settings) {
-  return settings.relief && std::holds_alternative<OrbitView>(settings.view);
-}
-
-/// Height of the relief for RenderSettings::relief_full_n; its peaks lie before the far and behind
-/// the near plane.
-double relief_mm(const SkinSize& size) {
-  constexpr double kShare = 0.12;
-  return std::min(kShare * std::min(size.width_mm, size.height_mm), kArrowMarginMm / kMostRelief);
-}
 
 uint pack(const Colour& colour, unsigned alpha = 255) {
   return static_cast<uint>(colour.red) | static_cast<uint>(colour.green) << 8u |
@@ -82,6 +72,10 @@ SkinSize skin_size(const SourceInfo& source) {
   return {source.skin.element_cols() * pitch, source.skin.element_rows() * pitch};
 }
 
+double floor_step_mm(const SkinSize& size) {
+  return nice_ceiling(std::max(size.width_mm, size.height_mm) / 10);
+}
+
 std::uint32_t arrow_block_of(const RenderSettings& settings, const Viewport& plot,
                              double pitch_mm) {
   return arrow_block(pitch_mm * pixels_per_mm(settings.view, plot),
@@ -104,10 +98,10 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   const double pitch = source.skin.element_pitch_mm();
   const Surface surface = from_above ? Surface{} : settings.surface;
   const std::uint32_t block = arrow_block_of(settings, plot, pitch);
-  const bool relief = shows_relief(settings);
+  const Relief relief = relief_of(settings, size);
   const std::uint32_t mesh = surface.kind == SurfaceKind::plane ? 1 : 96;
   const auto tiles = [&](std::uint32_t pillars, std::uint32_t flat) {
-    return relief ? std::min(pillars, kMostReliefTiles) : flat;
+    return relief.mm_per_newton > 0 ? std::min(pillars, kMostReliefTiles) : flat;
   };
   const auto plane = [&](Uncertainty kind) {
     return plane_of(field, field.forces.uncertainty[kind]);
@@ -144,10 +138,12 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
                  narrow(1.3 * settings.scale), from_above ? 0.5f : 1.0f};
   const Colour white{255, 255, 255};
   const Colour black{12, 14, 18};
-  scene.layer_colours = {pack(white), pack(black), pack(white, 110), 0};
-  const double most_mm = relief_mm(size);
-  scene.relief = {relief ? narrow(most_mm / settings.relief_full_n) : 0,
-                  narrow(kMostRelief * most_mm), 0, 0};
+  scene.layer_colours = {pack(white), pack(black), pack(white, 110),
+                         pack(colour_of(Special::no_reading, settings.theme))};
+  scene.relief = {narrow(relief.mm_per_newton), narrow(relief.most_mm), 0, 0};
+  const double longest = std::max(size.width_mm, size.height_mm);
+  scene.ground = {narrow(box_about(size, surface).low.z - 0.01 * longest),
+                  narrow(floor_step_mm(size)), narrow(1.6 * longest), 0};
   return scene;
 }
 
@@ -160,7 +156,8 @@ HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
   const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
   return {static_cast<uint>(settings.quantity), static_cast<uint>(scale),
           settings.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,
-          has_mean && !near ? VK_TRUE : VK_FALSE, shows_relief(settings) ? VK_TRUE : VK_FALSE};
+          has_mean && !near ? VK_TRUE : VK_FALSE,
+          std::holds_alternative<OrbitView>(settings.view) ? VK_TRUE : VK_FALSE};
 }
 
 shader::Colours colours_of(const RenderSettings& settings) {

@@ -18,6 +18,9 @@ namespace pillarfield::viewer {
 /// Size of the skin's sheet, mm.
 [[nodiscard]] SkinSize skin_size(const SourceInfo& source);
 
+/// Distance of the lines of the floor in 3-D, mm.
+[[nodiscard]] double floor_step_mm(const SkinSize& size);
+
 /// Mean force per pillar, N, whose arrow is 1.5 cells long.
 [[nodiscard]] double full_arrow_n(const RenderSettings& settings);
 

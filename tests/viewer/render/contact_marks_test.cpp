@@ -43,7 +43,7 @@ void expect_point(const Vec2& point, double x, double y) {
 TEST(ContactMarks, AreWhereTheContactIs) {
   // Rows 4 to 7, columns 22 to 27: x from 2 to 8 mm, y from 2 to 6 mm.
   const ShownContacts contacts = contacts_of({{{4, 8, 22, 28}, 0.5F, 0.25F, 0}});
-  const auto marks = contact_marks(contacts, source(), top_settings(), kPlot);
+  const auto marks = contact_marks(contacts, Ground(nullptr, source(), top_settings(), kPlot));
   ASSERT_EQ(marks.size(), 1U);
   const ContactMark& mark = marks.front();
   ASSERT_EQ(mark.outline.size(), 4U);
@@ -60,8 +60,8 @@ TEST(ContactMarks, AreWhereTheContactIs) {
 TEST(ContactMarks, ArrowsPointUpWhereShearDoesAndGrowWithTheScaleAndNotForEver) {
   RenderSettings settings = top_settings();
   const auto tip_of = [&](float shear_y) {
-    const auto marks =
-        contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}), source(), settings, kPlot);
+    const auto marks = contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}),
+                                     Ground(nullptr, source(), settings, kPlot));
     return marks.front().tip;
   };
   expect_point(tip_of(1).value(), 280, 80 - kContactArrowPixels);
@@ -76,14 +76,14 @@ TEST(ContactMarks, ArrowsPointUpWhereShearDoesAndGrowWithTheScaleAndNotForEver) 
 TEST(ContactMarks, HeaviestFirstAndNoneOutOfSight) {
   const ShownContacts contacts =
       contacts_of({{{1, 3, 1, 3}, 1}, {{8, 10, 8, 10}, 3}, {{15, 17, 35, 37}, 2}});
-  const auto marks = contact_marks(contacts, source(), top_settings(), kPlot);
+  const auto marks = contact_marks(contacts, Ground(nullptr, source(), top_settings(), kPlot));
   ASSERT_EQ(marks.size(), 3U);
   EXPECT_EQ(marks[0].words, "2  12.0 N");
   EXPECT_EQ(marks[1].words, "3  8.00 N");
   EXPECT_EQ(marks[2].words, "1  4.00 N");
   RenderSettings near = top_settings();
   near.view = TopView{{-10, 1}, 100};
-  EXPECT_EQ(contact_marks(contacts, source(), near, kPlot).size(), 1U);
+  EXPECT_EQ(contact_marks(contacts, Ground(nullptr, source(), near, kPlot)).size(), 1U);
 }
 
 TEST(ContactMarks, ASinglePillarAtTheNoiseHasNone) {
@@ -91,11 +91,11 @@ TEST(ContactMarks, ASinglePillarAtTheNoiseHasNone) {
   const ShownContacts contacts =
       contacts_of({{{4, 8, 22, 28}, 1}, {{12, 13, 2, 3}, 0.0004F, 0.008F, 0}});
   ASSERT_EQ(contacts.found.contacts.size(), 2U);
-  const auto marks = contact_marks(contacts, source(), top_settings(), kPlot);
+  const auto marks = contact_marks(contacts, Ground(nullptr, source(), top_settings(), kPlot));
   ASSERT_EQ(marks.size(), 1U);
   EXPECT_EQ(marks.front().words, "1  24.0 N");
-  EXPECT_EQ(contact_marks(contacts_of({{{4, 8, 22, 28}, 1}, {{12, 13, 2, 3}, 0.1F}}), source(),
-                          top_settings(), kPlot)
+  EXPECT_EQ(contact_marks(contacts_of({{{4, 8, 22, 28}, 1}, {{12, 13, 2, 3}, 0.1F}}),
+                          Ground(nullptr, source(), top_settings(), kPlot))
                 .size(),
             2U)
       << "a single pillar above the noise";
@@ -106,7 +106,7 @@ TEST(ContactMarks, OnACylinderFollowTheSurface) {
   settings.surface = {SurfaceKind::cylinder, 10};
   settings.view = fit_orbit({kCols, kRows}, settings.surface, kPlot);
   const ShownContacts contacts = contacts_of({{{4, 8, 18, 24}, 1, 0.5F, 0}});
-  const auto marks = contact_marks(contacts, source(), settings, kPlot);
+  const auto marks = contact_marks(contacts, Ground(nullptr, source(), settings, kPlot));
   ASSERT_EQ(marks.size(), 1U);
   EXPECT_EQ(marks[0].outline.size(), 4U * 32U);
   const auto middle = project(settings.view, settings.surface, {kCols, kRows}, kPlot,
@@ -133,7 +133,7 @@ TEST(ContactMarks, TheHeaviestAreDrawnAndTheRestIsReported) {
   wide.skin.rows = wide.skin.cols = 200;
   RenderSettings settings = top_settings();
   settings.view = fit_top({100, 100}, kPlot);
-  const auto marks = contact_marks(many, wide, settings, kPlot);
+  const auto marks = contact_marks(many, Ground(nullptr, wide, settings, kPlot));
   EXPECT_EQ(marks.size(), kMostContactsDrawn);
   EXPECT_EQ(marks.front().words, "2500  990 N");
   EXPECT_EQ(contacts_left_out(many), "256 of 2450 contacts are drawn, the heaviest");

@@ -12,8 +12,8 @@
 
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/window/style.h"
+#include "viewer/render/ground.h"
 #include "viewer/render/imgui_point.h"
-#include "viewer/render/overlay.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -24,17 +24,15 @@ class Marker {
   Marker(const AppState& state, const FieldPlace& place)
       : settings_(state.settings),
         place_(place),
+        ground_(state.field ? &*state.field : nullptr, *place.source, state.settings,
+                place.plot(state.settings)),
         list_(*ImGui::GetBackgroundDrawList()),
         unit_(static_cast<float>(state.settings.scale)) {}
 
   void outline(const PillarRect& rect, ImU32 colour) const {
-    std::vector<ImVec2> points;
-    for (const Vec2& point : outline_of(rect, *place_.source, settings_, place_.plot(settings_))) {
-      points.push_back(to_imgui(point));
-    }
-    const auto count = static_cast<int>(points.size());
-    list_.AddPolyline(points.data(), count, IM_COL32(0, 0, 0, 200), ImDrawFlags_Closed, 3 * unit_);
-    list_.AddPolyline(points.data(), count, colour, ImDrawFlags_Closed, 1.4f * unit_);
+    const auto points = ground_.outline(rect);
+    draw_outline(list_, points, IM_COL32(0, 0, 0, 200), 3 * unit_);
+    draw_outline(list_, points, colour, 1.4f * unit_);
   }
 
   void pin(const Pin& pin, bool inspected) const {
@@ -66,15 +64,16 @@ class Marker {
     const double every = 7 * settings_.scale;  // pixels between dots
     const double last_s = places.back().time_s;
     std::optional<Vec2> before;
-    double to_next = 0;
+    double to_next = every;
     for (const Trails::Place& place : places) {
-      const auto here = pixel_of(place_, settings_, {place.x_mm, place.y_mm});
+      const auto here = ground_.seen({place.x_mm, place.y_mm});
       if (!here) continue;
       const double fresh = 1 - (last_s - place.time_s) / Trails::kSeconds;
       const int alpha = static_cast<int>(std::clamp(255 * fresh, 60.0, 255.0));
       const Vec2 from = before.value_or(*here);
       const double length = std::hypot(here->x - from.x, here->y - from.y);
       for (; to_next <= length; to_next += every) {
+        if (here->hidden) continue;
         const double share = length > 0 ? to_next / length : 0;
         const ImVec2 dot =
             to_imgui({from.x + share * (here->x - from.x), from.y + share * (here->y - from.y)});
@@ -94,14 +93,15 @@ class Marker {
   void unclip() const { list_.PopClipRect(); }
 
  private:
-  [[nodiscard]] std::optional<Vec2> middle_of(const PillarIndex& pillar) const {
+  [[nodiscard]] std::optional<SeenPoint> middle_of(const PillarIndex& pillar) const {
     const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
     const double half = 0.5 * place_.source->skin.element_pitch_mm();
-    return pixel_of(place_, settings_, {corner.x + half, corner.y - half});
+    return ground_.seen({corner.x + half, corner.y - half});
   }
 
   const RenderSettings& settings_;
   const FieldPlace& place_;
+  Ground ground_;
   ImDrawList& list_;
   float unit_;
 };

@@ -42,7 +42,7 @@ struct PanelPlace {
 struct PanelLayout {
   std::vector<PanelPlace> places;
   double left_width = 300;
-  double right_width = 280;
+  double right_width = 284;
   double bottom_height = 0;             ///< 0: by the window
   std::optional<PanelId> dragged = {};  ///< its heading is being dragged
 };
