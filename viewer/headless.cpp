@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <system_error>
 
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
@@ -23,10 +24,10 @@ namespace {
 /// Draws pictures and reads their pixels back.
 class HeadlessRenderer {
  public:
-  explicit HeadlessRenderer(const Options& options)
+  HeadlessRenderer(const Options& options, vk::Extent2D size)
       : instance_({}, options.validate),
         device_(instance_, {options.gpu, {}, !options.copy_fields}),
-        renderer_(instance_, device_, {options.width, options.height}, scale_of(options)) {}
+        renderer_(instance_, device_, size, scale_of(options)) {}
 
   [[nodiscard]] static double scale_of(const Options& options) {
     return options.scale > 0 ? options.scale : 1;
@@ -86,6 +87,13 @@ Replace replace_of(const Options& options) {
   return options.overwrite ? Replace::anything : Replace::results;
 }
 
+void make_folder_of(const std::filesystem::path& path) {
+  if (!path.has_parent_path()) return;
+  std::error_code error;
+  std::filesystem::create_directories(path.parent_path(), error);
+  if (error) throw Error(path.parent_path().string(), error.message(), "choose another folder");
+}
+
 void check_exports(const Options& options, const std::vector<std::filesystem::path>& pictures,
                    Replace replace) {
   std::vector<PlannedOutput> outputs;
@@ -93,6 +101,7 @@ void check_exports(const Options& options, const std::vector<std::filesystem::pa
   for (const auto& picture : pictures) outputs.push_back({picture, OutputKind::png});
   if (!options.csv.empty()) outputs.push_back({options.csv, OutputKind::forces});
   if (!options.video.empty()) outputs.push_back({options.video, OutputKind::video});
+  for (const PlannedOutput& output : outputs) make_folder_of(output.path);
   check_outputs({options.source}, outputs, replace);
   if (options.csv.empty() || options.csv.extension() == ".csv") return;
   throw Error(options.csv.string(), "a table must end in .csv", "rename it");
@@ -147,33 +156,82 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
               "start again");
 }
 
+/// The source, and what is shown beside it.
+struct Shown {
+  std::unique_ptr<FieldProducer> producer;
+  PeakHold peaks = {};
+};
+
+std::vector<Shown> open_all(const Options& options) {
+  const bool on_terminal = isatty(STDERR_FILENO) == 1;
+  const auto open = [&](const std::filesystem::path& source) {
+    return open_producer(source, producer_options(options, [=](const std::string& line) {
+                           if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
+                         }));
+  };
+  std::vector<Shown> shown;
+  shown.push_back({open(options.source)});
+  const FieldProducer& first = *shown.front().producer;
+  if (options.truth) shown.push_back({opened_truth(first.open_truth, first.info().name)});
+  if (!options.beside.empty()) shown.push_back({open(options.beside)});
+  return shown;
+}
+
+/// The picture of one source.
+Viewport place_of_one(const Options& options, std::size_t sources) {
+  const Viewport all{0, 0, static_cast<double>(options.width), static_cast<double>(options.height)};
+  return sources > 1 ? first_half(all) : all;
+}
+
+Pixels draw(HeadlessRenderer& headless, Shown& shown, std::uint64_t frame,
+            const RenderSettings& settings) {
+  FieldProducer& producer = *shown.producer;
+  ShownField field = producer.produce(std::min(frame, producer.info().frames - 1));
+  if (settings.contacts) {
+    field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
+  }
+  if (settings.quantity == Quantity::peak) {
+    shown.peaks.add(field.forces);
+    field.peak = shown.peaks.field(field);
+  }
+  return headless.render(field, producer.info(), settings);
+}
+
+/// All sources side by side; the last has the colour bar.
+Pixels draw_all(HeadlessRenderer& headless, std::vector<Shown>& shown, std::uint64_t frame,
+                RenderSettings settings) {
+  settings.colour_bar = shown.size() == 1;
+  Pixels pixels = draw(headless, shown.front(), frame, settings);
+  settings.colour_bar = true;
+  if (shown.size() == 1) return pixels;
+  return side_by_side(pixels, draw(headless, shown.back(), frame, settings));
+}
+
 /// Renders the frames of `span` into `pictures` and the video.
-void write_pictures(const Options& options, FieldProducer& producer, const RenderSettings& settings,
-                    const FrameRange& span, const std::vector<std::filesystem::path>& pictures) {
-  PeakHold peaks;
-  HeadlessRenderer headless(options);
+void write_pictures(const Options& options, std::vector<Shown>& shown,
+                    const RenderSettings& settings, const FrameRange& span,
+                    const std::vector<std::filesystem::path>& pictures) {
+  const Viewport place = place_of_one(options, shown.size());
+  const vk::Extent2D size{static_cast<std::uint32_t>(place.width), options.height};
+  HeadlessRenderer headless(options, size);
   const bool with_peaks = settings.quantity == Quantity::peak;
   for (std::uint64_t frame = 0; with_peaks && frame < span.begin; ++frame) {
     stop_if_interrupted(options, 0);
-    peaks.add(producer.produce(frame).forces);
+    for (Shown& each : shown) {
+      const std::uint64_t last = each.producer->info().frames - 1;
+      if (frame <= last) each.peaks.add(each.producer->produce(frame).forces);
+    }
   }
-  const VideoPace pace(options, producer.info().rate_hz);
+  const VideoPace pace(options, shown.front().producer->info().rate_hz);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
-    video = std::make_unique<VideoWriter>(options.video, options.width, options.height, pace.fps(),
+    const auto width = static_cast<std::uint32_t>(shown.size()) * size.width;
+    video = std::make_unique<VideoWriter>(options.video, width, size.height, pace.fps(),
                                           replace_of(options));
   }
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     stop_if_interrupted(options, frame - span.begin);
-    ShownField field = producer.produce(frame);
-    if (settings.contacts) {
-      field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
-    }
-    if (with_peaks) {
-      peaks.add(field.forces);
-      field.peak = peaks.field(field);
-    }
-    const Pixels pixels = headless.render(field, producer.info(), settings);
+    const Pixels pixels = draw_all(headless, shown, frame, settings);
     if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace_of(options));
     if (video == nullptr) continue;
     const std::uint64_t repeats = pace.pictures_of(frame - span.begin);
@@ -194,11 +252,8 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  const bool on_terminal = isatty(STDERR_FILENO) == 1;
-  const auto producer =
-      open_producer(options.source, producer_options(options, [=](const std::string& line) {
-                      if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
-                    }));
+  std::vector<Shown> shown = open_all(options);
+  FieldProducer* const producer = shown.front().producer.get();
   const SourceInfo& source = producer->info();
   fmt::print(stderr, "{}", warning_lines(source));
   const FrameRange span = frames_of(options, *producer);
@@ -206,11 +261,10 @@ void run_headless(const Options& options) {
   check_exports(options, pictures, replace);
   RenderSettings settings =
       default_settings(options, *producer, HeadlessRenderer::scale_of(options));
-  settings.view = first_view(options, source, layout_of(options.width, options.height, settings));
+  const Viewport picture = place_of_one(options, shown.size());
+  settings.view = first_view(options, source, layout_of(picture.width, picture.height, settings));
 
   if (!options.csv.empty()) {
-    const Viewport picture{0, 0, static_cast<double>(options.width),
-                           static_cast<double>(options.height)};
     write_csv(options.csv, producer->produce(span.begin),
               visible_pillars({picture, &source}, settings), replace);
   }
@@ -218,7 +272,7 @@ void run_headless(const Options& options) {
     tell_written(options, pictures, span, source.frames);
     return;
   }
-  write_pictures(options, *producer, settings, span, pictures);
+  write_pictures(options, shown, settings, span, pictures);
   tell_written(options, pictures, span, source.frames);
 }
 

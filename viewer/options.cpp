@@ -172,9 +172,8 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
   require(options.beside.empty() || !options.truth,
           "a second source and --truth exclude each other");
   require(options.beside != "-", "only the first source can be standard input");
-  require(!options.headless || (options.beside.empty() && !options.truth),
-          "--headless draws one source, without --truth");
-  require(!options.headless || !is_live_source(options.source.string()),
+  require(!options.headless || (!is_live_source(options.source.string()) &&
+                                !is_live_source(options.beside.string())),
           "a sensor needs the window; record it with 'pillarfield stream --record' first");
   const bool may_be_sensor = options.source.empty() || is_live_source(options.source.string());
   require(options.calibration.empty() || may_be_sensor,
@@ -218,7 +217,7 @@ void add_files(CLI::App& app, Options& options) {
   files.flag("--headless", options.headless, "Write files without a window");
   files
       .text("--png", options.png, "FILE",
-            "Picture to write; NAME_001.png and so on for several frames")
+            "Picture to write, its folder too; NAME_001.png and so on for several frames")
       ->check(png_name());
   files.text("--video", options.video, "FILE", "Video to write with ffmpeg, .mp4 or .webm");
   files.text("--csv", options.csv, "FILE", "Table to write: visible forces of the first frame");
@@ -263,6 +262,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_flag("--truth", options.truth,
                "Show the true forces of a simulation beside those solved");
   app.add_option("--calibration", options.calibration, "Calibration file of a live sensor")
+      ->type_name("FILE")
       ->check(CLI::ExistingFile)
       ->group("Input");
   cli::add_trust(&app, options.plain);
@@ -282,7 +282,9 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
     app.parse(argc, argv);
     check_together(options, one->count() > 0, options.end_frame != 0);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    fmt::print(stderr, "{0}: {1}\n", app.get_name(), cli::complaint_of(app, error, app.get_name()));
+    return 2;
   }
   if (one->count() > 0) options.first_frame = frame - 1;
   options.has_frame = one->count() > 0 || options.end_frame != 0;

@@ -194,28 +194,6 @@ const CLI::App& called_of(const CLI::App& app) {
   return called.empty() ? app : called_of(*called.back());
 }
 
-std::string message_of(const CLI::App& command, const CLI::ParseError& error) {
-  std::vector<std::string> commands;
-  for (const CLI::App* each : command.get_subcommands({})) commands.push_back(each->get_name());
-  const std::vector<std::string> left = command.remaining();
-  if (left.empty()) {
-    if (commands.empty() || dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) {
-      return error.what();
-    }
-    return fmt::format("no command is given; it is one of {}", fmt::join(commands, ", "));
-  }
-  const std::string word = left.front().substr(0, left.front().find('='));
-  if (word.starts_with('-')) {
-    std::vector<std::string> options;
-    for (const CLI::Option* option : command.get_options()) {
-      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
-    }
-    return fmt::format("'{}' is not an option{}", word, suggestion(word, options));
-  }
-  if (commands.empty()) return fmt::format("'{}' is one argument too many", left.front());
-  return fmt::format("'{}' is not a command{}", left.front(), suggestion(word, commands));
-}
-
 }  // namespace
 
 Work parse_arguments(int argc, char** argv) {
@@ -262,8 +240,7 @@ Work parse_arguments(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const CLI::App& command = called_of(app);
     const std::string name = full_name(command);
-    std::string message = message_of(command, error);
-    if (!message.ends_with('?')) message += fmt::format("; see '{} --help'", name);
+    const std::string message = complaint_of(command, error, name);
     if (&command == &app) throw WrongCommandLine(message);
     throw WrongCommandLine(name.substr(app.get_name().size() + 1) + ": " + message);
   }

@@ -38,7 +38,36 @@ std::vector<ArrayAxis> axes_of(const std::string& text) {
   }
 }
 
+std::string message_of(const CLI::App& command, const CLI::ParseError& error) {
+  std::vector<std::string> commands;
+  for (const CLI::App* each : command.get_subcommands({})) commands.push_back(each->get_name());
+  const std::vector<std::string> left = command.remaining();
+  if (left.empty()) {
+    if (commands.empty() || dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) {
+      return error.what();
+    }
+    return fmt::format("no command is given; it is one of {}", fmt::join(commands, ", "));
+  }
+  const std::string word = left.front().substr(0, left.front().find('='));
+  if (word.starts_with('-')) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    return fmt::format("'{}' is not an option{}", word, suggestion(word, options));
+  }
+  if (commands.empty()) return fmt::format("'{}' is one argument too many", left.front());
+  return fmt::format("'{}' is not a command{}", left.front(), suggestion(word, commands));
+}
+
 }  // namespace
+
+std::string complaint_of(const CLI::App& command, const CLI::ParseError& error,
+                         const std::string& name) {
+  std::string message = message_of(command, error);
+  if (!message.ends_with('?')) message += fmt::format("; see '{} --help'", name);
+  return message;
+}
 
 void add_help(CLI::App* command) {
   command->set_help_flag("-h,--help", "Print this help and exit")->group("General");

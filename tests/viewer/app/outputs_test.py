@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -100,6 +101,28 @@ class Outputs(unittest.TestCase):
         self.view("pulse.toml", "--png", "same.png", "--frame", "7")
         self.assertEqual((self.folder / "x.png").read_bytes(),
                          (self.folder / "same.png").read_bytes())
+
+    def test_two_sources_share_a_picture(self):
+        pictures = []
+        for name, beside in (("one", ()), ("truth", ("--truth",)), ("same", ("ball.toml",))):
+            ended = self.view("ball.toml", *beside, "--size", "642x240", "--png", f"new/{name}.png")
+            if "Vulkan" in ended.stderr:
+                self.skipTest(ended.stderr)
+            self.assertEqual(ended.returncode, 0, ended)
+            pictures.append((self.folder / f"new/{name}.png").read_bytes())
+            self.assertEqual(struct.unpack(">II", pictures[-1][16:24]), (642, 240))
+        self.assertEqual(len(set(pictures)), 3)
+        self.assert_refused("forces.h5", "--truth", "--png", "x.png", says="are not known")
+
+    def test_wrong_words_are_answered_in_a_line(self):
+        for words, says in ((("--trth",), "'--trth' is not an option; did you mean '--truth'?"),
+                            (("--zoom", "x"), "'x' is not a number from 0.05 to 1000; see 'pillarfield-viewer --help'"),
+                            (("a.h5", "b.h5"), "'b.h5' is one argument too many")):
+            ended = self.view("ball.toml", "--png", "x.png", *words)
+            lines = ended.stderr.splitlines()
+            self.assertEqual((ended.returncode, len(lines)), (2, 1), ended)
+            self.assertTrue(lines[0].startswith("pillarfield-viewer: "), lines)
+            self.assertIn(says, lines[0])
 
     @unittest.skipUnless(shutil.which("ffprobe"), "ffprobe is not installed")
     def test_slow_motion(self):

@@ -103,12 +103,16 @@ LoadedSource load_source(const Options& options, double scale, const LoadProgres
   return loaded;
 }
 
+std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_truth,
+                                            const std::string& name) {
+  if (open_truth) return open_truth();
+  throw Error(name, "its true forces are not known",
+              "show a scene, or a recording of 'pillarfield simulate --truth'");
+}
+
 void show_truth(LoadedSource& source) {
-  if (!source.open_truth) {
-    throw Error(source.player->info().name, "its true forces are not known",
-                "show a scene, or a recording of 'pillarfield simulate --truth'");
-  }
-  source.beside = std::make_unique<FilePlayer>(source.open_truth());
+  source.beside =
+      std::make_unique<FilePlayer>(opened_truth(source.open_truth, source.player->info().name));
   source.beside_is_truth = true;
 }
 

@@ -32,6 +32,10 @@ using LoadProgress = std::function<void(const std::string& words)>;
 [[nodiscard]] LoadedSource load_source(const Options& options, double scale,
                                        const LoadProgress& tell);
 
+/// Opens the truth of the source `name`. Throws Error where it is not known.
+[[nodiscard]] std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_truth,
+                                                          const std::string& name);
+
 /// Opens the truth of a source beside it.
 void show_truth(LoadedSource& source);
 
