@@ -49,6 +49,12 @@ inline constexpr double kSilentSeconds = 1;
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
 
+/// Seconds since the last frame of a sensor that has stopped, else 0.
+[[nodiscard]] double silence_s(const AppState& state);
+
+/// Dims the field of a sensor that has stopped, and says since when, or what frames come instead.
+void draw_silence(const AppState& state, const Viewport& field);
+
 /// Draws the help on mouse and keys, as far as they apply to the source, over the window, and
 /// returns its place. Where it does not fit, it scrolls.
 [[nodiscard]] Viewport help_overlay(const Viewport& area, const SourceInfo& source);
