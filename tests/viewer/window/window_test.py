@@ -386,7 +386,7 @@ class SourceTest(WindowTest):
         window.key("ctrl+r")
         self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5")), "no end of the recording")
         sensor.stop()
-        (x, y) = (80, 120)  # Of the field, free of marks and of words.
+        (x, y) = (866, 50)  # The bright end of the colour bar.
         colour = running[y, x].astype(int)
         self.wait_for(lambda: (self.shoot("sensor_stopped", still=False)[y, x] < colour).all(),
                       "the field of a stopped sensor is not dimmed")

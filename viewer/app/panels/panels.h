@@ -7,6 +7,7 @@
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
+#include "viewer/app/source/user_settings.h"
 #include "viewer/app/window/panel_layout.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
@@ -72,7 +73,7 @@ void status_row(const AppState& state, const std::string& gpu);
 /// What the start page offers.
 struct StartChoices {
   std::vector<std::string> recent;
-  std::vector<std::filesystem::path> scenes;
+  ScenesAtHand scenes;
 };
 
 /// The page of a window without a source: recent sources, scenes, a line for the name of another.
