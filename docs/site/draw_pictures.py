@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/tutorial.md and docs/gallery.md, and writes the gallery.
+"""Draws the pictures of README.md, docs/tutorial.md and docs/gallery.md, and writes the gallery.
 
 Usage: draw_pictures.py FOLDER_OF_PROGRAMS, from anywhere; needs Pillow.
 """
@@ -32,6 +32,22 @@ def compress(source, target):
     target.parent.mkdir(parents=True, exist_ok=True)
     picture = Image.open(source).convert("RGB")
     picture.quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(target, optimize=True)
+
+
+def draw_readme(folder):
+    """Draws the README's picture, which moves: an animated PNG with one palette."""
+    run("pillarfield-viewer scenes/hand.toml --headless --frames 1:36 --contacts --range 0:0.2 --size 720x540 "
+        "--png hand.png", folder)
+    frames = [Image.open(path).convert("RGB") for path in sorted(folder.glob("hand_*.png"))]
+    width, height = frames[0].size
+    sheet = Image.new("RGB", (width, height * len(frames)))
+    for index, frame in enumerate(frames):
+        sheet.paste(frame, (0, index * height))
+    palette = sheet.quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    rate_hz = tomllib.loads((ROOT / "scenes/hand.toml").read_text())["time"]["rate_hz"]
+    frames[0].save(DOCS / "pictures/hand.png", save_all=True, append_images=frames[1:], loop=0, optimize=True,
+                   duration=1000 / rate_hz)
 
 
 def draw_tutorial(folder):
@@ -87,6 +103,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "scenes").symlink_to(ROOT / "scenes")
+        draw_readme(folder)
         draw_tutorial(folder)
         for scene in scenes:
             draw_scene(scene, folder)

@@ -145,16 +145,15 @@ class Version(unittest.TestCase):
 
 
 class Readme(unittest.TestCase):
-    def test_its_program_is_the_example(self):
-        self.assertEqual(readme_blocks("cpp"), [(SOURCE / "examples/solve_frame.cpp").read_text()])
+    def test_its_program_is_of_the_example(self):
+        self.assertIn(readme_blocks("cpp")[0], (SOURCE / "examples/solve_frame.cpp").read_text())
 
     def test_its_commands_work_as_printed(self):
         folder = WORK / "readme"
         folder.mkdir()
-        (folder / "scenes").symlink_to(SOURCE / "scenes")
-        (folder / "main.cpp").write_text(readme_blocks("cpp")[0])
-        (folder / "CMakeLists.txt").write_text(readme_blocks("cmake")[0])
-        dev, install, first, own, program, by_hand = readme_blocks("sh")
+        for name in ("scenes", "examples"):
+            (folder / name).symlink_to(SOURCE / name)
+        dev, install, first, own, program = readme_blocks("sh")
         self.assertIn("./dev demo", dev)
         self.assertIn("cmake --install build/release --prefix $HOME/.local", install)
         if not (PREFIX / "bin/pillarfield-viewer").exists():
@@ -167,9 +166,8 @@ class Readme(unittest.TestCase):
             run(sys.executable, "-c", begin + own_frames + plot, cwd=folder)
             self.assertTrue((folder / "mine.png").exists())
         run("bash", "-ec", own, cwd=folder)
-        output = run("bash", "-ec", program, cwd=folder).splitlines()[-1]
-        self.assertEqual(output, re.search("# (row 3.*)", program)[1])
-        self.assertEqual(run("bash", "-ec", by_hand + "./my_skin", cwd=folder).splitlines()[-1], output)
+        output = run("bash", "-ec", program, cwd=folder).splitlines()[-2:]
+        self.assertEqual(output, 2 * [re.search("# (row 3.*)", program)[1]])
 
         import h5py
         with h5py.File(folder / "mine_forces.h5") as forces:

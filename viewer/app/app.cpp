@@ -153,7 +153,7 @@ void Application::take_newest_field() {
   take_beside();
   if (!held_ || !is_in_step()) return;
   take_field(state_, *std::exchange(held_, std::nullopt));
-  if (fits_first_load_) fit_first_load();
+  if (follows_load_) follow_load();
   field_is_new_ = true;
   redraws_.field();
 }

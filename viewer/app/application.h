@@ -8,6 +8,7 @@
 #include "viewer/app/input/actions.h"
 #include "viewer/app/input/controls.h"
 #include "viewer/app/input/gui_input.h"
+#include "viewer/app/load_range.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/source/loading.h"
 #include "viewer/app/source/user_settings.h"
@@ -61,7 +62,7 @@ class Application {
   void take_beside();
   [[nodiscard]] bool is_in_step() const;
   [[nodiscard]] std::optional<ShownField> taken_field();
-  void fit_first_load();
+  void follow_load();
   void take_news();
   void attend_survey();
   void attend_sensor();
@@ -115,7 +116,10 @@ class Application {
   std::uint64_t live_messages_ = 0;
   std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::optional<RenderSettings> drawn_settings_;
-  bool fits_first_load_ = false;    ///< of a sensor
+  bool follows_load_ = false;  ///< ranges of a sensor, until the user sets one
+  LoadRange load_range_;
+  std::optional<Quantity> followed_quantity_;  ///< shown when the range was last as it followed
+  Range followed_range_;
   std::optional<ShownField> held_;  ///< until the second source has its frame
   bool field_is_new_ = false;
   bool beside_is_new_ = false;

@@ -61,7 +61,9 @@ void Application::show(LoadedSource loaded) {
   next.panels = std::move(state_.panels);
   next.show_panels = state_.show_panels;
   next.show_counters = state_.show_counters;
-  fits_first_load_ = next.player->live() != nullptr && !options_.range;
+  follows_load_ = next.player->live() != nullptr && !options_.range;
+  load_range_ = {};
+  followed_quantity_.reset();
   next.view_is_fitted = asks_for_whole_skin(options_);
   state_ = std::move(next);
   source_was_shown_ = true;
@@ -121,20 +123,26 @@ void Application::listen() {
   });
 }
 
-/// Ranges of a sensor, by the first frame with a load.
-void Application::fit_first_load() {
+/// Ranges of a sensor follow its load until the user sets one.
+void Application::follow_load() {
   const Skin& skin = place_.source->skin;
-  const float most = largest(Quantity::normal, *state_.field, skin);
-  if (!(most > 0)) return;
-  fits_first_load_ = false;
-  const Range range = fitting_range(Quantity::normal, 2 * most);
   RenderSettings& settings = state_.settings;
-  settings.full_force_n = settings.full_shear_n = static_cast<double>(most) / 2;
-  settings.relief_full_n = static_cast<double>(range.high);
-  if (settings.quantity == Quantity::normal) set_range(state_, range);
-  if (settings.quantity == Quantity::pressure) {
-    set_range(state_, fitting_range(Quantity::pressure, 2 * most * kpa_per_newton(skin)));
+  const bool same_quantity = followed_quantity_ == settings.quantity;
+  if (same_quantity && followed_range_ != settings.range) follows_load_ = false;
+  const auto load =
+      load_range_.add(state_.field->time_s, largest(Quantity::normal, *state_.field, skin));
+  if (load && follows_load_ && !state_.fit_each_field) {
+    const float most = 1.2F * *load;
+    const Range range = fitting_range(Quantity::normal, most);
+    settings.full_force_n = settings.full_shear_n = static_cast<double>(*load) / 2;
+    settings.relief_full_n = static_cast<double>(range.high);
+    if (settings.quantity == Quantity::normal) set_range(state_, range);
+    if (settings.quantity == Quantity::pressure) {
+      set_range(state_, fitting_range(Quantity::pressure, most * kpa_per_newton(skin)));
+    }
   }
+  followed_quantity_ = settings.quantity;
+  followed_range_ = settings.range;
 }
 
 /// A sensor that fails leaves its picture; the failure of a file ends the program.

@@ -195,7 +195,9 @@ void write_wheel(const Canvas& canvas, const Layout& layout) {
   constexpr int kSectors = 128;
   constexpr double kTurn = 2 * std::numbers::pi;
   const auto table = table_of(canvas.settings.map);
-  const double radius = std::min(0.5 * layout.bar.height, 46.0 * canvas.unit());
+  // Labels above and below it are 20 nominal pixels high.
+  const double radius = std::clamp(0.5 * layout.bar.height - 20 * canvas.unit(),
+                                   10.0 * canvas.unit(), 46.0 * canvas.unit());
   const double x = layout.bar.x + radius + 14 * canvas.unit();
   const double y = layout.bar.y + radius + 18 * canvas.unit();
   const auto at = [&](double angle, double r) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/source/touched_field.h"
+#include "viewer/app/load_range.h"
 #include "viewer/app/panels/time_window.h"
 #include "viewer/app/trails.h"
 #include "viewer/app/window/panel_layout.h"
@@ -70,6 +71,26 @@ TEST(Layout, AFittedSkinLiesBesideTheLegend) {
     const double left = right - skin.width_mm * view.pixels_per_mm;
     EXPECT_GE(left, layout.plot.x);
   }
+}
+
+TEST(LoadRange, RisesAtOnceAndFallsWithPatience) {
+  LoadRange range;
+  EXPECT_FALSE(range.add(0, 0));
+  EXPECT_EQ(range.add(0.1, 0.5F), 0.5F);
+  EXPECT_EQ(range.add(0.2, 4), 4.0F);
+  EXPECT_FALSE(range.add(0.3, 3));
+  const auto hold = [&](double from_s, double to_s, float most) {
+    std::optional<float> last;
+    for (double time_s = from_s; time_s < to_s; time_s += 0.1) {
+      if (const auto load = range.add(time_s, most)) last = load;
+    }
+    return last;
+  };
+  EXPECT_FALSE(hold(1, 100, 0.1F)) << "noise is no load";
+  EXPECT_FALSE(hold(100, 100 + 0.7 * LoadRange::kPatienceS, 1)) << "a short touch";
+  EXPECT_FALSE(range.add(110, 3)) << "a load again";
+  EXPECT_EQ(hold(110, 111 + LoadRange::kPatienceS, 1), 1.0F);
+  EXPECT_EQ(range.add(200, 2), 2.0F);
 }
 
 TEST(PanelLayout, IsReadAsItWasWritten) {

@@ -270,21 +270,21 @@ class WidgetTest(WindowTest):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 2)
         before = self.shoot("widget_opened")
         steps = [
-            ("scrub", lambda: window.drag((130, 461), (340, 461))),
-            ("step_on", lambda: window.click(83, 461)),
-            ("step_back", lambda: window.click(30, 461)),
-            ("faster", lambda: window.click(803, 461)),
-            ("loop", lambda: window.click(845, 461)),
-            ("quantities", lambda: window.click(1145, 61)),
-            ("chosen", lambda: window.click(1145, 140)),
-            ("arrows", lambda: window.click(1036, 174)),
-            ("contacts", lambda: window.click(1114, 174)),
-            ("hatch", lambda: window.click(1104, 202)),
-            ("truth", lambda: window.click(1036, 230)),
-            ("space", lambda: window.click(1205, 258)),
-            ("relief", lambda: window.click(1036, 202)),
-            ("cylinder", lambda: window.click(1205, 286)),
-            ("fitted", lambda: window.click(1083, 118)),
+            ("scrub", lambda: window.drag((130, 594), (340, 594))),
+            ("step_on", lambda: window.click(77, 594)),
+            ("step_back", lambda: window.click(22, 594)),
+            ("faster", lambda: window.click(865, 594)),
+            ("loop", lambda: window.click(907, 594)),
+            ("quantities", lambda: window.click(1167, 51)),
+            ("chosen", lambda: window.click(1167, 130)),
+            ("arrows", lambda: window.click(1074, 152)),
+            ("contacts", lambda: window.click(1182, 152)),
+            ("hatch", lambda: window.click(1074, 202)),
+            ("truth", lambda: window.click(1074, 227)),
+            ("space", lambda: window.click(1219, 252)),
+            ("relief", lambda: window.click(1182, 177)),
+            ("cylinder", lambda: window.click(1167, 277)),
+            ("fitted", lambda: window.click(1114, 101)),
         ]
         for (name, action) in steps:
             before = self.act("widget_" + name, action, before)
@@ -294,11 +294,11 @@ class WidgetTest(WindowTest):
         settings = self.folder / "config/pillarfield/viewer.conf"
         window = self.open(SCENES / "demo.toml", "--paused")
         before = self.shoot("panels_0")
-        steps = [("folded", lambda: window.click(1000, 28)),
-                 ("unfolded", lambda: window.click(1000, 28)),
-                 ("left", lambda: window.drag((1003, 320), (60, 300))),
-                 ("floating", lambda: window.drag((1003, 28), (620, 200))),
-                 ("wider", lambda: window.drag((942, 400), (860, 400)))]
+        steps = [("folded", lambda: window.click(1018, 21)),
+                 ("unfolded", lambda: window.click(1018, 21)),
+                 ("left", lambda: window.drag((1070, 335), (60, 300))),
+                 ("floating", lambda: window.drag((1070, 21), (620, 200))),
+                 ("wider", lambda: window.drag((998, 400), (917, 400)))]
         for (name, action) in steps:
             before = self.act("panels_" + name, action, before)
         self.assert_quiet(window)
@@ -382,11 +382,14 @@ class SourceTest(WindowTest):
             window.key(key)
             time.sleep(0.7)
         self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5*")), "no recording")
-        self.shoot("sensor", still=False)
+        running = self.shoot("sensor", still=False)
         window.key("ctrl+r")
         self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5")), "no end of the recording")
         sensor.stop()
-        time.sleep(2.5)
+        (x, y) = (866, 50)  # The bright end of the colour bar.
+        colour = running[y, x].astype(int)
+        self.wait_for(lambda: (self.shoot("sensor_stopped", still=False)[y, x] < colour).all(),
+                      "the field of a stopped sensor is not dimmed")
         stopped = self.shoot("sensor_stopped", still=False)
         sensor = Sensor(port)
         self.shoot_changed("sensor_again", stopped, still=False)

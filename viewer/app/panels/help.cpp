@@ -10,7 +10,7 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr float kKeyColumn = 5.8f;  ///< width of the keys, font sizes
-constexpr float kBlock = 19.5f;     ///< width of a block of keys and descriptions
+constexpr float kBlock = 21.0f;     ///< width of a block of keys and descriptions
 
 void line(const char* keys, const char* description) {
   ImGui::TextUnformatted(keys);

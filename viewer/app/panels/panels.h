@@ -7,6 +7,7 @@
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
+#include "viewer/app/source/user_settings.h"
 #include "viewer/app/window/panel_layout.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
@@ -49,6 +50,12 @@ inline constexpr double kSilentSeconds = 1;
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
 
+/// Seconds since the last frame of a sensor that has stopped, else 0.
+[[nodiscard]] double silence_s(const AppState& state);
+
+/// Dims the field of a sensor that has stopped, and says since when, or what frames come instead.
+void draw_silence(const AppState& state, const Viewport& field);
+
 /// Draws the help on mouse and keys, as far as they apply to the source, over the window, and
 /// returns its place. Where it does not fit, it scrolls.
 [[nodiscard]] Viewport help_overlay(const Viewport& area, const SourceInfo& source);
@@ -66,7 +73,7 @@ void status_row(const AppState& state, const std::string& gpu);
 /// What the start page offers.
 struct StartChoices {
   std::vector<std::string> recent;
-  std::vector<std::filesystem::path> scenes;
+  ScenesAtHand scenes;
 };
 
 /// The page of a window without a source: recent sources, scenes, a line for the name of another.

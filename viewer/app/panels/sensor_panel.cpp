@@ -1,5 +1,7 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 
 #include "viewer/app/input/actions.h"
@@ -44,6 +46,40 @@ std::string state_words(const LiveStatus& status) {
 
 std::string silent_words(const LiveStatus& status) {
   return fmt::format("no frames for {:.0f} s", status.health.since_frame_s);
+}
+
+double silence_s(const AppState& state) {
+  const LiveControl* const live = state.player->live();
+  if (live == nullptr) return 0;
+  const LiveStatus status = live->status();
+  const bool silent = status.ended || status.health.since_frame_s > kSilentSeconds;
+  return silent ? status.health.since_frame_s : 0;
+}
+
+void draw_silence(const AppState& state, const Viewport& field) {
+  const double silent_s = silence_s(state);
+  if (!(silent_s > 0)) return;
+  const LiveStatus status = state.player->live()->status();
+  const auto ago =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(silent_s));
+  const std::time_t last =
+      std::chrono::system_clock::to_time_t(std::chrono::system_clock::now() - ago);
+  std::string words =
+      fmt::format("{} {:%H:%M:%S}", status.ended ? "The source has ended, at" : "No frames since",
+                  fmt::localtime(last));
+  if (!status.ended && !status.health.stream.mismatch.empty()) {
+    words += "\n" + status.health.stream.mismatch;
+  }
+  const PanelStyle style = panel_style(state.settings.scale);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  draw_block(list, field, with_alpha(style.ground, 0.6));
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+  const double gap = 10 * style.unit;
+  const Viewport sign{field.x + 0.5 * (field.width - static_cast<double>(size.x)) - gap,
+                      field.y + 0.25 * field.height - gap, static_cast<double>(size.x) + 2 * gap,
+                      static_cast<double>(size.y) + 2 * gap};
+  draw_block(list, sign, style.raised);
+  draw_text(list, {sign.x + gap, sign.y + gap}, packed(colour_from(0xe69f00)), words);
 }
 
 void sensor_panel(const Command& command) {

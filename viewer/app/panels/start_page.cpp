@@ -43,16 +43,16 @@ std::string recent_list(const std::vector<std::string>& recent) {
   return source_list("recent", recent, recent, 1);
 }
 
-std::string scene_list(const std::vector<std::filesystem::path>& scenes) {
+std::string scene_list(const char* title, const std::vector<std::filesystem::path>& scenes) {
   if (scenes.empty()) return {};
-  caption("Scenes, simulated as they are opened");
+  caption(title);
   std::vector<std::string> paths;
   std::vector<std::string> names;
   for (const auto& scene : scenes) {
     paths.push_back(scene.string());
     names.push_back(scene.stem().string());
   }
-  return source_list("scenes", paths, names, 3);
+  return source_list(title, paths, names, 3);
 }
 
 std::string name_line() {
@@ -82,7 +82,10 @@ std::string start_page(const StartChoices& choices, const Viewport& area, const 
     ImGui::PopStyleColor();
   }
   std::string chosen = name_line();
-  for (const std::string& other : {recent_list(choices.recent), scene_list(choices.scenes)}) {
+  for (const std::string& other :
+       {recent_list(choices.recent),
+        scene_list("Scenes, simulated as they are opened", choices.scenes.touches),
+        scene_list("Recordings for pillarfield calibrate", choices.scenes.calibration)}) {
     if (chosen.empty()) chosen = other;
   }
   ImGui::End();

@@ -157,7 +157,36 @@ struct ChartFrame {
   Span time;
   double lasts_s = 0;
   double label_width = 0;
+  std::vector<Span> gaps;  ///< of time without frames
 };
+
+/// Stretches of time in which a sensor sent nothing, the last of them up to now.
+std::vector<Span> gaps_of(const Points& points, double now_s) {
+  std::vector<Span> gaps;
+  if (points.empty()) return gaps;
+  const double apart_s =
+      (points.back().time_s - points.front().time_s) / static_cast<double>(points.size());
+  const double least_s = std::max(kSilentSeconds, 4 * apart_s);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double from = points[i].time_s;
+    const double to = i + 1 < points.size() ? points[i + 1].time_s : now_s;
+    if (to - from > least_s) gaps.push_back({from, to});
+  }
+  return gaps;
+}
+
+/// Draws a curve, interrupted by the gaps.
+void draw_pieces(ImDrawList& list, const PlotArea& area, const Curve& curve,
+                 std::span<const Span> gaps, double width) {
+  const std::vector<Vec2> places = places_of(curve);
+  auto begin = places.begin();
+  for (const Span& gap : gaps) {
+    const auto end = std::ranges::upper_bound(begin, places.end(), gap.from, {}, &Vec2::x);
+    draw_curve(list, area, {begin, end}, curve.colour, width);
+    begin = end;
+  }
+  draw_curve(list, area, {begin, places.end()}, curve.colour, width);
+}
 
 /// Exact values of a frame.
 void show_values(const Chart& chart, double time_s) {
@@ -227,8 +256,13 @@ void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& fra
   PlotTicks ticks = ticks_of(area, style);
   if (!ticks.x.empty()) ticks.x.back().label += " s";
   draw_axes(list, area, ticks, style);
+  for (const Span& gap : frame.gaps) {
+    const double from = area.at({std::max(gap.from, area.x.from), 0}).x;
+    const double to = area.at({std::min(gap.to, area.x.to), 0}).x;
+    if (to > from) draw_block(list, {from, area.box.y, to - from, area.box.height}, style.grid);
+  }
   for (const Curve& curve : chart.curves) {
-    draw_curve(list, area, places_of(curve), curve.colour, 1.6 * style.unit);
+    draw_pieces(list, area, curve, frame.gaps, 1.6 * style.unit);
   }
   const double now_s = frame.state.field->time_s;
   if (now_s >= area.x.from && now_s <= area.x.to) draw_head(list, area, now_s, style);
@@ -292,11 +326,16 @@ void time_panel(AppState& state) {
   if (state.curves == nullptr || !state.field) return;
   draw_progress(state, style);
   const auto [first_s, last_s] = state.curves->time_span();
-  const double lasts_s = state.player->live() != nullptr ? kLiveSeconds : 0;
-  const Span whole{first_s, std::max(last_s, first_s + TimeWindow::kLeastSeconds)};
+  const bool live = state.player->live() != nullptr;
+  const double lasts_s = live ? kLiveSeconds : 0;
+  const double now_s = last_s + silence_s(state);
+  const Span whole{first_s, std::max(now_s, first_s + TimeWindow::kLeastSeconds)};
   const Span time = state.time_window.of(whole, lasts_s);
   const std::vector<Chart> charts = charts_of(state, time, style);
-  draw_charts(charts, {state, whole, time, lasts_s, label_width(charts, style)}, style);
+  std::vector<Span> gaps;
+  if (live) gaps = gaps_of(charts.front().curves.front().points, now_s);
+  draw_charts(charts, {state, whole, time, lasts_s, label_width(charts, style), std::move(gaps)},
+              style);
 }
 
 }  // namespace pillarfield::viewer

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "pillarfield/live.h"
 
@@ -88,7 +91,17 @@ void UserSettings::save() const noexcept {
   }
 }
 
-std::vector<std::filesystem::path> scenes_at_hand() {
+namespace {
+
+bool is_for_calibration(const std::filesystem::path& scene) {
+  std::ifstream file(scene);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  return text.find("pillarfield calibrate") != std::string::npos;
+}
+
+}  // namespace
+
+ScenesAtHand scenes_at_hand() {
   std::error_code error;
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -101,8 +114,12 @@ std::vector<std::filesystem::path> scenes_at_hand() {
         scenes.push_back(std::filesystem::weakly_canonical(entry.path(), error));
       }
     }
-    std::ranges::sort(scenes);
-    if (!scenes.empty()) return scenes;
+    if (scenes.empty()) continue;
+    std::ranges::sort(scenes, {}, [](const std::filesystem::path& scene) {
+      return std::pair(scene.stem() != "demo", scene);
+    });
+    const auto touches = std::ranges::stable_partition(scenes, std::not_fn(is_for_calibration));
+    return {{scenes.begin(), touches.begin()}, {touches.begin(), touches.end()}};
   }
   return {};
 }

@@ -28,7 +28,12 @@ class UserSettings {
   std::vector<std::string> recent_;
 };
 
+struct ScenesAtHand {
+  std::vector<std::filesystem::path> touches;      ///< the demo is the first
+  std::vector<std::filesystem::path> calibration;  ///< recordings for `pillarfield calibrate`
+};
+
 /// Scenes of the working folder, of an installed copy or of the source tree.
-[[nodiscard]] std::vector<std::filesystem::path> scenes_at_hand();
+[[nodiscard]] ScenesAtHand scenes_at_hand();
 
 }  // namespace pillarfield::viewer

@@ -326,6 +326,7 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   const float padding = ImGui::GetStyle().WindowPadding.x;
   draw_marks(state, command.place);
   if (state.beside != nullptr) draw_marks(state, beside_place(state, command.place));
+  draw_silence(state, command.place.area);
   draw_docks(command, screen);
 
   const float side = 2 * ImGui::GetFontSize();
