@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "pillarfield/sensor_effects.h"
 #include "solve/pillar_maths.h"
 

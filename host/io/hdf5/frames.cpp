@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-
 namespace pillarfield::hdf5 {
 namespace {
 
