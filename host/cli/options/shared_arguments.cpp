@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/nearest_word.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/tare.h"
