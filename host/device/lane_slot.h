@@ -14,7 +14,7 @@ namespace pillarfield {
 /// How the host solves the frames of a plan with vectors.
 struct LaneSettings {
   /// A row must have as many blocks of 2 x 2 sensels as the program has lanes.
-  LaneSettings(const SolverPlan& plan, const LaneProgram& program);
+  LaneSettings(const SolverPlan& plan, const LaneProgram& chosen);
 
   const LaneProgram* program;
   bool whole;  ///< in whole numbers

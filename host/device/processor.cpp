@@ -263,23 +263,23 @@ std::span<const std::byte> Processor::PinnedResult::pages() const {
   return state_->slot->memory().pages();
 }
 
-Processor::Processor(const Device& given, const SolverPlan& plan, const Options& options,
+Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options,
                      const ProcessorTuning& tuning) {
   check_options(options, tuning);
   check(plan, "solver plan");
-  const Device device = given.for_plan(plan);
+  const Device chosen = device.for_plan(plan);
   const auto open = [=] {
     return with_opencl_errors(
-        device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
+        chosen.info().name, [&] { return std::make_unique<State>(chosen, plan, options, tuning); });
   };
-  if (device.state().is_host()) {
+  if (chosen.state().is_host()) {
     state_ = open();
     return;
   }
   const auto compile = [=] {
     std::function<void()> notify;
     if (options.on_compiling) {
-      notify = [&] { options.on_compiling(line_on_compiling(device.info())); };
+      notify = [&] { options.on_compiling(line_on_compiling(chosen.info())); };
     }
     const LateCall notice(kCompileNotice, notify);
     return open();
@@ -287,7 +287,7 @@ Processor::Processor(const Device& given, const SolverPlan& plan, const Options&
   if (options.start_on_host && starts_on_host(plan)) {
     try {
       Processor host(open_device("host"), plan, {.frames_in_flight = options.frames_in_flight});
-      start_ = std::make_unique<Start>(Start{device, decide_sharing(options.memory, device),
+      start_ = std::make_unique<Start>(Start{chosen, decide_sharing(options.memory, chosen),
                                              plan.calibration.tare, std::move(host),
                                              std::async(std::launch::async, compile)});
       start_->compiled.wait_for(kCompiledBefore);

@@ -40,7 +40,7 @@ SlotLayout::SlotLayout(const SolverPlan& plan, const Division& division, bool sk
   if (effects.wires) {
     tiles_across = tiles_of(quad_cols(plan.skin), effects.wires->tile_cols);
     tiles_down = tiles_of(quad_rows(plan.skin), effects.wires->tile_rows);
-    wires = 2 * (3 * quad_rows(plan.skin) * tiles_across + quad_cols(plan.skin) * tiles_down);
+    wires = 2 * (3 * tiles_across * quad_rows(plan.skin) + tiles_down * quad_cols(plan.skin));
   }
   layout = {.row_stride = 0,
             .rows = quad_rows(plan.skin),

@@ -18,6 +18,8 @@ namespace pillarfield {
 namespace {
 
 using std::size_t;
+// The words of OpenCL C.
+// NOLINTBEGIN(readability-identifier-naming)
 using uchar = std::uint8_t;
 using ushort = std::uint16_t;
 using uint = std::uint32_t;
@@ -27,12 +29,12 @@ using ulong = std::uint64_t;
 #undef PF_PRECISION
 #include "lanes/forget_kernels.h"
 
-// The words of OpenCL C.
 #undef INFINITY
 #define global
 #define kernel inline __attribute__((always_inline))
 #define restrict __restrict
 #define INFINITY __builtin_inff()
+// NOLINTEND(readability-identifier-naming)
 
 #define PF_PRECISION 32
 #define PF_SKIP_IDLE
@@ -111,7 +113,7 @@ Program program_of(const LanePlan& plan, LaneRange range) {
 template <class To, class From>
 To same_bits(const From& from) {
   static_assert(sizeof(To) == sizeof(From));
-  To to;
+  To to{};
   std::memcpy(&to, &from, sizeof(to));
   return to;
 }
@@ -119,7 +121,7 @@ To same_bits(const From& from) {
 template <class Program, class Run>
 void for_each_item(const LanePlan& plan, const LaneFrame& frame, LaneRange range, size_t first,
                    size_t last, Run run) {
-  Program program = program_of<Program>(plan, range);
+  auto program = program_of<Program>(plan, range);
   const auto layout = same_bits<typename Program::Layout>(frame.layout);
   for (program.at.down = first; program.at.down < last; ++program.at.down) {
     for (program.at.across = 0; program.at.across < range.across; ++program.at.across) {
@@ -155,7 +157,7 @@ void solve_any_frame(const LanePlan& plan, const LaneFrame& frame, LaneRange ran
 
 void bend_tare(const LanePlan& plan, const LaneFrame& frame,
                const single_precision::Curvature& change) {
-  Numbers program = program_of<Numbers>(plan, {});
+  auto program = program_of<Numbers>(plan, {});
   program.bend_tare(nullptr, frame.calibration, frame.results,
                     same_bits<Numbers::Layout>(frame.layout), change.x, change.y, change.xy);
 }
@@ -163,7 +165,7 @@ void bend_tare(const LanePlan& plan, const LaneFrame& frame,
 void follow_baseline(const LanePlan& plan, const LaneFrame& frame, float rate,
                      const single_precision::Drift& drift, std::uint32_t first_row,
                      std::uint32_t interval) {
-  Numbers program = program_of<Numbers>(plan, {});
+  auto program = program_of<Numbers>(plan, {});
   program.follow_baseline(static_cast<const float*>(frame.raw), frame.calibration, frame.results,
                           same_bits<Numbers::Layout>(frame.layout), rate,
                           same_bits<Numbers::Drift>(drift), first_row, interval);

@@ -5,12 +5,15 @@
 
 namespace pillarfield {
 
+// The build gives them the names of their targets.
+// NOLINTBEGIN(readability-identifier-naming)
 #if defined(__x86_64__)
 extern const LaneProgram lanes_avx512;
 extern const LaneProgram lanes_avx2;
 #endif
 extern const LaneProgram lanes_baseline;
 extern const LaneProgram lanes_narrow;
+// NOLINTEND(readability-identifier-naming)
 
 std::span<const LaneProgram* const> lane_programs() {
   static const std::vector<const LaneProgram*> programs = [] {

@@ -223,15 +223,17 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
   const auto rate = static_cast<float>(baseline_turn_rate(plan));
   const auto interval = static_cast<std::uint64_t>(plan.baseline_interval);
   const std::size_t side = plan.skin.has_pillars() ? 1 : 2;
-  const std::size_t rows = std::min<std::size_t>(frame.rows, 2 * quad_rows(plan.skin));
-  const std::size_t cols = std::min<std::size_t>(frame.cols, 2 * quad_cols(plan.skin));
+  const std::size_t rows = std::min<std::size_t>(frame.rows, 2 * std::size_t{quad_rows(plan.skin)});
+  const std::size_t cols = std::min<std::size_t>(frame.cols, 2 * std::size_t{quad_cols(plan.skin)});
   for (std::size_t row = 0; row < rows; ++row) {
-    if (row / 2 % interval != index % interval) continue;
+    const std::size_t quad_row = row / 2;
+    if (quad_row % interval != index % interval) continue;
     for (std::size_t col = 0; col < cols; ++col) {
-      const bool untouched = !is_touched(forces, row / 2, col / 2, side);
+      const std::size_t quad_col = col / 2;
+      const bool untouched = !is_touched(forces, quad_row, quad_col, side);
       float& tare = plan.calibration.tare[row * frame.cols + col];
       const float shift =
-          maths::drift_at(drift, static_cast<float>(col / 2), static_cast<float>(row / 2));
+          maths::drift_at(drift, static_cast<float>(quad_col), static_cast<float>(quad_row));
       tare = maths::follow_tare(tare, sensel.untared(row, col), untouched, rate, shift);
     }
   }

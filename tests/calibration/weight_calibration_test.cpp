@@ -242,9 +242,11 @@ TEST(WeightCalibration, AKnownCurveStays) {
   WeighedPad pad(11, pad_model(2.5));
   SkinCalibration before = pad.tared();
   ResponseCurve& curve = before.planes.effects.curve;
-  for (double reading = 2; reading < 260; reading *= 1.3) {
+  double reading = 2;
+  while (reading < 260) {
     curve.readings.push_back(reading);
     curve.loads.push_back(std::pow(reading, 1.25));
+    reading *= 1.3;
   }
   set_threshold(before, *before.threshold_factor);
   const WeightResult result = calibrate(pad, before, round_body(2.5), 0.2, 1500);

@@ -132,6 +132,7 @@ TEST_P(MatFileTest, AxesAreInTheOrderOfMatlab) {
     SCOPED_TRACE(words);
     const std::vector<ArrayAxis> axes = parse_axes(words);
     std::vector<std::int32_t> shape;
+    shape.reserve(axes.size());
     for (const ArrayAxis axis : axes) {
       shape.push_back(axis == ArrayAxis::frames ? kMatFrames
                       : axis == ArrayAxis::rows ? kMatRows
@@ -147,7 +148,7 @@ TEST_P(MatFileTest, AxesAreInTheOrderOfMatlab) {
 
 TEST_P(MatFileTest, APlaneIsAFrameOrAFrameALine) {
   std::vector<float> first = expected_readings();
-  first.resize(kMatRows * kMatColumns);
+  first.resize(std::size_t{kMatRows} * kMatColumns);
   std::vector<std::uint8_t> plane;
   std::vector<std::uint8_t> lines;
   for (int column = 0; column < kMatColumns; ++column) {

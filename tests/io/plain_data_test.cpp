@@ -35,7 +35,7 @@ std::vector<double> times_of(FrameSource& source) {
 class PlainTable : public testing::Test {
  protected:
   /// Two frames of the readings 1 to 8 at these times.
-  void expect_two_frames(const std::string& text, std::vector<double> times_s,
+  void expect_two_frames(const std::string& text, const std::vector<double>& times_s,
                          const ReadOptions& options = square()) {
     SCOPED_TRACE(text);
     const auto source = open(text, options);
@@ -141,6 +141,9 @@ TEST_F(PlainTable, RowNumbersOfPandasAreNoReadings) {
 TEST_F(PlainTable, IsoTimesAreSecondsSince1970) {
   constexpr double kFirst = 1714564800;  // 2024-05-01 12:00:00 UTC
   const std::vector<double> times_s = {kFirst, kFirst + 0.002};
+  const char* const quoted =
+      "\"date\",\"a\",\"b\",\"c\",\"d\"\n\"2024-05-01 12:00\",1,2,3,4\n"
+      "\"2024-05-01 12:00:00.002\",5,6,7,8\n";
   for (const char* const text :
        {"2024-05-01 12:00:00,1,2,3,4\n2024-05-01 12:00:00.002,5,6,7,8\n",
         "2024-05-01T12:00:00Z;1;2;3;4\n2024-05-01T12:00:00.002Z;5;6;7;8\n",
@@ -149,9 +152,7 @@ TEST_F(PlainTable, IsoTimesAreSecondsSince1970) {
         "0,2024-05-01 05:30:00-0630,1,2,3,4\n1,2024-05-01 05:30:00.002-0630,5,6,7,8\n",
         ",stamp,a,b,c,d\n0,2024-05-01 12:00:00,1,2,3,4\n1,2024-05-01 12:00:00.002,5,6,7,8\n",
         "2024-05-01 12:00:00 1 2 3 4\n2024-05-01 12:00:00.002 5 6 7 8\n",
-        "2024-05-01T12:00:00+00\t1\t2\t3\t4\n2024-05-01T12:00:00,002\t5\t6\t7\t8\n",
-        "\"date\",\"a\",\"b\",\"c\",\"d\"\n\"2024-05-01 12:00\",1,2,3,4\n"
-        "\"2024-05-01 12:00:00.002\",5,6,7,8\n"}) {
+        "2024-05-01T12:00:00+00\t1\t2\t3\t4\n2024-05-01T12:00:00,002\t5\t6\t7\t8\n", quoted}) {
     expect_two_frames(text, times_s);
   }
   ReadOptions blocks;

@@ -85,13 +85,7 @@ void Application::take_input() {
 /// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups and panels
 /// over the field take the mouse.
 void Application::route(const InputEvent& event) {
-  if (!shows_source()) {
-    gui_input_.take(event);
-    const auto* const key = std::get_if<KeyEvent>(&event);
-    const bool quits = key != nullptr && key->pressed && key->key == GLFW_KEY_Q;
-    if (quits && !ImGui::GetIO().WantTextInput) pending_.quit = true;
-    return;
-  }
+  if (!shows_source()) return route_to_start_page(event);
   if (const auto* key = std::get_if<KeyEvent>(&event)) return route_key(*key);
   if (std::holds_alternative<TextEvent>(event)) {
     if (ImGui::GetIO().WantTextInput) gui_input_.take(event);
@@ -117,6 +111,13 @@ void Application::route(const InputEvent& event) {
   if (!covered || (button != nullptr && !presses)) {
     controls_.take(over_panel ? LeaveEvent{} : in_first_half(event), command());
   }
+}
+
+void Application::route_to_start_page(const InputEvent& event) {
+  gui_input_.take(event);
+  const auto* const key = std::get_if<KeyEvent>(&event);
+  const bool quits = key != nullptr && key->pressed && key->key == GLFW_KEY_Q;
+  if (quits && !ImGui::GetIO().WantTextInput) pending_.quit = true;
 }
 
 void Application::route_key(const KeyEvent& key) {

@@ -56,6 +56,7 @@ class Application {
   void wait();
   void take_input();
   void route(const InputEvent& event);
+  void route_to_start_page(const InputEvent& event);
   void route_key(const KeyEvent& key);
   [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();

@@ -92,7 +92,7 @@ class Brush {
   [[nodiscard]] double margin() const { return std::round(4.0 * static_cast<double>(unit_)); }
 
   /// Enlarged by `more` pixels on all sides.
-  void arrow(Vec2 from, Vec2 to, double more, ImU32 colour) const {
+  void arrow(const Vec2& from, const Vec2& to, double more, ImU32 colour) const {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
     if (length < 1) return;
     const auto unit = static_cast<double>(unit_);

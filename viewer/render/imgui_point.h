@@ -7,7 +7,7 @@
 namespace pillarfield::viewer {
 
 /// Converts pixels to Dear ImGui's type.
-inline ImVec2 to_imgui(Vec2 point) {
+inline ImVec2 to_imgui(const Vec2& point) {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
 }
 

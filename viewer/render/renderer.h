@@ -20,7 +20,7 @@ class Renderer {
   /// Records the drawing of a picture. `shown` must stay alive until the commands are complete;
   /// commands recorded earlier must be complete.
   void record(const vk::raii::CommandBuffer& commands, const ShownField& shown,
-              const SourceInfo& source, const RenderSettings& settings);
+              const SourceInfo& source, const RenderSettings& wanted);
 
   /// Changes size and scale; recorded commands must be complete.
   void resize(vk::Extent2D size, double scale);

@@ -126,6 +126,7 @@ void judge_crosstalk(std::vector<double>& ratios, ArrayFault fault, std::optiona
   const double middle = median(ratios);
   percent = 100 * middle;
   std::vector<double> distances;
+  distances.reserve(ratios.size());
   for (const double ratio : ratios) distances.push_back(std::abs(ratio - middle));
   const double deviation = 1.4826 * median(distances) /
                            std::sqrt(std::max(1.0, static_cast<double>(ratios.size()) / 10));

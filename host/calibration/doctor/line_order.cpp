@@ -387,8 +387,10 @@ std::optional<SenselPlace> centre_of_small_contact(const Examination& seen, std:
     if (seen.good[i] == 0 || !(signals[i] > kLoaded * most)) continue;
     ++loaded;
     sum += signals[i];
-    row += signals[i] * static_cast<double>(i / seen.cols);
-    col += signals[i] * static_cast<double>(i % seen.cols);
+    const std::size_t at_row = i / seen.cols;
+    const std::size_t at_col = i % seen.cols;
+    row += signals[i] * static_cast<double>(at_row);
+    col += signals[i] * static_cast<double>(at_col);
   }
   if (sum == 0 ||
       static_cast<double>(loaded) > kMostLoadedSensels * static_cast<double>(signals.size())) {

@@ -258,21 +258,26 @@ class SenselVerdicts {
     }
     for (const std::uint32_t frame : seen_.contacts) {
       if (was_swept_ && !centre_of_small_contact(seen_, frame)) continue;
-      const LyingSignals signals(seen_, frame);
-      for (std::uint32_t row = 0; row < seen_.rows; ++row) {
-        for (std::uint32_t col = 0; col < seen_.cols; ++col) {
-          const std::size_t i = seen_.sensel_lying_at(row, col);
-          if (seen_.good[i] == 0 || seen_.has_doubtful_place(row, col)) continue;
-          const double expected = was_swept_ ? signals.least_under_small_contact(row, col)
-                                             : signals.least_under_contact(row, col);
-          if (expected > std::max(least, kTestNoise * noise(i))) {
-            responses_[i].add(signals.of(i), expected);
-          }
-        }
-      }
+      add_responses(frame, least);
     }
     for (std::size_t i = 0; i < faults_.size(); ++i) {
       if (seen_.good[i] != 0 && is_dead(i)) accuse(i, ArrayFault::dead);
+    }
+  }
+
+  /// Adds the responses of the sensels whose neighbours carry `least` counts in a frame.
+  void add_responses(std::uint32_t frame, double least) {
+    const LyingSignals signals(seen_, frame);
+    for (std::uint32_t row = 0; row < seen_.rows; ++row) {
+      for (std::uint32_t col = 0; col < seen_.cols; ++col) {
+        const std::size_t i = seen_.sensel_lying_at(row, col);
+        if (seen_.good[i] == 0 || seen_.has_doubtful_place(row, col)) continue;
+        const double expected = was_swept_ ? signals.least_under_small_contact(row, col)
+                                           : signals.least_under_contact(row, col);
+        if (expected > std::max(least, kTestNoise * noise(i))) {
+          responses_[i].add(signals.of(i), expected);
+        }
+      }
     }
   }
 
@@ -286,34 +291,44 @@ class SenselVerdicts {
     return responses_[sensel].is_below(dead_response_, noise(sensel));
   }
 
+  /// The sensels of a line by what was found of them.
+  struct LineCount {
+    std::size_t faulty = 0;
+    std::size_t dead = 0;
+    std::size_t silent = 0;
+    std::size_t sound = 0;
+    double most = 0;  ///< response
+
+    [[nodiscard]] bool is_dead(std::size_t length) const {
+      const double least = std::max(3.0, kDeadLineShare * static_cast<double>(length));
+      return (5 * silent >= 4 * length && static_cast<double>(faulty) >= least) ||
+             (20 * sound <= length && static_cast<double>(dead) >= least);
+    }
+  };
+
+  void count(std::size_t sensel, LineCount& line) const {
+    const bool is_faulty = faults_[sensel] && *faults_[sensel] != ArrayFault::saturated;
+    line.faulty += is_faulty ? 1U : 0U;
+    line.dead += faults_[sensel] == ArrayFault::dead ? 1U : 0U;
+    line.silent += is_faulty || seen_.constant[sensel] != 0 ? 1U : 0U;
+    line.sound += !is_faulty && (seen_.touched[sensel] > 0 || is_tested(sensel)) ? 1U : 0U;
+    if (is_tested(sensel)) line.most = std::max(line.most, responses_[sensel].ratio());
+  }
+
   void report_lines(LineAxis axis, ArrayFault fault, Diagnosis& found) {
     const std::size_t length = seen_.kept.sensels() / seen_.lines(axis);
     for (std::size_t line = 0; line < seen_.lines(axis); ++line) {
-      std::size_t faulty = 0;
-      std::size_t dead = 0;
-      std::size_t silent = 0;
-      std::size_t sound = 0;
-      double most = 0;
+      LineCount counted;
       for (std::size_t along = 0; along < length; ++along) {
-        const std::size_t i = seen_.sensel(axis, line, along);
-        const bool is_faulty = faults_[i] && *faults_[i] != ArrayFault::saturated;
-        faulty += is_faulty ? 1U : 0U;
-        dead += faults_[i] == ArrayFault::dead ? 1U : 0U;
-        silent += is_faulty || seen_.constant[i] != 0 ? 1U : 0U;
-        sound += !is_faulty && (seen_.touched[i] > 0 || is_tested(i)) ? 1U : 0U;
-        if (is_tested(i)) most = std::max(most, responses_[i].ratio());
+        count(seen_.sensel(axis, line, along), counted);
       }
-      const double least = std::max(3.0, kDeadLineShare * static_cast<double>(length));
-      const bool is_line_dead =
-          (5 * silent >= 4 * length && static_cast<double>(faulty) >= least) ||
-          (20 * sound <= length && static_cast<double>(dead) >= least);
-      if (!is_line_dead) continue;
+      if (!counted.is_dead(length)) continue;
       for (std::size_t along = 0; along < length; ++along) {
         const std::size_t i = seen_.sensel(axis, line, along);
         accuse(i, fault);
       }
       ArrayFinding finding = {.fault = fault, .lines = {static_cast<std::uint32_t>(line)}};
-      finding.figure = 100 * most;
+      finding.figure = 100 * counted.most;
       add(found, std::move(finding));
     }
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/nearest_word.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/tare.h"
@@ -155,6 +156,7 @@ void add_constants(CLI::App* command, ReadOptions& options) {
 
 CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit) {
   std::vector<std::pair<std::string, PressureUnit>> choices;
+  choices.reserve(std::size(kPressureUnits));
   for (const PressureUnit& each : kPressureUnits) choices.emplace_back(each.name, each);
   return group.choice<PressureUnit>("--pressure-unit", unit, choices, "Unit of pressures [kPa]");
 }

@@ -47,7 +47,8 @@ bool RingReader::open() { return segment_.is_open() || attach(); }
 
 /// Opens the segment of the name; false if there is none yet, or none that fits.
 bool RingReader::attach() {
-  Descriptor segment(shm_open(segment_name_.c_str(), O_RDONLY | O_CLOEXEC, 0));
+  // A pipe in its place must not wait for a writer.
+  Descriptor segment(shm_open(segment_name_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
   if (!segment.is_open()) {
     if (errno == ENOENT || layout_) return false;
     throw Error(name_, fmt::format("cannot be opened: {}", std::strerror(errno)),
@@ -55,6 +56,10 @@ bool RingReader::attach() {
   }
   struct stat status = {};
   fstat(segment.get(), &status);
+  if (!S_ISREG(status.st_mode)) {
+    if (layout_) return false;
+    throw Error(name_, "is no shared memory", "remove it from /dev/shm, or give another name");
+  }
   const bool is_foreign = status.st_uid != geteuid() && status.st_uid != 0;
   if (is_foreign && !layout_) {
     throw Error(name_, "belongs to another user", "give the name of a ring of your own");

@@ -97,8 +97,9 @@ std::unique_ptr<ByteParser> packet_parser(const AddressOptions& options,
 
 /// How bytes become frames.
 struct Protocol {
-  const char* name;
-  std::unique_ptr<ByteParser> (*parser)(const AddressOptions& options, const std::string& source);
+  const char* name = nullptr;
+  std::unique_ptr<ByteParser> (*parser)(const AddressOptions& options,
+                                        const std::string& source) = nullptr;
   std::optional<SkinLayout> layout = {};  ///< of its boards; unset: any
 };
 

@@ -42,6 +42,11 @@ class Name {
   std::string text_;
 };
 
+/// What opening the source says.
+std::string refusal_of(const std::string& source) {
+  return message_of([&] { (void)open_live_source(source, {.stop = [] { return true; }}); });
+}
+
 bool publish(RingWriter& writer, const SentPacket& packet) {
   std::byte* const slot = writer.begin().data();
   auto& head = *reinterpret_cast<PillarfieldFrameSlot*>(slot);
@@ -264,12 +269,9 @@ TEST(Ring, APollingReaderFollowsOneThatReplacesItToo) {
 TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
   const Name name;
   const RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);
-  const auto open = [](const std::string& source) {
-    return message_of([&] { (void)open_live_source(source, {}); });
-  };
-  EXPECT_NE(open(name.source()).find("is not a ring of frames"), std::string::npos);
+  EXPECT_NE(refusal_of(name.source()).find("is not a ring of frames"), std::string::npos);
   for (const char* const bad : {"shm:", "shm:a/b", "shm:.", "shm:..", "shm:a b"}) {
-    EXPECT_NE(open(bad).find("is not the name of a ring"), std::string::npos) << bad;
+    EXPECT_NE(refusal_of(bad).find("is not the name of a ring"), std::string::npos) << bad;
   }
 }
 
@@ -332,9 +334,7 @@ TEST(HostileRing, LyingSizesAreRefused) {
         break;
     }
     segment.put(0, ring);
-    EXPECT_NE(
-        message_of([&] { (void)open_live_source(name.source(), {}); }).find("not a ring of frames"),
-        std::string::npos);
+    EXPECT_NE(refusal_of(name.source()).find("not a ring of frames"), std::string::npos);
   }
 }
 
@@ -399,10 +399,13 @@ TEST(HostileRing, OfAnotherUserIsRefused) {
   Segment segment(name, 64 + 4 * 1344);
   segment.put(0, ring_of_frames());
   ASSERT_EQ(chown(("/dev/shm/" + name.text()).c_str(), 65534, 65534), 0);
-  EXPECT_NE(message_of([&] {
-              (void)open_live_source(name.source(), {.stop = [] { return true; }});
-            }).find("another user"),
-            std::string::npos);
+  EXPECT_NE(refusal_of(name.source()).find("another user"), std::string::npos);
+}
+
+TEST(HostileRing, APipeIsRefused) {
+  const Name name;
+  ASSERT_EQ(mkfifo(("/dev/shm/" + name.text()).c_str(), 0600), 0);
+  EXPECT_NE(refusal_of(name.source()).find("no shared memory"), std::string::npos);
 }
 
 TEST(HostileRing, AJumpOfItsCountIsNoOverrun) {

@@ -72,9 +72,10 @@ class Marker {
       const int alpha = static_cast<int>(std::clamp(255 * fresh, 60.0, 255.0));
       const Vec2 from = before.value_or(*here);
       const double length = std::hypot(here->x - from.x, here->y - from.y);
-      for (; to_next <= length; to_next += every) {
-        if (here->hidden) continue;
+      while (to_next <= length) {
         const double share = length > 0 ? to_next / length : 0;
+        to_next += every;
+        if (here->hidden) continue;
         const ImVec2 dot =
             to_imgui({from.x + share * (here->x - from.x), from.y + share * (here->y - from.y)});
         list_.AddCircleFilled(dot, 2.9f * unit_, IM_COL32(0, 0, 0, alpha));

@@ -73,10 +73,11 @@ struct ShownValue {
 
 /// A column of the table of contacts.
 struct ContactColumn {
-  const char* head;                                        ///< "normal"
-  const char* help;                                        ///< "normal force, N"
-  const char* widest;                                      ///< sample text that sets the width
-  std::string (*words)(const ContactQuantities& contact);  ///< null: its name, or a pressure
+  const char* head = nullptr;    ///< "normal"
+  const char* help = nullptr;    ///< "normal force, N"
+  const char* widest = nullptr;  ///< sample text that sets the width
+  /// Null: its name, or a pressure.
+  std::string (*words)(const ContactQuantities& contact) = nullptr;
   double (*pressure_kpa)(const ContactQuantities& contact) = nullptr;
 };
 [[nodiscard]] const std::vector<ContactColumn>& contact_columns(SkinLayout layout);
