@@ -74,20 +74,12 @@ PF_INLINE Lanes lanes_of_block(OwnRow row, uint at) {
   return own_lanes(at * PF_LANES, row.skew, own_col(row, at), row.cols);
 }
 
-#ifdef PF_SKIP_IDLE
-typedef struct __attribute__((packed)) {
-  ulong value;
-} packed_flags;
-#endif
-
 /* First of this work-item's blocks from `at` on that is active, or has the idle flag `also`. */
 PF_INLINE uint next_correctable(OwnRow row, uint at, uchar also) {
 #ifdef PF_SKIP_IDLE
   const uint step = (uint)get_global_size(0);
   while (at < row.blocks) {
-    const ulong all_idle = PF_IDLE * 0x0101010101010101ul;
-    if (step == 1 && at + 8 <= row.blocks &&
-        ((global const packed_flags*)(row.idle + at))->value == all_idle) {
+    if (step == 1 && at + 8 <= row.blocks && eight_flags(row.idle + at) == PF_EIGHT_IDLE) {
       at += 8;
       continue;
     }

@@ -25,6 +25,15 @@ PF_INLINE global const PF_SENSEL* activation_thresholds(Calibration calibration)
 #define PF_NEWLY_IDLE PF_IDLE
 #endif
 
+/* Idle flags of eight blocks as one word, and that of eight idle blocks. */
+typedef struct __attribute__((packed, may_alias)) {
+  ulong value;
+} EightFlags;
+#define PF_EIGHT_IDLE (PF_IDLE * 0x0101010101010101ul)
+PF_INLINE ulong eight_flags(global const uchar* flags) {
+  return ((global const EightFlags*)flags)->value;
+}
+
 #ifdef PF_SKIP_IDLE
 
 #if defined(PF_BASELINE) || defined(PF_BEND)

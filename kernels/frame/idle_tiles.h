@@ -108,10 +108,64 @@ PF_INLINE void prefetch_tile_row(global const PF_SENSEL* raw, Calibration calibr
 #endif
 }
 
+/* Whole tiles are read 64 bytes at a time: PoCL's compiler, unlike OpenCL C, has vectors of more
+ * than 16 elements. */
+#if PF_LANES == 16 && !defined(PF_RANGE) && defined(PF_ACTIVATION_PLANE) && \
+    defined(POCL_DEVICE_ADDRESS_BITS) && !defined(__cplusplus)
+#define PF_WIDE_LANES (64 / sizeof(PF_SENSEL))
+typedef PF_SENSEL WideLanes __attribute__((ext_vector_type(64 / sizeof(PF_SENSEL))));
+typedef struct __attribute__((packed)) {
+  WideLanes value;
+} PackedWideLanes;
+#define PF_WIDE_AT(place) (((global const PackedWideLanes*)(place))->value)
+
+PF_INLINE TileRange range_of_wide_lanes(const PF_SENSEL* largest, const PF_SENSEL* distance) {
+  PF_SENSEL most = largest[0];
+  PF_SENSEL least = distance[0];
+  for (uint i = 1; i < PF_WIDE_LANES; ++i) {
+    most = max(most, largest[i]);
+    least = min(least, distance[i]);
+  }
+  const TileRange range = {(float)most, (float)least};
+  return range;
+}
+
+/* The range of a tile of PF_TILE_COLS columns. The tile beside it, whose work-item mostly follows
+ * on this thread, is prefetched. */
+PF_INLINE TileRange range_of_whole_tile(global const PF_SENSEL* raw,
+                                        global const PF_SENSEL* thresholds, size_t row_stride,
+                                        size_t threshold_stride, uint rows) {
+  WideLanes largest = (WideLanes)(0);
+  WideLanes distance = (WideLanes)((PF_SENSEL)(PF_ACTIVATION_NEVER));
+  for (uint row = 0; row < rows; ++row) {
+    for (uint col = 0; col < PF_TILE_COLS; col += PF_WIDE_LANES) {
+      PF_PREFETCH_SPAN(raw + row * row_stride + col + PF_TILE_COLS, 1, 2);
+      PF_PREFETCH_SPAN(thresholds + row * threshold_stride + col + PF_TILE_COLS, 1, 2);
+      const WideLanes reading = PF_WIDE_AT(raw + row * row_stride + col);
+      const WideLanes threshold = PF_WIDE_AT(thresholds + row * threshold_stride + col);
+      const WideLanes below = (threshold > reading ? threshold : reading) - reading;
+      largest = reading > largest ? reading : largest;
+      distance = below < distance ? below : distance;
+    }
+  }
+  PackedWideLanes sizes = {largest};
+  PackedWideLanes distances = {distance};
+  return range_of_wide_lanes((const PF_SENSEL*)&sizes, (const PF_SENSEL*)&distances);
+}
+#endif
+
 PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
                                   Layout layout, Tile tile) {
   const TileRange unknown = {(float)(PF_ACTIVATION_NEVER), -1.0f};
   if (tile.cols < PF_LANES) return unknown;
+#ifdef PF_WIDE_LANES
+  if (PF_TILE_COLS % PF_WIDE_LANES == 0 && tile.cols == PF_TILE_COLS) {
+    return range_of_whole_tile(
+        raw + tile.row * layout.row_stride + tile.col,
+        activation_thresholds(calibration) + tile.row * calibration.stride + tile.col,
+        layout.row_stride, calibration.stride, tile.rows);
+  }
+#endif
   LaneRange range = {PF_CONSTANT(SenselLanes, 0),
                      PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION_NEVER))};
   for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {

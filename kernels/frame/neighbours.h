@@ -60,6 +60,8 @@ PF_INLINE uint find_idle_blocks(Row row, global uchar* flags) {
 /* Writes the sources of the blocks of a row that are not idle. */
 PF_INLINE void fill_ring_blocks(Input input, Row row, global const uchar* idle, uint at_row) {
   for (uint at = 0; at < row.blocks; ++at) {
+    if (at + 8 <= row.blocks && eight_flags(idle + at) == PF_EIGHT_IDLE) at += 8;
+    if (at == row.blocks) return;
     if (idle[at]) continue;
     const uint col = col_of_block(row, at);
     for (uint down = 0; down < 2; ++down) {

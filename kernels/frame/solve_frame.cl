@@ -215,10 +215,28 @@ PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
 #endif
 }
 
+/* True if the ring shows eight blocks from `at` on as idle, and they were before. */
+PF_INLINE bool may_skip_eight(Row row, uint at) {
+#if defined(PF_SKIP_IDLE) && defined(PF_RING)
+  return PF_NAMED(leak) && at + 8 <= row.blocks &&
+         eight_flags(row.idle_now + at) == PF_EIGHT_IDLE &&
+         eight_flags(row.idle + at) == PF_EIGHT_IDLE;
+#else
+  return false;
+#endif
+}
+
 /* First of this work-item's blocks from `at` on that must be solved. */
 PF_INLINE uint next_active(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
-  while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
+  while (at < row.blocks) {
+    if (step == 1 && may_skip_eight(row, at)) {
+      at += 8;
+      continue;
+    }
+    if (!may_skip(row, at, 2 * col_of_block(row, at))) break;
+    at += step;
+  }
   return at;
 }
 
