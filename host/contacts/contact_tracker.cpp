@@ -180,12 +180,13 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
     friction_estimator.begin(forces, labels);
     friction = friction_estimator.friction();
   }
-  const auto friction_of = [&](std::uint32_t contact, std::size_t member) {
+  const double noise_n = options.noise_n.value_or(0);
+  const auto test_of = [&](std::uint32_t contact, std::size_t member) {
     if (estimates) friction_estimator.update(forces, labels, contact, member);
-    if (!has_shear) return std::optional<double>();
-    return known_friction(friction[contact]);
+    if (!has_shear) return std::optional<SlipTest>();
+    return std::optional(slip_test(friction[contact], noise_n));
   };
-  const std::vector<ContactSum>& sums = moments.measure(forces, labels, friction_of);
+  const std::vector<ContactSum>& sums = moments.measure(forces, labels, test_of);
   indices.clear();
   frame.contacts.clear();
   ContactSum total;

@@ -207,12 +207,12 @@ bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
 }
 
 /// Whether the friction stayed while the mean ratio of the pillars changed; under sticking both
-/// change together. `observed`: this frame alone determines the friction.
-bool FrictionEstimator::stays(double friction, bool observed, const Workspace& work,
+/// change together. `clear`: this frame alone determines the friction.
+bool FrictionEstimator::stays(double friction, bool clear, const Workspace& work,
                               History& history) const {
   if (std::abs(friction - history.friction) > parameters_.same_friction * friction) history = {};
   const std::vector<ObservedRatio>& ratios = work.samples.ratios();
-  if (!observed || ratios.empty()) return history.stayed;
+  if (!clear || ratios.empty()) return history.stayed;
   double mean = 0;
   for (const ObservedRatio& pillar : ratios)
     mean += pillar.ratio / static_cast<double>(ratios.size());
@@ -227,23 +227,26 @@ bool FrictionEstimator::stays(double friction, bool observed, const Workspace& w
 /// The friction to report, and its source.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
                                             const FrictionCurve& log_likelihood, Workspace& work) {
+  constexpr double kOneInTwenty = 0.05;
   const FrictionPosterior& posterior = beliefs_[contact].estimate;
-  ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior};
-  if (given_) return {*given_, friction.spread, FrictionSource::given};
-  if (friction.spread > parameters_.reported_spread) return friction;
-  const FrictionPosterior& cautious = beliefs_[contact].cautious;
-  if (cautious.spread() > 2 * parameters_.reported_spread) return friction;
-  if (std::abs(cautious.quantile(0.5) / friction.median - 1) > parameters_.same_friction) {
+  ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior,
+                           beliefs_[contact].cautious.quantile(kOneInTwenty)};
+  if (given_) {
+    friction.median = *given_;
+    friction.source = FrictionSource::given;
     return friction;
   }
+  if (friction.spread > parameters_.reported_spread) return friction;
   FrictionPosterior alone = prior_.estimate;
   alone.update(log_likelihood);
-  const bool observed =
-      alone.spread() <= parameters_.reported_spread &&
+  const bool agrees =
       std::abs(alone.quantile(0.5) / friction.median - 1) <= parameters_.same_friction;
-  const bool certain = stays(friction.median, observed, work, histories_[contact]);
+  const bool clear = agrees && alone.spread() <= parameters_.clear_spread;
+  const bool certain = stays(friction.median, clear, work, histories_[contact]);
   if (!certain && may_stick(friction.median, work)) return friction;
-  friction.spread = std::hypot(friction.spread, parameters_.friction_deviation);
+  const bool observed = agrees && alone.spread() <= parameters_.reported_spread;
+  friction.spread =
+      std::hypot(parameters_.stated_over_spread * friction.spread, parameters_.friction_deviation);
   friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
 }

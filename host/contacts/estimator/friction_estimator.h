@@ -94,7 +94,7 @@ class FrictionEstimator {
                                                         const ContactModel& model) const;
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
   [[nodiscard]] bool may_stick(double friction, Workspace& work) const;
-  bool stays(double friction, bool observed, const Workspace& work, History& history) const;
+  bool stays(double friction, bool clear, const Workspace& work, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
                                          Workspace& work);
 

@@ -16,7 +16,7 @@ struct PatchPlace {
 
 /// Whether a contact slips.
 enum class SlipState : std::uint8_t {
-  unknown,   ///< the friction is unknown, or ambiguous pillars carry too much of the load
+  unknown,   ///< friction, noise and ambiguous pillars leave it open
   sticking,  ///< slipping pillars carry at most a tenth of the load
   partial,   ///< neither sticking nor sliding
   sliding,   ///< slipping pillars carry at least nine tenths
@@ -65,14 +65,15 @@ struct ContactQuantities {
   std::optional<Wrench> wrench;
 
   /// Friction coefficient. Set if it was given, or if the posterior's logarithm has a standard
-  /// deviation of at most 0.02 and the contact cannot be a flat face that sticks
+  /// deviation of at most 0.2 and the contact cannot be a flat face that sticks
   /// (docs/derivations/contact.md, section 5).
   std::optional<double> friction;
   std::optional<double> friction_deviation;  ///< its standard deviation; set with it
   FrictionSource friction_source = FrictionSource::prior;
   SlipState slip = SlipState::unknown;
   /// Slipping fraction of the normal force, [0, 1]: of the unambiguous pillars, the part carried by
-  /// those with shear / normal >= 0.92 friction. Unset without friction, or without such pillars.
+  /// those with shear / normal >= 0.92 friction. Unset without such pillars, and without a friction
+  /// of at most 20 % deviation.
   std::optional<double> slipping_share;
   /// Slip margin, 1 − |shear| / (friction · normal) of the sums: the reserve before the whole
   /// contact slides in a straight line. A spin, whose shear cancels, does not lower it. Unset
