@@ -11,6 +11,7 @@
 #include "contacts/contact_wrench.h"
 #include "contacts/estimator/friction_estimator.h"
 #include "contacts/parallel_contact_moments.h"
+#include "contacts/slip_trend.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -71,7 +72,17 @@ FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& optio
 struct Track {
   std::optional<std::uint64_t> parent;
   double first_time_s = 0;
+  SlipTrend trend = {};
 };
+
+/// Adds a frame to the trend of a contact, and sets what it foretells.
+void set_forecast(ContactQuantities& contact, double time_s, SlipTrend& trend) {
+  if (!(contact.normal_n > 0)) return;
+  trend.add(time_s, std::hypot(contact.shear_x_n, contact.shear_y_n) / contact.normal_n);
+  if (contact.friction) {
+    contact.slip_forecast = trend.forecast(*contact.friction, *contact.friction_deviation);
+  }
+}
 
 }  // namespace
 
@@ -233,12 +244,13 @@ void ContactTracker::State::identify(double time_s) {
     } else {
       contact.track_id = next_track_id++;
       const std::uint32_t parent = assignment.parents[i];
-      tracks.push_back({std::nullopt, time_s});
+      tracks.push_back({std::nullopt, time_s, {}});
       if (parent != kNoContact) tracks.back().parent = earlier_snapshot.track_ids[parent];
     }
     contact.parent = tracks.back().parent;
     contact.first_time_s = tracks.back().first_time_s;
     contact.age_s = time_s - contact.first_time_s;
+    set_forecast(contact.quantities, time_s, tracks.back().trend);
     snapshot.track_ids.push_back(contact.track_id);
   }
 

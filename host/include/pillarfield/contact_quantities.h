@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -29,6 +30,16 @@ enum class SlipState : std::uint8_t {
 struct Wrench {
   Vector3 force_n;
   Vector3 moment_nmm;
+};
+
+/// When a contact will slide as a whole, if its load goes on to change at the present rate.
+struct SlipForecast {
+  static constexpr std::array<double, 3> kWithinS = {0.1, 0.3, 1};
+  std::optional<double> time_s;  ///< unset if the load does not come nearer to the friction
+  /// Its 95 % interval; an end that is never reached is unset.
+  std::optional<double> low_s;
+  std::optional<double> high_s;
+  std::array<double, 3> probability{};  ///< of slip within kWithinS
 };
 
 /// Force, torque, place, friction and slip of a contact (docs/contacts_found.md). Forces are sums
@@ -79,6 +90,8 @@ struct ContactQuantities {
   /// contact slides in a straight line. A spin, whose shear cancels, does not lower it. Unset
   /// without friction, or if normal_n is not above zero.
   std::optional<double> slip_margin;
+  /// Set with a friction, from the fourth frame of a track on.
+  std::optional<SlipForecast> slip_forecast;
 };
 
 /// A moment about a point of the skin: x right, y up, z outwards.
