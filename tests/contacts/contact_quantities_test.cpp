@@ -200,6 +200,21 @@ TEST(Slip, MarginIsOfTheSums) {
   EXPECT_EQ(contact.friction_source, FrictionSource::given);
 }
 
+TEST(Slip, IsForetoldFromTheFourthFrameOfATrack) {
+  ContactTracker tracker(kPitchMm, {.friction = {.given = 0.5}});
+  for (int frame = 0; frame < 5; ++frame) {
+    ForceField field(1, 100);
+    for (std::uint32_t col = 0; col < 100; ++col) {
+      load(field, 0, col, 0.1F + 0.02F * static_cast<float>(frame), 0, 1);
+    }
+    const auto& contacts = tracker.update(field.view(), 0.1 * frame).contacts;
+    const auto& found = contacts.at(0).quantities.slip_forecast;
+    ASSERT_EQ(found.has_value(), frame >= 3) << frame;
+    if (!found) continue;
+    EXPECT_NEAR(found->time_s.value(), (0.4 - 0.02 * frame) / 0.2, 1e-3);
+  }
+}
+
 /// Force of a pillar over that of the middle under a rounded body.
 double rounded(std::uint32_t i, std::uint32_t count) {
   const double place = (2.0 * i + 1) / count - 1;

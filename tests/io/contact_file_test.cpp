@@ -62,7 +62,7 @@ TEST(ContactColumns, HaveNamesOfTheirOwn) {
   std::set<std::string> names;
   for (const auto& column : identity_columns()) EXPECT_TRUE(names.insert(column.name).second);
   for (const auto& column : quantity_columns(true)) EXPECT_TRUE(names.insert(column.name).second);
-  EXPECT_EQ(names.size(), 34);
+  EXPECT_EQ(names.size(), 40);
 }
 
 TEST(ContactColumns, SetWhatTheyGet) {
@@ -143,7 +143,7 @@ TEST(ContactCsv, HasALineForThePatchAndForEachContact) {
   }
   EXPECT_EQ(line, lines.size());
   for (const std::string& each : lines) {
-    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 30) << each;
+    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 36) << each;
   }
   EXPECT_TRUE(has_all(lines[0], {"row,frame,time_s,id,parent,merged_into,first_time_s,age_s,",
                                  ",shear_x_n,", ",torque_nmm,", ",slip,"}));
