@@ -9,7 +9,8 @@
 namespace pillarfield {
 namespace {
 
-constexpr double kLeastCompared = 4;  // determined pillars that show how the load changed
+constexpr std::uint32_t kMostCompared = 192;  // pillars
+constexpr double kLeastCompared = 4;          // determined pillars that show how the load changed
 
 template <class Use>
 void for_each_pillar(std::span<const ContactRun> runs, std::uint32_t cols, Use use) {
@@ -103,14 +104,21 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
   const double own = parameters.prediction_deviation;
   const double spread = parameters.regression_factor;
   bool all_determined = true;
-  for_each_pillar(runs, cols_, [&](std::uint32_t, std::uint32_t, std::uint32_t index) {
-    const double normal = forces.normal[index];
-    if (is_determined(forces.status[index])) {
-      keep(index, normal, noise, normal);
-    } else {
-      all_determined = false;
+  std::uint32_t pillars = 0;
+  const auto noise_square = static_cast<float>(noise);
+  for (const ContactRun& run : runs) {
+    Cell* const cells = &now_[std::size_t{run.row} * cols_];
+    const float* const normals = &forces.normal[std::size_t{run.row} * cols_];
+    const std::uint8_t* const status = &forces.status[std::size_t{run.row} * cols_];
+    for (std::uint32_t col = run.first; col < run.end; ++col) {
+      const float normal = normals[col];
+      const bool determined = is_determined(status[col]);
+      all_determined &= determined;
+      const bool known = determined && normal > 0 && normal < static_cast<float>(kMostNormalN);
+      cells[col] = {normal, noise_square, normal, known ? frame_ : 0};
     }
-  });
+    pillars += run.end - run.first;
+  }
   if (all_determined) return;
 
   const auto most_of = [&](std::uint32_t index) {
@@ -118,8 +126,12 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
     return has_feasible_segment(status) ? segment_at(forces, index, model, {}).high
                                         : forces.normal[index];
   };
+  // Evenly spread pillars, which bounds the cost of large contacts.
+  const std::uint32_t step = std::max(1U, pillars / kMostCompared);
+  std::uint32_t place = 0;
   Load load;
   for_each_pillar(runs, cols_, [&](std::uint32_t row, std::uint32_t col, std::uint32_t index) {
+    if (place++ % step != 0) return;
     const auto past = before(row - movement.rows, col - movement.cols);
     if (!past || !(forces.normal[index] < kMostNormalN)) return;
     load.now += most_of(index);
