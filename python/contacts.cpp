@@ -90,6 +90,35 @@ void add_quantities(Class& bound, Get get) {
   add("slipping_share", &Q::slipping_share, "slipping fraction of the normal force, 0..1, or None");
   add("slip_margin", &Q::slip_margin,
       "1 - |shear| / (friction normal), the reserve before it slides, or None");
+  const auto add_forecast = [&](const char* name, auto value, const char* text) {
+    bound.def_property_readonly(
+        name,
+        [get, value](const Self& self) {
+          const auto& forecast = get(self).slip_forecast;
+          return forecast ? std::optional<double>(value(*forecast)) : std::nullopt;
+        },
+        text);
+  };
+  using F = SlipForecast;
+  const auto add_time = [&](const char* name, std::optional<double> F::*time, const char* text) {
+    bound.def_property_readonly(
+        name,
+        [get, time](const Self& self) {
+          const auto& forecast = get(self).slip_forecast;
+          return forecast ? *forecast.*time : std::nullopt;
+        },
+        text);
+  };
+  add_time("time_to_slip_s", &F::time_s, "until it slides at the present rates, s, or None");
+  add_time("time_to_slip_low_s", &F::low_s, "least of its 95 % interval, s, or None if never");
+  add_time("time_to_slip_high_s", &F::high_s, "largest, s, or None if never");
+  add_forecast(
+      "slip_within_0_1_s", [](const F& f) { return f.probability[0]; },
+      "probability that it slides within 0.1 s, or None");
+  add_forecast(
+      "slip_within_0_3_s", [](const F& f) { return f.probability[1]; }, "within 0.3 s, or None");
+  add_forecast(
+      "slip_within_1_s", [](const F& f) { return f.probability[2]; }, "within 1 s, or None");
   bound.def_property_readonly(
       "friction_source", [get](const Self& self) { return name_of(get(self).friction_source); },
       "'prior', 'given', 'observed' or 'carried_over'");

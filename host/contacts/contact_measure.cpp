@@ -7,23 +7,33 @@ namespace {
 
 /// Bounds of SlipState, as fractions of the normal force.
 constexpr double kFew = 0.1;
-constexpr double kMostUndetermined = 0.25;
+
+/// Largest standard deviation of the friction's logarithm at which its pillars tell slip.
+constexpr double kMostSpread = 0.2;
 
 /// A pillar slips if shear / normal is at least this fraction of the friction coefficient.
 constexpr double kSlipRatio = 0.92;
 
-SlipState state_of(const ContactSum& sum) {
-  const double all = sum.pressing;
-  const double slipping = sum.slipping;
-  const double sticking = sum.determined - sum.slipping;
-  const double undetermined = all - sum.determined;
-  if (sum.determined == 0) return SlipState::unknown;
-  if (slipping + undetermined <= kFew * all) return SlipState::sticking;
-  if (sticking <= kFew * (slipping + sticking) && undetermined <= kMostUndetermined * all) {
-    return SlipState::sliding;
-  }
-  const bool both = slipping > kFew * all && sticking > kFew * all;
-  return both ? SlipState::partial : SlipState::unknown;
+/// Standard deviation of a ratio, in units of reading noise over normal force (direct_solve.md).
+constexpr double kNoiseOfRatio = 1.6;
+
+bool is_well_known(const ContactFriction& friction) {
+  return friction.source != FrictionSource::prior && friction.spread <= kMostSpread;
+}
+
+SlipState state_of(double slipping) {
+  if (slipping <= kFew) return SlipState::sticking;
+  return slipping >= 1 - kFew ? SlipState::sliding : SlipState::partial;
+}
+
+/// The state on which the least and the largest share that may slip agree. Without a well known
+/// friction only the largest is known.
+SlipState state_of(const ContactSum& sum, bool well_known) {
+  if (!(sum.pressing > 0)) return SlipState::unknown;
+  const SlipState most = state_of(1 - sum.sticking / sum.pressing);
+  const bool agree =
+      most == (well_known ? state_of(sum.reaching / sum.pressing) : SlipState::sticking);
+  return agree ? most : SlipState::unknown;
 }
 
 }  // namespace
@@ -58,23 +68,19 @@ ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm, bool has
   return contact;
 }
 
-std::optional<double> slip_ratio(std::optional<double> friction) {
-  if (friction) friction = kSlipRatio * *friction;
-  return friction;
-}
-
-std::optional<double> known_friction(const ContactFriction& friction) {
-  if (friction.source == FrictionSource::prior) return std::nullopt;
-  return friction.median;
+SlipTest slip_test(const ContactFriction& friction, double noise_n) {
+  return {kSlipRatio * (is_well_known(friction) ? friction.median : friction.least),
+          kNoiseOfRatio * noise_n};
 }
 
 void set_slip(ContactQuantities& contact, const ContactFriction& friction, const ContactSum& sum) {
   contact.friction_source = friction.source;
+  const bool well_known = is_well_known(friction);
+  contact.slip = state_of(sum, well_known);
   if (friction.source == FrictionSource::prior) return;
   contact.friction = friction.median;
   contact.friction_deviation = friction.median * friction.spread;
-  contact.slip = state_of(sum);
-  if (sum.determined > 0) contact.slipping_share = sum.slipping / sum.determined;
+  if (well_known && sum.determined > 0) contact.slipping_share = sum.slipping / sum.determined;
   if (contact.normal_n > 0) {
     const double shear_n =
         std::sqrt(contact.shear_x_n * contact.shear_x_n + contact.shear_y_n * contact.shear_y_n);

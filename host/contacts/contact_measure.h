@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "contacts/contact_sum.h"
 #include "pillarfield/contact_quantities.h"
 
@@ -11,14 +9,11 @@ namespace pillarfield {
 [[nodiscard]] ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm,
                                               bool has_shear = true);
 
-/// Ratio of shear to normal force above which a pillar counts as slipping.
-[[nodiscard]] std::optional<double> slip_ratio(std::optional<double> friction);
+/// Tells slipping pillars by the friction, or where it is not known well, by the least that it may
+/// be. `noise_n` is the noise of a reading as a force, N.
+[[nodiscard]] SlipTest slip_test(const ContactFriction& friction, double noise_n);
 
-/// The friction coefficient; unset if its source is the prior alone.
-[[nodiscard]] std::optional<double> known_friction(const ContactFriction& friction);
-
-/// Sets friction, slip state and slip margin. `sum` is computed with the slip_ratio() of
-/// `friction`.
+/// Sets friction, slip state and slip margin. `sum` is computed with the slip_test() of `friction`.
 void set_slip(ContactQuantities& contact, const ContactFriction& friction, const ContactSum& sum);
 
 }  // namespace pillarfield

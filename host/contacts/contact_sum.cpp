@@ -85,23 +85,33 @@ struct Lanes {
   Doubles pressing{};
   Doubles determined{};
   Doubles slipping{};
+  Doubles reaching{};
+  Doubles sticking{};
   Ints ambiguous{};
   Ints resolved{};
 
   PF_WIDE_INLINE void add_slip(const Doubles& x, const Doubles& y, const Doubles& n,
-                               const Ints& status, double least_ratio) {
+                               const Ints& status, const SlipTest& test) {
     const Ints inactive = ~status & status::kUsable;
     const Ints known = ((inactive & (inactive - 1)) | (status & kUndetermined)) == 0;
-    const Doubles least = least_ratio * n;
+    const Doubles least = test.ratio * n;
+    const Doubles surely = test.ratio * (n - test.noise_n);
+    const Doubles square = x * x + y * y;
     Doubles presses;
     Doubles certain;
     Doubles slips;
+    Doubles reaches;
+    Doubles sticks;
     select(n, n > 0, presses);
     select(presses, Longs{known[0], known[1], known[2], known[3]}, certain);
-    select(certain, x * x + y * y >= least * least, slips);
+    select(certain, square >= least * least, slips);
+    select(presses, square >= least * least, reaches);
+    select(certain, (surely > 0) & (square < surely * surely), sticks);
     pressing += presses;
     determined += certain;
     slipping += slips;
+    reaching += reaches;
+    sticking += sticks;
   }
 
   void add_to(ContactSum& sum) const {
@@ -115,6 +125,8 @@ struct Lanes {
     sum.pressing = total_of(pressing);
     sum.determined = total_of(determined);
     sum.slipping = total_of(slipping);
+    sum.reaching = total_of(reaching);
+    sum.sticking = total_of(sticking);
     sum.ambiguous = total_of(ambiguous);
     sum.resolved = total_of(resolved);
   }
@@ -144,7 +156,7 @@ std::int64_t place_x(const ForceFieldView& forces, std::uint32_t col) {
 
 /// Adds the pillars of a run at height `y`. Returns their largest normal force.
 PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, double y,
-                             std::optional<double> least_ratio, Lanes& lanes) {
+                             const std::optional<SlipTest>& test, Lanes& lanes) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
   Floats peaks = {kNone, kNone, kNone, kNone};
   static constexpr std::array<float, kLanes> kNoShear{};
@@ -180,7 +192,7 @@ PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run
     // A true lane is -1.
     lanes.ambiguous -= (status & (status::kAmbiguous | status::kFromNeighbours)) != 0;
     lanes.resolved -= (status & status::kFromNeighbours) != 0;
-    if (least_ratio) lanes.add_slip(shear_x, shear_y, normal, status, *least_ratio);
+    if (test) lanes.add_slip(shear_x, shear_y, normal, status, *test);
   }
   lanes.shear_x += sum_x;
   lanes.shear_y += sum_y;
@@ -193,7 +205,7 @@ PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run
 }  // namespace
 
 PF_WIDE ContactSum sum_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
-                          std::optional<double> least_ratio) {
+                          const std::optional<SlipTest>& test) {
   ContactSum sum;
   Lanes lanes;
   ContactRun with_peak;
@@ -205,7 +217,7 @@ PF_WIDE ContactSum sum_of(const ForceFieldView& forces, std::span<const ContactR
     const ContactRun& run = runs[i];
     const std::int64_t y = std::int64_t{forces.rows} - 2 * std::int64_t{run.row} - 1;
     const std::int64_t pillars = run.end - run.first;
-    const float largest = add_run(forces, run, static_cast<double>(y), least_ratio, lanes);
+    const float largest = add_run(forces, run, static_cast<double>(y), test, lanes);
     sum.pillars += pillars;
     sum.x += pillars * (place_x(forces, run.first) + pillars - 1);
     sum.y += pillars * y;
@@ -238,6 +250,8 @@ void ContactSum::add(const ContactSum& next) {
   pressing += next.pressing;
   determined += next.determined;
   slipping += next.slipping;
+  reaching += next.reaching;
+  sticking += next.sticking;
   if (next.peak <= peak) return;
   peak = next.peak;
   peak_x = next.peak_x;

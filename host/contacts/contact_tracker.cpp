@@ -11,6 +11,7 @@
 #include "contacts/contact_measure.h"
 #include "contacts/estimator/friction_estimator.h"
 #include "contacts/parallel_contact_moments.h"
+#include "contacts/slip_trend.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/contact_quantities.h"
 #include "pillarfield/error.h"
@@ -102,7 +103,17 @@ FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& optio
 struct Track {
   std::optional<std::uint64_t> parent;
   double first_time_s = 0;
+  SlipTrend trend = {};
 };
+
+/// Adds a frame to the trend of a contact, and sets what it foretells.
+void set_forecast(ContactQuantities& contact, double time_s, SlipTrend& trend) {
+  if (!(contact.normal_n > 0)) return;
+  trend.add(time_s, std::hypot(contact.shear_x_n, contact.shear_y_n) / contact.normal_n);
+  if (contact.friction) {
+    contact.slip_forecast = trend.forecast(*contact.friction, *contact.friction_deviation);
+  }
+}
 
 }  // namespace
 
@@ -211,12 +222,13 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
     friction_estimator.begin(forces, labels);
     friction = friction_estimator.friction();
   }
-  const auto friction_of = [&](std::uint32_t contact, std::size_t member) {
+  const double noise_n = options.noise_n.value_or(0);
+  const auto test_of = [&](std::uint32_t contact, std::size_t member) {
     if (estimates) friction_estimator.update(forces, labels, contact, member);
-    if (!has_shear) return std::optional<double>();
-    return known_friction(friction[contact]);
+    if (!has_shear) return std::optional<SlipTest>();
+    return std::optional(slip_test(friction[contact], noise_n));
   };
-  const std::vector<ContactSum>& sums = moments.measure(forces, labels, friction_of);
+  const std::vector<ContactSum>& sums = moments.measure(forces, labels, test_of);
   indices.clear();
   frame.contacts.clear();
   ContactSum total;
@@ -263,12 +275,13 @@ void ContactTracker::State::identify(double time_s) {
     } else {
       contact.track_id = next_track_id++;
       const std::uint32_t parent = assignment.parents[i];
-      tracks.push_back({std::nullopt, time_s});
+      tracks.push_back({std::nullopt, time_s, {}});
       if (parent != kNoContact) tracks.back().parent = earlier_snapshot.track_ids[parent];
     }
     contact.parent = tracks.back().parent;
     contact.first_time_s = tracks.back().first_time_s;
     contact.age_s = time_s - contact.first_time_s;
+    set_forecast(contact.quantities, time_s, tracks.back().trend);
     snapshot.track_ids.push_back(contact.track_id);
   }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <thread>
 
-#include "contacts/contact_measure.h"
-
 namespace pillarfield {
 namespace {
 
@@ -60,19 +58,19 @@ void ParallelContactMoments::for_each_batch(const Work& work) {
 
 const std::vector<ContactSum>& ParallelContactMoments::measure(const ForceFieldView& forces,
                                                                const ContactLabels& labels,
-                                                               const FrictionOf& friction_of) {
+                                                               const SlipTestOf& test_of) {
   split(labels);
-  ratios_.assign(labels.contacts(), {});
+  tests_.assign(labels.contacts(), {});
   for_each_batch([&](std::size_t first, std::size_t end, std::size_t member) {
     for (std::size_t i = first; i < end; ++i) {
       const std::uint32_t contact = parts_[i].contact;
       if (i > 0 && parts_[i - 1].contact == contact) continue;  // Done at its first part.
-      ratios_[contact] = slip_ratio(friction_of(contact, member));
+      tests_[contact] = test_of(contact, member);
     }
   });
   for_each_batch([&](std::size_t first, std::size_t end, std::size_t) {
     for (std::size_t i = first; i < end; ++i) {
-      parts_[i].sum = sum_of(forces, parts_[i].runs, ratios_[parts_[i].contact]);
+      parts_[i].sum = sum_of(forces, parts_[i].runs, tests_[parts_[i].contact]);
     }
   });
   sums_.assign(labels.contacts(), {});

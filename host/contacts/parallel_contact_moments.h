@@ -14,9 +14,9 @@
 
 namespace pillarfield {
 
-/// Returns the friction coefficient of a contact, if known. Called once per contact by pool thread
-/// `member`.
-using FrictionOf = std::function<std::optional<double>(std::uint32_t contact, std::size_t member)>;
+/// Returns the slip test of a contact, if any. Called once per contact by pool thread `member`.
+using SlipTestOf =
+    std::function<std::optional<SlipTest>(std::uint32_t contact, std::size_t member)>;
 
 /// Computes the ContactSum of each contact in several threads. Large contacts are split between
 /// runs at places independent of the number of threads, so the bits are too.
@@ -26,10 +26,10 @@ class ParallelContactMoments {
   /// batch and sleep between frames.
   explicit ParallelContactMoments(std::uint32_t threads);
 
-  /// The sum of each contact, by label, with slip if its friction is known. Valid until the next
+  /// The sum of each contact, by label, with slip if it has a test. Valid until the next
   /// call.
   const std::vector<ContactSum>& measure(const ForceFieldView& forces, const ContactLabels& labels,
-                                         const FrictionOf& friction_of);
+                                         const SlipTestOf& test_of);
 
   [[nodiscard]] std::size_t threads() const { return threads_; }
 
@@ -51,7 +51,7 @@ class ParallelContactMoments {
   std::vector<Part> parts_;           ///< by label
   std::vector<std::size_t> batches_;  ///< first part of each batch, and one past the last
   std::vector<ContactSum> sums_;
-  std::vector<std::optional<double>> ratios_;
+  std::vector<std::optional<SlipTest>> tests_;
 };
 
 }  // namespace pillarfield

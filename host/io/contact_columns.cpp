@@ -52,6 +52,32 @@ void set_wrench(ContactQuantities& contact, double value, Vector3 Wrench::*part,
   ((*contact.wrench).*part).*axis = value;
 }
 
+SlipForecast& forecast_of(ContactQuantities& contact) {
+  if (!contact.slip_forecast) contact.slip_forecast.emplace();
+  return *contact.slip_forecast;
+}
+
+template <auto kMember>
+double get_forecast(const ContactQuantities& contact) {
+  if (!contact.slip_forecast) return kUnset;
+  return (*contact.slip_forecast.*kMember).value_or(kUnset);
+}
+
+template <auto kMember>
+void set_forecast(ContactQuantities& contact, double value) {
+  if (!std::isnan(value)) forecast_of(contact).*kMember = value;
+}
+
+template <std::size_t kWithin>
+double get_probability(const ContactQuantities& contact) {
+  return contact.slip_forecast ? contact.slip_forecast->probability[kWithin] : kUnset;
+}
+
+template <std::size_t kWithin>
+void set_probability(ContactQuantities& contact, double value) {
+  if (!std::isnan(value)) forecast_of(contact).probability[kWithin] = value;
+}
+
 using Contact = TrackedContact;
 using Quantities = ContactQuantities;
 using Ended = EndedContact;
@@ -83,7 +109,7 @@ constexpr std::array<ContactColumn<Ended>, 4> kEnded = {{
      [](Ended& c, double v) { c.last_time_s = v; }},
 }};
 
-constexpr std::array<ContactColumn<Quantities>, 29> kQuantities = {{
+constexpr std::array<ContactColumn<Quantities>, 35> kQuantities = {{
     {"pillars", "", count, [](const Quantities& q) { return static_cast<double>(q.pillars); },
      [](Quantities& q, double v) { q.pillars = as_count(v); }},
     {"ambiguous", "", count, [](const Quantities& q) { return static_cast<double>(q.ambiguous); },
@@ -137,6 +163,15 @@ constexpr std::array<ContactColumn<Quantities>, 29> kQuantities = {{
      [](Quantities& q, double v) { q.slipping_share = as_number(v); }, nullptr, false, true},
     {"slip_margin", "", number, [](const Quantities& q) { return q.slip_margin.value_or(kUnset); },
      [](Quantities& q, double v) { q.slip_margin = as_number(v); }, nullptr, false, true},
+    {"time_to_slip_s", "s", number, get_forecast<&SlipForecast::time_s>,
+     set_forecast<&SlipForecast::time_s>, nullptr, true, true},
+    {"time_to_slip_low_s", "s", number, get_forecast<&SlipForecast::low_s>,
+     set_forecast<&SlipForecast::low_s>, nullptr, true, true},
+    {"time_to_slip_high_s", "s", number, get_forecast<&SlipForecast::high_s>,
+     set_forecast<&SlipForecast::high_s>, nullptr, true, true},
+    {"slip_within_0_1_s", "", number, get_probability<0>, set_probability<0>, nullptr, true, true},
+    {"slip_within_0_3_s", "", number, get_probability<1>, set_probability<1>, nullptr, true, true},
+    {"slip_within_1_s", "", number, get_probability<2>, set_probability<2>, nullptr, true, true},
     {"force_x_n", "N", number,
      [](const Quantities& q) { return q.wrench ? q.wrench->force_n.x : kUnset; },
      [](Quantities& q, double v) { set_wrench(q, v, &Wrench::force_n, &Vector3::x); }, nullptr,

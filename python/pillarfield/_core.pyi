@@ -62,6 +62,12 @@ class _Quantities:
     friction_source: str
     slipping_share: Optional[float]
     slip_margin: Optional[float]
+    time_to_slip_s: Optional[float]
+    time_to_slip_low_s: Optional[float]
+    time_to_slip_high_s: Optional[float]
+    slip_within_0_1_s: Optional[float]
+    slip_within_0_3_s: Optional[float]
+    slip_within_1_s: Optional[float]
     slip: str
     wrench: Optional[tuple[_Vector, _Vector]]
 

@@ -107,7 +107,7 @@ class Contacts(CommandTest):
         with h5py.File(self.forces) as file:
             group = file["contacts"]
             names = [name for name in group["patch"] if name in table["frames"][0]["patch"]]
-            self.assertEqual(len(names), 23)
+            self.assertEqual(len(names), 29)
             self.assertIn("friction_deviation", names)
             self.assertEqual(group.attrs["minimum_pillars"], 4)
             self.assertEqual(group["normal_n"].attrs["unit"], b"N")

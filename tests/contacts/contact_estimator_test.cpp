@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "dragged_indenters.h"
 #include "pillarfield/status.h"
@@ -71,11 +73,46 @@ TEST(ContactEstimator, AGivenFrictionHelpsAndALooseBoundDoesNotHarm) {
   }
 }
 
-TEST(ContactEstimator, RemembersWhatAContactShowed) {
-  const Simulator scene(dragged(ball(), 1.6));
+/// Pressed and then slid: most ambiguous pillars were determined while the body only pressed.
+TEST(ContactEstimator, RemembersThePressureOfAContact) {
   FrictionKnowledge unrelated;
   unrelated.memory = false;
-  EXPECT_LT(contact_errors(scene).rms(), contact_errors(scene, unrelated).rms());
+  for (const double friction : {2.2, 3.0}) {
+    const Simulator turning(turned(ball(), friction));
+    EXPECT_LT(contact_errors(turning).rms(), 0.75 * contact_errors(turning, unrelated).rms());
+    const Simulator sliding(dragged(punch(), friction));
+    EXPECT_LT(contact_errors(sliding).rms(), 0.88 * contact_errors(sliding, unrelated).rms());
+  }
+}
+
+/// What was pressed before the contact lifted off says nothing of the next contact.
+TEST(ContactEstimator, ForgetsAContactThatLiftsOff) {
+  const Simulator simulator(turned(ball(), 2.2));
+  const SolverPlan direct = plan_of(simulator.scene(), Estimator::direct);
+  const auto frame = [&](std::uint32_t index) {
+    FrameBuffer raw(simulator.sensel_type(), 52, 52);
+    ForceField truth(26, 26);
+    simulator.render(index, raw, truth);
+    return solve_on_host(direct, raw.view());
+  };
+  const auto last_of = [&](const std::vector<ForceField>& fields) {
+    ContactEstimator estimator(plan_of(simulator.scene(), Estimator::contact));
+    ForceField last;
+    for (const ForceField& field : fields) {
+      last = field;
+      estimator.resolve(last);
+    }
+    return last.normal;
+  };
+  const ForceField pressed = frame(2);
+  const ForceField turned_far = frame(6);
+  ForceField idle = pressed;
+  for (auto* plane : {&idle.shear_x, &idle.shear_y, &idle.normal}) {
+    std::ranges::fill(*plane, 0.0F);
+  }
+  std::ranges::fill(idle.status, std::uint8_t{0});
+  EXPECT_NE(last_of({pressed, turned_far}), last_of({turned_far}));
+  EXPECT_EQ(last_of({pressed, idle, turned_far}), last_of({turned_far}));
 }
 
 /// A single frame of a ball in partial slip, as a closed form: most slipping pillars are ambiguous,

@@ -67,7 +67,7 @@ const std::array<Sensor, 7>& sensors() {
       {"arm 0.5 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.5; }, 0.14},
       // The lean that the correction leaves moves the segments themselves (segment.md, section 3).
       // The pillars around bring the midpoint nearer too (E7a): its error falls by more.
-      {"arm 0.224 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.224; }, 0.4},
+      {"arm 0.224 mm", [](SensorModel& s) { s.pillar_arm_mm = 0.224; }, 0.41},
   }};
   return all;
 }

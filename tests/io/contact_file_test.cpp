@@ -136,7 +136,7 @@ TEST(ContactCsv, HasALineForThePatchAndForEachContact) {
   }
   EXPECT_EQ(line, lines.size());
   for (const std::string& each : lines) {
-    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 30) << each;
+    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 36) << each;
   }
   EXPECT_TRUE(has_all(lines[0], {"row,frame,time_s,id,parent,merged_into,first_time_s,age_s,",
                                  ",shear_x_n,", ",torque_nmm,", ",slip,"}));

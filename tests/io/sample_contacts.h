@@ -34,6 +34,7 @@ inline ContactQuantities sample_quantities(std::uint64_t place) {
   quantities.friction_source = static_cast<FrictionSource>(place % 3 + 1);
   quantities.slipping_share = value();
   quantities.slip_margin = value();
+  quantities.slip_forecast = {value(), value(), value(), {value(), value(), value()}};
   quantities.wrench = {{value(), value(), value()}, {value(), value(), value()}};
   return quantities;
 }

@@ -220,6 +220,13 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
     variance *= 1 - weight;
     added *= (1 - weight) * (1 - weight);
   }
+  if (const auto past = friction_.past().at(index, high, noise_n)) {
+    // What the past bounds, it bounds for the cautious posterior too.
+    const double weight = NormalEstimate{mean, variance + added}.weight_of(*past);
+    mean += weight * (past->normal - mean);
+    variance *= 1 - weight;
+    added *= 1 - weight;
+  }
   if (lean > 0) {
     // The lean moves the segment, and both forces with it: the variance stays (C9a).
     const double apart = parameters_.point_deviation * high;

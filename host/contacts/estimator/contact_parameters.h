@@ -46,8 +46,12 @@ struct ContactParameters {
   /// Largest standard deviation of the normal force of a resolved pillar (status bit 7), as a
   /// fraction of the segment's upper end.
   double resolved_deviation = 0.1;
-  /// Largest standard deviation of the logarithm of a friction that is reported; [0.01, 0.03].
-  double reported_spread = 0.02;
+  /// Largest spread of the posterior of a friction that is reported; its deviation is stated.
+  double reported_spread = 0.2;
+  /// The stated deviation over the spread: pillars are not as independent as C3 takes them.
+  double stated_over_spread = 2;
+  /// Least spread of a friction that a frame shows clearly.
+  double clear_spread = 0.02;
   /// Relative distance up to which two frictions count as equal.
   double same_friction = 0.05;
   /// Relative distance above which the mean ratio of a contact's pillars counts as changed.

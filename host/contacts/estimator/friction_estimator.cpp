@@ -36,16 +36,17 @@ double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> 
 
 }  // namespace
 
-std::optional<ContactModel::Estimate> ContactModel::predicted(
-    std::uint32_t row, std::uint32_t col, double high, const ContactParameters& parameters) const {
+std::optional<NormalEstimate> ContactModel::predicted(std::uint32_t row, std::uint32_t col,
+                                                      double high,
+                                                      const ContactParameters& parameters) const {
   if (!pressure) return std::nullopt;
   const PressureRegression::Prediction found = pressure->at(box.x_of(col), box.y_of(row));
   if (!(found.square > 0)) return std::nullopt;
   const double normal = std::min(std::sqrt(found.square), high + noise_n);
   const double factor = parameters.regression_factor;
   const double own = parameters.prediction_deviation * normal;
-  return Estimate{normal, factor * factor * found.variance / (4 * found.square) +
-                              noise_n * noise_n + own * own};
+  return NormalEstimate{normal, factor * factor * found.variance / (4 * found.square) +
+                                    noise_n * noise_n + own * own};
 }
 
 FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowledge& knowledge,
@@ -68,6 +69,8 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
   models_.assign(labels.contacts(), {});
   friction_.assign(labels.contacts(), {});
   if (!carries_over_) return;
+  past_.begin(forces.rows, forces.cols);
+  movements_.assign(labels.contacts(), {});
   std::swap(snapshot_, earlier_snapshot_);
   snapshot_.runs.assign(labels.runs_by_row().begin(), labels.runs_by_row().end());
   snapshot_.track_ids.assign(labels.contacts(), 0);
@@ -94,6 +97,12 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
     beliefs_[contact] = {earlier.estimate.carried(prior_.estimate, parameters_.forgetting),
                          earlier.cautious.carried(prior_.cautious, parameters_.forgetting)};
     histories_[contact] = earlier_histories_[before];
+    if (matches.earlier[contact] == kNoContact) continue;
+    if (std::ranges::find(matches.merged, contact) != matches.merged.end()) continue;
+    const PatchPlace& from = earlier_snapshot_.centres[before];
+    const PatchPlace& to = snapshot_.centres[contact];
+    movements_[contact] = {(from.y_mm - to.y_mm) / sensor_.pitch_mm,
+                           (to.x_mm - from.x_mm) / sensor_.pitch_mm};
   }
 }
 
@@ -113,6 +122,8 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   }
   samples.sample(forces, leans_, runs, model.noise_n, sensor_.segment, parameters_);
   model.box = samples.box();
+  if (carries_over_)
+    past_.update(forces, runs, movements_[contact], model.noise_n, sensor_.segment, parameters_);
   // Pillars that were not sampled may be ambiguous.
   model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
 
@@ -126,7 +137,7 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
     if (!samples.pressure().empty()) samples.add_edges();
     model.pressure = PressureRegression::fit(samples.pressure());
     work.predicted.clear();
-    if (model.pressure) predict(forces, model, work);
+    if (model.pressure || carries_over_) predict(forces, model, work);
     likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
                                   log_likelihood);
   }
@@ -142,6 +153,19 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   friction_[contact] = reported(contact, log_likelihood, work);
 }
 
+/// The normal force of an ambiguous pillar by the regression and by the past.
+std::optional<NormalEstimate> FrictionEstimator::predicted(const ForceFieldView& forces,
+                                                           std::uint32_t index, double high,
+                                                           const ContactModel& model) const {
+  const std::uint32_t row = index / forces.cols;
+  const auto found = model.predicted(row, index - row * forces.cols, high, parameters_);
+  const auto past = past_.at(index, high, model.noise_n);
+  if (!found || !past) return found ? found : past;
+  const double weight = found->weight_of(*past);
+  return NormalEstimate{found->normal + weight * (past->normal - found->normal),
+                        (1 - weight) * found->variance};
+}
+
 /// Collects the ratios of ambiguous pillars at their predicted normal forces.
 void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel& model,
                                 Workspace& work) const {
@@ -153,8 +177,7 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
     const std::uint32_t index = ambiguous[i];
     const LeanShear lean = leans_.empty() ? LeanShear{} : leans_[index];
     const FeasibleSegment segment = segment_at(forces, index, sensor_.segment, lean);
-    const std::uint32_t row = index / forces.cols;
-    const auto found = model.predicted(row, index - row * forces.cols, segment.high, parameters_);
+    const auto found = predicted(forces, index, segment.high, model);
     if (!found) continue;
     const double normal = found->normal;
     const double deviation = std::sqrt(found->variance) / normal;
@@ -184,12 +207,12 @@ bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
 }
 
 /// Whether the friction stayed while the mean ratio of the pillars changed; under sticking both
-/// change together. `observed`: this frame alone determines the friction.
-bool FrictionEstimator::stays(double friction, bool observed, const Workspace& work,
+/// change together. `clear`: this frame alone determines the friction.
+bool FrictionEstimator::stays(double friction, bool clear, const Workspace& work,
                               History& history) const {
   if (std::abs(friction - history.friction) > parameters_.same_friction * friction) history = {};
   const std::vector<ObservedRatio>& ratios = work.samples.ratios();
-  if (!observed || ratios.empty()) return history.stayed;
+  if (!clear || ratios.empty()) return history.stayed;
   double mean = 0;
   for (const ObservedRatio& pillar : ratios)
     mean += pillar.ratio / static_cast<double>(ratios.size());
@@ -204,23 +227,26 @@ bool FrictionEstimator::stays(double friction, bool observed, const Workspace& w
 /// The friction to report, and its source.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
                                             const FrictionCurve& log_likelihood, Workspace& work) {
+  constexpr double kOneInTwenty = 0.05;
   const FrictionPosterior& posterior = beliefs_[contact].estimate;
-  ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior};
-  if (given_) return {*given_, friction.spread, FrictionSource::given};
-  if (friction.spread > parameters_.reported_spread) return friction;
-  const FrictionPosterior& cautious = beliefs_[contact].cautious;
-  if (cautious.spread() > 2 * parameters_.reported_spread) return friction;
-  if (std::abs(cautious.quantile(0.5) / friction.median - 1) > parameters_.same_friction) {
+  ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior,
+                           beliefs_[contact].cautious.quantile(kOneInTwenty)};
+  if (given_) {
+    friction.median = *given_;
+    friction.source = FrictionSource::given;
     return friction;
   }
+  if (friction.spread > parameters_.reported_spread) return friction;
   FrictionPosterior alone = prior_.estimate;
   alone.update(log_likelihood);
-  const bool observed =
-      alone.spread() <= parameters_.reported_spread &&
+  const bool agrees =
       std::abs(alone.quantile(0.5) / friction.median - 1) <= parameters_.same_friction;
-  const bool certain = stays(friction.median, observed, work, histories_[contact]);
+  const bool clear = agrees && alone.spread() <= parameters_.clear_spread;
+  const bool certain = stays(friction.median, clear, work, histories_[contact]);
   if (!certain && may_stick(friction.median, work)) return friction;
-  friction.spread = std::hypot(friction.spread, parameters_.friction_deviation);
+  const bool observed = agrees && alone.spread() <= parameters_.reported_spread;
+  friction.spread =
+      std::hypot(parameters_.stated_over_spread * friction.spread, parameters_.friction_deviation);
   friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
 }

@@ -11,6 +11,7 @@
 #include "contacts/estimator/contact_samples.h"
 #include "contacts/estimator/friction_likelihood.h"
 #include "contacts/estimator/friction_posterior.h"
+#include "contacts/estimator/past_pressure.h"
 #include "contacts/estimator/pressure_regression.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
@@ -22,12 +23,6 @@ namespace pillarfield {
 struct ContactModel {
   static constexpr std::size_t kNodes = 6;
 
-  /// A normal force, N, and its variance, N².
-  struct Estimate {
-    double normal;
-    double variance;
-  };
-
   ContactBox box;
   std::array<float, kNodes> frictions{};  ///< of equal probability
   std::array<float, kNodes> cautious{};   ///< likewise, by FrictionBelief::cautious
@@ -37,8 +32,9 @@ struct ContactModel {
 
   /// The regression's estimate of a pillar's normal force (C6), limited to the end `high` of its
   /// segment, N, plus noise.
-  [[nodiscard]] std::optional<Estimate> predicted(std::uint32_t row, std::uint32_t col, double high,
-                                                  const ContactParameters& parameters) const;
+  [[nodiscard]] std::optional<NormalEstimate> predicted(std::uint32_t row, std::uint32_t col,
+                                                        double high,
+                                                        const ContactParameters& parameters) const;
 };
 
 /// What is known of the friction of a contact.
@@ -77,6 +73,7 @@ class FrictionEstimator {
   [[nodiscard]] const ContactModel& model(std::uint32_t contact) const { return models_[contact]; }
   /// The leans of the ambiguous pillars of updated contacts, [rows, cols]; empty without an arm.
   [[nodiscard]] std::span<const LeanShear> leans() const { return leans_; }
+  [[nodiscard]] const PastPressure& past() const { return past_; }
 
  private:
   /// Memory of one thread.
@@ -92,9 +89,12 @@ class FrictionEstimator {
     bool stayed = false;    ///< `friction` stayed while the mean ratio changed
   };
 
+  [[nodiscard]] std::optional<NormalEstimate> predicted(const ForceFieldView& forces,
+                                                        std::uint32_t index, double high,
+                                                        const ContactModel& model) const;
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
   [[nodiscard]] bool may_stick(double friction, Workspace& work) const;
-  bool stays(double friction, bool observed, const Workspace& work, History& history) const;
+  bool stays(double friction, bool clear, const Workspace& work, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
                                          Workspace& work);
 
@@ -115,6 +115,8 @@ class FrictionEstimator {
   std::vector<ContactFriction> friction_;
   std::vector<Workspace> workspaces_;
   std::vector<LeanShear> leans_;
+  PastPressure past_;
+  std::vector<PastPressure::Movement> movements_;  ///< of the contacts, since the frame before
 };
 
 }  // namespace pillarfield

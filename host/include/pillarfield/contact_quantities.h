@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -16,7 +17,7 @@ struct PatchPlace {
 
 /// Whether a contact slips.
 enum class SlipState : std::uint8_t {
-  unknown,   ///< the friction is unknown, or ambiguous pillars carry too much of the load
+  unknown,   ///< friction, noise and ambiguous pillars leave it open
   sticking,  ///< slipping pillars carry at most a tenth of the load
   partial,   ///< neither sticking nor sliding
   sliding,   ///< slipping pillars carry at least nine tenths
@@ -29,6 +30,16 @@ enum class SlipState : std::uint8_t {
 struct Wrench {
   Vector3 force_n;
   Vector3 moment_nmm;
+};
+
+/// When a contact will slide as a whole, if its load goes on to change at the present rate.
+struct SlipForecast {
+  static constexpr std::array<double, 3> kWithinS = {0.1, 0.3, 1};
+  std::optional<double> time_s;  ///< unset if the load does not come nearer to the friction
+  /// Its 95 % interval; an end that is never reached is unset.
+  std::optional<double> low_s;
+  std::optional<double> high_s;
+  std::array<double, 3> probability{};  ///< of slip within kWithinS
 };
 
 /// Force, torque, place, friction and slip of a contact (docs/contacts_found.md). Forces are sums
@@ -65,19 +76,22 @@ struct ContactQuantities {
   std::optional<Wrench> wrench;
 
   /// Friction coefficient. Set if it was given, or if the posterior's logarithm has a standard
-  /// deviation of at most 0.02 and the contact cannot be a flat face that sticks
+  /// deviation of at most 0.2 and the contact cannot be a flat face that sticks
   /// (docs/derivations/contact.md, section 5).
   std::optional<double> friction;
   std::optional<double> friction_deviation;  ///< its standard deviation; set with it
   FrictionSource friction_source = FrictionSource::prior;
   SlipState slip = SlipState::unknown;
   /// Slipping fraction of the normal force, [0, 1]: of the unambiguous pillars, the part carried by
-  /// those with shear / normal >= 0.92 friction. Unset without friction, or without such pillars.
+  /// those with shear / normal >= 0.92 friction. Unset without such pillars, and without a friction
+  /// of at most 20 % deviation.
   std::optional<double> slipping_share;
   /// Slip margin, 1 − |shear| / (friction · normal) of the sums: the reserve before the whole
   /// contact slides in a straight line. A spin, whose shear cancels, does not lower it. Unset
   /// without friction, or if normal_n is not above zero.
   std::optional<double> slip_margin;
+  /// Set with a friction, from the fourth frame of a track on.
+  std::optional<SlipForecast> slip_forecast;
 };
 
 /// A moment about a point of the skin: x right, y up, z outwards.

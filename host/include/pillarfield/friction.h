@@ -39,6 +39,8 @@ struct ContactFriction {
   double median = 0;
   double spread = 0;  ///< standard deviation of the logarithm
   FrictionSource source = FrictionSource::prior;
+  /// The friction is at least this in 19 of 20 cases.
+  double least = 0;
 };
 
 }  // namespace pillarfield

@@ -67,6 +67,10 @@ void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contac
   if (contact.slip_margin) {
     fmt::format_to(std::back_inserter(json), R"(,"slip_margin":{})", *contact.slip_margin);
   }
+  if (contact.slip_forecast && contact.slip_forecast->time_s) {
+    fmt::format_to(std::back_inserter(json), R"(,"time_to_slip_s":{})",
+                   *contact.slip_forecast->time_s);
+  }
 }
 
 class UdpConsumer final : public SinkConsumer {

@@ -1,0 +1,88 @@
+// The past pressure of a contact that moves while its load changes.
+
+#include "contacts/estimator/past_pressure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint32_t kSide = 16;
+constexpr double kNoiseN = 0.01;
+
+double pressure(double row, double col) {
+  return std::sqrt(std::max(1 - (std::pow(row - 7.5, 2) + std::pow(col - 6.5, 2)) / 25, 0.0));
+}
+
+/// A ball pressed down, moved to the right by `moved` pillars, its normal forces times `load`. The
+/// pillars of the upper half are ambiguous, at the ends of their segments, if `slips`.
+ForceField pressed_ball(double moved, double load, bool slips) {
+  ForceField field(kSide, kSide);
+  for (std::uint32_t i = 0; i < field.elements(); ++i) {
+    const double normal = load * pressure(i / kSide, i % kSide - moved);
+    if (normal <= 0) continue;
+    const bool ambiguous = slips && i / kSide < kSide / 2;
+    field.normal[i] = static_cast<float>(normal * (ambiguous ? 1.3 : 1));
+    field.status[i] = ambiguous ? 9 | status::kAmbiguous : status::kUsable;
+  }
+  return field;
+}
+
+/// Relative error of the past of the ambiguous pillars, root of the mean square, and the largest
+/// deviation stated, relative too.
+struct Found {
+  double error = 0;
+  double stated = 0;
+};
+
+Found past_of(double moved, double load, double told_moved) {
+  const ContactParameters parameters;
+  const SegmentModel model{.point = 0.875F};
+  PastPressure past;
+  for (const bool slips : {false, true}) {
+    const ForceField field = slips ? pressed_ball(moved, load, true) : pressed_ball(0, 1, false);
+    ContactLabels labels;
+    labels.find(field.status, kSide, kSide);
+    past.begin(kSide, kSide);
+    past.update(field.view(), labels.runs(0), {0, slips ? told_moved : 0}, kNoiseN, model,
+                parameters);
+  }
+  Found found;
+  int pillars = 0;
+  for (std::uint32_t i = 0; i < kSide * kSide / 2; ++i) {
+    const double truth = load * pressure(i / kSide, i % kSide - moved);
+    const auto known = past.at(i, 10, kNoiseN);
+    if (truth < 0.4 * load || !known) continue;
+    found.error += std::pow(known->normal / truth - 1, 2);
+    found.stated = std::max(found.stated, std::sqrt(known->variance) / truth);
+    ++pillars;
+  }
+  EXPECT_GT(pillars, 20);
+  found.error = std::sqrt(found.error / pillars);
+  return found;
+}
+
+TEST(PastPressure, ScalesWithTheLoadOfTheDeterminedPillars) {
+  for (const double load : {0.5, 1.0, 1.5}) {
+    const Found still = past_of(0, load, 0);
+    EXPECT_LT(still.error, 0.02) << load;
+    EXPECT_LT(still.stated, 0.1) << load;
+  }
+}
+
+TEST(PastPressure, MovesWithTheContact) {
+  const Found moved = past_of(1.5, 1.2, 1.5);
+  EXPECT_LT(moved.error, 0.05);
+  EXPECT_LT(moved.stated, 0.6);
+  // Told another place, it states how far off it is.
+  const Found elsewhere = past_of(1.5, 1.2, 0);
+  EXPECT_GT(elsewhere.error, 2 * moved.error);
+  EXPECT_GT(elsewhere.stated, elsewhere.error);
+}
+
+}  // namespace
+}  // namespace pillarfield

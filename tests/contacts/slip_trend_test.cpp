@@ -1,0 +1,67 @@
+// When a contact is foretold to slide, on ramps and holds of its ratio of shear to normal force.
+
+#include "contacts/slip_trend.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace pillarfield {
+namespace {
+
+constexpr double kFriction = 1;
+constexpr double kDeviation = 0.05;
+
+SlipForecast after(double seconds, double rate_hz, const std::function<double(double)>& ratio) {
+  SlipTrend trend;
+  int frame = 0;
+  for (double t = 0; t <= seconds; t = ++frame / rate_hz) {
+    trend.add(t, ratio(t) + 0.002 * std::sin(7.3 * frame));
+  }
+  return trend.forecast(kFriction, kDeviation).value();
+}
+
+TEST(SlipTrend, FollowsARamp) {
+  for (const double rate_hz : {20.0, 100.0, 1000.0}) {
+    const SlipForecast found = after(1, rate_hz, [](double t) { return 0.5 * t; });
+    EXPECT_NEAR(found.time_s.value(), 1, 0.06) << rate_hz;
+    EXPECT_LT(found.low_s.value(), 1);
+    EXPECT_GT(found.high_s.value(), 1);
+    EXPECT_LT(found.probability[0], 0.01);
+    EXPECT_NEAR(found.probability[2], 0.5, 0.15);
+    // The ends of the interval are where the probability is 2.5 and 97.5 %.
+    const double sigma = 0.2 * 0.5 * *found.low_s;
+    EXPECT_NEAR((0.5 + 0.5 * *found.low_s - 1) / std::hypot(kDeviation, sigma), -1.96, 0.2);
+  }
+}
+
+TEST(SlipTrend, DoesNotAlarmInHolds) {
+  const auto steady = [](double t) { return std::min(0.6, 2 * t); };
+  const auto swinging = [](double t) { return 0.55 + 0.2 * std::sin(2 * M_PI * 1.5 * t); };
+  for (double seconds = 1; seconds < 3; seconds += 0.05) {
+    EXPECT_LT(after(seconds, 50, steady).probability[1], 0.01) << seconds;
+    EXPECT_LT(after(seconds, 50, swinging).probability[1], 0.5) << seconds;
+  }
+  EXPECT_FALSE(after(3, 50, [](double t) { return 0.6 - 0.1 * t; }).time_s);
+}
+
+TEST(SlipTrend, IsNowAtTheFriction) {
+  const SlipForecast found = after(1, 50, [](double) { return 1.01; });
+  EXPECT_EQ(found.time_s, 0.0);
+  EXPECT_EQ(found.low_s, 0.0);
+  EXPECT_GT(found.probability[0], 0.5);
+}
+
+TEST(SlipTrend, NeedsFourFramesOfOneClock) {
+  SlipTrend trend;
+  for (const double t : {0.0, 0.1, 0.2, 0.2, 0.3, 0.4}) {
+    trend.add(t, t);
+    EXPECT_FALSE(trend.forecast(kFriction, kDeviation)) << t;
+  }
+  trend.add(0.5, 0.5);
+  EXPECT_TRUE(trend.forecast(kFriction, kDeviation));
+}
+
+}  // namespace
+}  // namespace pillarfield
