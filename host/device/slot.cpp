@@ -18,6 +18,16 @@ std::size_t ring_floats(const SolverPlan& plan, const Division& division) {
          (4 * kRows * (std::size_t{cols} + 2) + (flags + sizeof(float) - 1) / sizeof(float));
 }
 
+/// Floats of the rows of kernels/frame/correct_forces.cl, with the pillars before the first and
+/// after the last, which it reads in vain.
+std::size_t ratio_floats(const SolverPlan& plan, const Division& division) {
+  if (!plan.calibration.effects.arm_mm) return 0;
+  constexpr std::size_t kRows = 5;    // kRatioRows
+  constexpr std::size_t kValues = 8;  // of both axes
+  const std::size_t rows = division.lanes > 1 ? kRows * division.bands : quad_rows(plan.skin);
+  return rows * kValues * quad_cols(plan.skin) + 1 + static_cast<std::size_t>(division.lanes);
+}
+
 /// Planes of a result in host memory.
 FieldPlanes planes_of(const ResultMemory& memory, std::uint32_t rows, std::uint32_t cols) {
   FieldPlanes planes;
@@ -64,10 +74,7 @@ SlotLayout::SlotLayout(const SolverPlan& plan, const Division& division, bool sk
     return begin;
   };
   layout.forces = scratch(effects.pillar_leak ? 3 * results.plane_bytes : 0);
-  // Planes of find_shear_ratios, and the pillars after the last one, which it reads in vain.
-  const std::size_t after =
-      (quad_cols(plan.skin) + 1 + static_cast<std::size_t>(division.lanes)) * sizeof(float);
-  layout.ratios = scratch(effects.arm_mm ? 8 * results.plane_bytes + after : 0);
+  layout.ratios = scratch(ratio_floats(plan, division) * sizeof(float));
   layout.ring = scratch(ring_floats(plan, division) * sizeof(float));
   layout.wires = scratch(wires * sizeof(float));
   const bool marks_touched = plan.baseline_rate && !plan.skin.has_pillars();

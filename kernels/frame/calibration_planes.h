@@ -156,20 +156,26 @@ PF_INLINE void prefetch_planes(Calibration calibration, size_t offset) {
 
 /* A range of pillar rows. */
 typedef struct {
+  uint number; /* 0 is the uppermost */
   uint first;
   uint end;
 } Band;
 
-/* Pillar rows of this work-item: one of get_global_size(1) bands of nearly equal height. Even bands
- * come before odd ones: PoCL gives its first thread the first half of the work-groups at once, and
- * a contact that lies in one half of the skin would keep the other threads idle. */
-PF_INLINE Band band_of_rows(uint rows) {
+/* One of get_global_size(1) bands of nearly equal height. */
+PF_INLINE Band band_of(uint number, uint rows) {
   const ulong bands = get_global_size(1);
-  const ulong even = (bands + 1) / 2;
-  const ulong at = get_global_id(1);
-  const ulong band = at < even ? 2 * at : 2 * (at - even) + 1;
-  const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
-  return result;
+  const Band band = {number, (uint)((ulong)number * rows / bands),
+                     (uint)((number + 1ul) * rows / bands)};
+  return band;
+}
+
+/* Pillar rows of this work-item. Even bands come before odd ones: PoCL gives its first thread the
+ * first half of the work-groups at once, and a contact that lies in one half of the skin would keep
+ * the other threads idle. */
+PF_INLINE Band band_of_rows(uint rows) {
+  const uint even = (uint)((get_global_size(1) + 1) / 2);
+  const uint at = (uint)get_global_id(1);
+  return band_of(at < even ? 2 * at : 2 * (at - even) + 1, rows);
 }
 
 /* Largest number of blocks in a pillar row, whatever its first index. */

@@ -11,6 +11,14 @@ PF_INLINE Real load_own(global const float* place) {
 #endif
 }
 
+PF_INLINE void store_own(Real value, global float* place) {
+#ifdef PF_SCALAR
+  *place = value;
+#else
+  PF_STORE_WHOLE(float, value, place);
+#endif
+}
+
 /* Values of PF_LANES pillars of a row from column `col` on; zero outside. */
 PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
 #ifdef PF_SCALAR
@@ -149,52 +157,77 @@ PF_INLINE Lean lean_along(global const float* normal, Layout layout, uint row, i
                       load_near(normal, layout, row, 2 * down, col + 2 * right));
 }
 
-/* Planes of the scratch memory, of each axis. */
-enum { kRatio, kVariance, kBeside, kDiagonal, kRatioPlanes };
+/* Values of each axis in the scratch memory. */
+enum { kRatio, kVariance, kBeside, kDiagonal, kRatioValues };
 
-/* The values of an axis, 0 or 1, at a pillar: planes are layout.result_bytes apart. */
-PF_INLINE global float* ratios_at(global uchar* results, Layout layout, uint axis, size_t index) {
-  return (global float*)(results + layout.ratios + axis * kRatioPlanes * layout.result_bytes) +
-         index;
+/* Rows of scratch memory: with one lane all rows of pillars. With several lanes a work-item finds
+ * the ratios of its rows just before it needs them; each band has a ring of three, and its first
+ * and its last row, which other bands read. */
+enum { kRatioRing = 3, kRatioRows = 5 };
+
+/* The ratios of a row of this band, or of the row before or after it. */
+PF_INLINE global float* ratios_of_row(global uchar* results, Layout layout, Band band, uint row) {
+  size_t place = row;
+#ifndef PF_SCALAR
+  if (row < band.first) band = band_of(band.number - 1, (uint)layout.rows);
+  if (row >= band.end) band = band_of(band.number + 1, (uint)layout.rows);
+  place = row % kRatioRing;
+  if (row + 1 == band.end) place = kRatioRing + 1;
+  if (row == band.first) place = kRatioRing;
+  place += (size_t)kRatioRows * band.number;
+#endif
+  return (global float*)(results + layout.ratios) + place * 2 * kRatioValues * layout.cols;
 }
 
-PF_INLINE void store_ratio(WeightedRatio ratio, global float* to, size_t plane, Lanes lanes) {
-  store_plane(ratio.own.value, to + kRatio * plane, lanes);
-  store_plane(ratio.own.variance, to + kVariance * plane, lanes);
-  store_plane(ratio.beside, to + kBeside * plane, lanes);
-  store_plane(ratio.diagonal, to + kDiagonal * plane, lanes);
+PF_INLINE void store_ratio(WeightedRatio ratio, global float* to, size_t cols) {
+  store_own(ratio.own.value, to + kRatio * cols);
+  store_own(ratio.own.variance, to + kVariance * cols);
+  store_own(ratio.beside, to + kBeside * cols);
+  store_own(ratio.diagonal, to + kDiagonal * cols);
 }
 
-/* Ratios of shear to normal force of the loaded pillars, by their own readings and lean, to the
- * scratch memory. A work-item finds blocks as in solve_frame. */
-kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
-                              global const uchar* restrict calibration,
-                              global uchar* restrict results, Layout layout) {
-  const Calibration planes = calibration_of(calibration, results, layout);
-  const Band band = band_of_rows((uint)layout.rows);
+/* Ratios of shear to normal force of a row's loaded pillars, by their own readings and lean, to the
+ * scratch memory. */
+PF_INLINE void find_ratios_of_row(global uchar* results, Calibration planes, Layout layout,
+                                  Band band, uint row) {
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
   global const float* const shear_x = (global const float*)results;
   const size_t plane = layout.result_bytes / sizeof(float);
   global const float* const shear_y = shear_x + plane;
   global const float* const normal = shear_y + plane;
-  for (uint row = band.first; row < band.end; ++row) {
-    const OwnRow own = own_row(results, layout, row);
-    for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
-         at = next_correctable(own, at + step, 0)) {
-      const uint col = own_col(own, at);
-      const Lanes lanes = lanes_of_block(own, at);
-      const size_t index = (size_t)row * cols + col;
-      const Bits status = status_at(results, layout, index);
-      if (!any_lane(is_loaded(status))) continue;
-      const Force force = {load_own(shear_x + index), load_own(shear_y + index),
-                           load_own(normal + index)};
-      const WeightedRatios ratios =
-          shear_ratios(force, status, lean_along(normal, layout, row, (int)col, 0, 1),
-                       lean_along(normal, layout, row, (int)col, -1, 0), planes.stages);
-      store_ratio(ratios.x, ratios_at(results, layout, 0, index), plane, lanes);
-      store_ratio(ratios.y, ratios_at(results, layout, 1, index), plane, lanes);
-    }
+  global float* const to = ratios_of_row(results, layout, band, row);
+  const OwnRow own = own_row(results, layout, row);
+  for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
+       at = next_correctable(own, at + step, 0)) {
+    const uint col = own_col(own, at);
+    const size_t index = (size_t)row * cols + col;
+    const Bits status = status_at(results, layout, index);
+    if (!any_lane(is_loaded(status))) continue;
+    const Force force = {load_own(shear_x + index), load_own(shear_y + index),
+                         load_own(normal + index)};
+    const WeightedRatios ratios =
+        shear_ratios(force, status, lean_along(normal, layout, row, (int)col, 0, 1),
+                     lean_along(normal, layout, row, (int)col, -1, 0), planes.stages);
+    store_ratio(ratios.x, to + col, cols);
+    store_ratio(ratios.y, to + kRatioValues * cols + col, cols);
+  }
+}
+
+/* The ratios that other work-items read, or with one lane all. A work-item finds blocks as in
+ * solve_frame. */
+kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
+                              global const uchar* restrict calibration,
+                              global uchar* restrict results, Layout layout) {
+  const Calibration planes = calibration_of(calibration, results, layout);
+  const Band band = band_of_rows((uint)layout.rows);
+#ifdef PF_SCALAR
+  const uint step = 1;
+#else
+  const uint step = max(band.end - band.first, 2u) - 1;
+#endif
+  for (uint row = band.first; row < band.end; row += step) {
+    find_ratios_of_row(results, planes, layout, band, row);
   }
 }
 
@@ -217,29 +250,31 @@ PF_INLINE LoadedAround loaded_around(global const float* normal, Layout layout, 
   return loaded;
 }
 
-/* The parts of the pillar that is `down` and `right`, and of the one as far on the other side.
- * `ratios` are those of an axis of PF_LANES pillars. */
-PF_INLINE RatioSum opposite_parts(global const float* ratios, size_t plane, long cols, Real own,
-                                  LoadedAround loaded, int down, int right) {
+/* The parts of a pillar and of the one as far on the other side, with the ratios of an axis at
+ * `before` and `after`. `weights`: kBeside or kDiagonal. */
+PF_INLINE RatioSum opposite_parts(Real own, global const float* before, Mask loaded_before,
+                                  global const float* after, Mask loaded_after, size_t weights) {
   const Real none = PF_REAL(0.0);
-  global const float* const after = ratios + (down * cols + right);
-  global const float* const before = ratios - (down * cols + right);
-  const size_t weights = plane * (down != 0 && right != 0 ? kDiagonal : kBeside);
-  const Real weight_after = loaded.at[1 + down][1 + right] ? load_own(after + weights) : none;
-  const Real weight_before = loaded.at[1 - down][1 - right] ? load_own(before + weights) : none;
+  const Real weight_before = loaded_before ? load_own(before + weights) : none;
+  const Real weight_after = loaded_after ? load_own(after + weights) : none;
   return add_ratios(ratio_part(own, load_own(before), weight_before),
                     ratio_part(own, load_own(after), weight_after));
 }
 
-/* The mean ratio of 3 x 3 pillars along an axis. */
-PF_INLINE ShearRatio mean_of_ratios(global const float* ratios, size_t plane, long cols,
-                                    LoadedAround loaded) {
-  const ShearRatio own = {load_own(ratios + kRatio * plane), load_own(ratios + kVariance * plane)};
-  const RatioSum edges = add_ratios(opposite_parts(ratios, plane, cols, own.value, loaded, 0, 1),
-                                    opposite_parts(ratios, plane, cols, own.value, loaded, 1, 0));
-  const RatioSum corners =
-      add_ratios(opposite_parts(ratios, plane, cols, own.value, loaded, 1, 1),
-                 opposite_parts(ratios, plane, cols, own.value, loaded, 1, -1));
+/* The mean ratio of 3 x 3 pillars along an axis, whose ratios in the row of the pillars, above and
+ * below are at these places. */
+PF_INLINE ShearRatio mean_of_ratios(global const float* above, global const float* ratios,
+                                    global const float* below, size_t cols, LoadedAround loaded) {
+  const size_t beside = kBeside * cols;
+  const size_t diagonal = kDiagonal * cols;
+  const ShearRatio own = {load_own(ratios + kRatio * cols), load_own(ratios + kVariance * cols)};
+  const Real value = own.value;
+  const RatioSum edges = add_ratios(
+      opposite_parts(value, ratios - 1, loaded.at[1][0], ratios + 1, loaded.at[1][2], beside),
+      opposite_parts(value, above, loaded.at[0][1], below, loaded.at[2][1], beside));
+  const RatioSum corners = add_ratios(
+      opposite_parts(value, above - 1, loaded.at[0][0], below + 1, loaded.at[2][2], diagonal),
+      opposite_parts(value, above + 1, loaded.at[0][2], below - 1, loaded.at[2][0], diagonal));
   return mean_ratio(own, add_ratios(edges, corners));
 }
 
@@ -294,6 +329,18 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
                          results + layout.idle};
   for (uint row = band.first; row < band.end; ++row) {
     const OwnRow own = own_row(results, layout, row);
+#ifdef PF_LEAN
+#ifndef PF_SCALAR
+    if (PF_NAMED(lean) && row + 2 < band.end) {
+      find_ratios_of_row(results, planes, layout, band, row + 1);
+    }
+#endif
+    global const float* const ratios_here = ratios_of_row(results, layout, band, row);
+    global const float* const ratios_above =
+        row == 0 ? ratios_here : ratios_of_row(results, layout, band, row - 1);
+    global const float* const ratios_below =
+        row + 1 == (uint)layout.rows ? ratios_here : ratios_of_row(results, layout, band, row + 1);
+#endif
     for (uint at = next_correctable(own, (uint)get_global_id(0), 0); at < own.blocks;
          at = next_correctable(own, at + step, 0)) {
       const uint col = own_col(own, at);
@@ -306,8 +353,11 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
         const size_t plane = layout.result_bytes / sizeof(float);
         const LoadedAround loaded =
             loaded_around((global const float*)results + 2 * plane, layout, row, (int)col);
-        ratios.x = mean_of_ratios(ratios_at(results, layout, 0, index), plane, cols, loaded);
-        ratios.y = mean_of_ratios(ratios_at(results, layout, 1, index), plane, cols, loaded);
+        const size_t y = kRatioValues * cols + col;
+        ratios.x =
+            mean_of_ratios(ratios_above + col, ratios_here + col, ratios_below + col, cols, loaded);
+        ratios.y =
+            mean_of_ratios(ratios_above + y, ratios_here + y, ratios_below + y, cols, loaded);
       }
 #endif
       solution = correct_solution(solution, ratios, planes.stages);

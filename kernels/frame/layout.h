@@ -18,5 +18,5 @@ typedef struct {
   ulong wires;        /* to the vectors of find_wires.cl */
   ulong frame;        /* number of the frame, from 1 on */
   ulong forces;       /* to the planes of forces with the leak between pillars */
-  ulong ratios;       /* to the planes of find_shear_ratios */
+  ulong ratios;       /* to the rows of find_shear_ratios */
 } Layout;
