@@ -30,6 +30,7 @@
 #endif
 #include "frame/stage_table.h"
 #include "frame/stages.h"
+#include "frame/correct_solution.h"
 #if !defined(__cplusplus) || defined(PF_LANES)
 #ifdef __cplusplus
 #include "frame/load_store_lanes.h"

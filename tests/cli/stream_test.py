@@ -34,10 +34,16 @@ class Control:
 
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX)
-        wait_for(path.exists, "the control socket")
-        self.socket.connect(str(path))
+        wait_for(lambda: self.connects(path), "the control socket")
         self.socket.settimeout(PATIENCE_S)
         self.file = self.socket.makefile("rw")
+
+    def connects(self, path):
+        try:
+            self.socket.connect(str(path))
+        except (FileNotFoundError, ConnectionRefusedError):  # Not there, or does not listen yet.
+            return False
+        return True
 
     def say(self, line):
         self.file.write(line + "\n")

@@ -175,7 +175,7 @@ class Scenes(unittest.TestCase):
             with self.assertRaises(pf.Error):
                 pf.scene(wrong)
         self.assertEqual(pf.scene({"skin": {"pillars": [8, 8]}, "contact": []}).skin.rows, 16)
-        with self.assertWarnsRegex(UserWarning, "estimator"):
+        with self.assertRaisesRegex(pf.Error, "estimator.*allowed"):
             pf.scene({"skin": {"pillars": [8, 8]}, "solver": {"estimator": "field"}})
 
     def test_a_resized_array_is_not_read(self):
