@@ -76,6 +76,10 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
       control_(options.control),
       cost_(plan) {
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
+  for (const LiveSession::Sink& sink : live_.sinks()) {
+    if (options.quiet || !sink.name.starts_with("http://")) continue;
+    fmt::print(stderr, "Open {} in a browser\n", printable(sink.name));
+  }
   if (options.tare_s > 0) live_.start_tare(nanoseconds_of(options.tare_s));
   if (!options.record.empty()) live_.record(options.record);
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -38,10 +39,9 @@ class ClientProtocol {
 
 /// What a WebSocketServer speaks.
 struct ServerProtocol {
-  std::vector<std::string> names;  ///< subprotocols
-  /// Creates the protocol of a new client; `session` names this run of the server.
-  std::unique_ptr<ClientProtocol> (*create)(const std::string& session) = nullptr;
-  std::string_view page = {};  ///< HTML that a browser gets at "/"; empty: none
+  std::vector<std::string> names;                           ///< subprotocols
+  std::function<std::unique_ptr<ClientProtocol>()> create;  ///< for a new client
+  std::string_view page = {};                               ///< HTML at "/"; empty: none
 };
 
 }  // namespace pillarfield

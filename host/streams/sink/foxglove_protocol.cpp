@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -90,8 +91,9 @@ class FoxgloveClient final : public ClientProtocol {
 }  // namespace
 
 ServerProtocol foxglove_protocol() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
   return {.names = {"foxglove.sdk.v1", "foxglove.websocket.v1"},
-          .create = [](const std::string& session) -> std::unique_ptr<ClientProtocol> {
+          .create = [session = std::to_string(now.count())] {
             return std::make_unique<FoxgloveClient>(session);
           }};
 }

@@ -85,4 +85,13 @@ std::string refusal_of(std::string_view origin, std::string_view host,
   return "";
 }
 
+std::string http_answer(std::string_view status, std::string_view type, std::string_view text) {
+  return fmt::format(
+      "HTTP/1.1 {}\r\nServer: pillarfield\r\nContent-Type: {}; charset=utf-8\r\n"
+      "Content-Length: {}\r\nConnection: close\r\nCache-Control: no-store\r\n"
+      "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src "
+      "'unsafe-inline'; img-src data:; connect-src 'self'; frame-ancestors 'none'\r\n\r\n{}",
+      status, type, text.size(), text);
+}
+
 }  // namespace pillarfield

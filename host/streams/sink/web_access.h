@@ -17,4 +17,9 @@ namespace pillarfield {
 [[nodiscard]] std::string refusal_of(std::string_view origin, std::string_view host,
                                      std::span<const std::string> allowed);
 
+/// The answer to a request that opens no WebSocket, and that ends the connection: `status` is such
+/// as "404 Not Found", `type` that of the text. A page may load nothing, and be in no frame.
+[[nodiscard]] std::string http_answer(std::string_view status, std::string_view type,
+                                      std::string_view text);
+
 }  // namespace pillarfield

@@ -1,6 +1,5 @@
-#include <array>
-#include <atomic>
-#include <cstring>
+#include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -10,11 +9,13 @@
 #include "streams/message/health_json.h"
 #include "streams/sink/address.h"
 #include "streams/sink/frame_json.h"
-#include "streams/sink/page.h"
 #include "streams/sink/queued_sink.h"
 #include "streams/sink/websocket_server.h"
 
 namespace pillarfield {
+
+std::string_view page_html();  // page.html, which CMake embeds
+
 namespace {
 
 constexpr std::string_view kWebPrefix = "web:";
@@ -47,9 +48,7 @@ class PageClient final : public ClientProtocol {
 
 ServerProtocol page_protocol() {
   return {.names = {"pillarfield.page.v1"},
-          .create = [](const std::string&) -> std::unique_ptr<ClientProtocol> {
-            return std::make_unique<PageClient>();
-          },
+          .create = [] { return std::make_unique<PageClient>(); },
           .page = page_html()};
 }
 
@@ -64,7 +63,9 @@ struct PictureHead {
 class WebConsumer final : public SinkConsumer {
  public:
   WebConsumer(std::unique_ptr<WebSocketServer> server, const LiveSinkInfo& info)
-      : server_(std::move(server)), pitch_mm_(info.forces.element_pitch_mm), json_(info) {}
+      : server_(std::move(server)),
+        pitch_mm_(static_cast<float>(info.forces.element_pitch_mm)),
+        json_(info) {}
 
   [[nodiscard]] FrameParts wants(const SolvedFrame& frame) override;
   [[nodiscard]] bool consume(const SolvedFrame& frame) override;
@@ -73,14 +74,15 @@ class WebConsumer final : public SinkConsumer {
   void add_to(LiveSinkStatistics& statistics) const override { server_->add_to(statistics); }
 
  private:
-  void send(std::size_t topic, std::vector<std::byte> bytes) {
-    const ServerMessage message = {
-        topic, 0, std::make_shared<const std::vector<std::byte>>(std::move(bytes))};
+  void send(std::size_t topic, std::initializer_list<std::span<const std::byte>> parts) {
+    const auto bytes = std::make_shared<std::vector<std::byte>>();
+    for (const auto part : parts) bytes->insert(bytes->end(), part.begin(), part.end());
+    const ServerMessage message = {topic, 0, bytes};
     server_->send({&message, 1});
   }
 
   std::unique_ptr<WebSocketServer> server_;
-  double pitch_mm_;
+  float pitch_mm_;
   FrameJson json_;
   std::chrono::nanoseconds last_picture_{0};  // its arrival
 };
@@ -94,36 +96,21 @@ FrameParts WebConsumer::wants(const SolvedFrame& frame) {
   return {.forces = true, .contacts = true};
 }
 
-template <class T>
-void append_bytes(std::vector<std::byte>& bytes, std::span<const T> values) {
-  const auto more = std::as_bytes(values);
-  bytes.insert(bytes.end(), more.begin(), more.end());
-}
-
 bool WebConsumer::consume(const SolvedFrame& frame) {
   const ForceFieldView& forces = frame.forces;
   const std::string_view json = json_.line(frame);
   if (json.empty()) return false;
-  const PictureHead head = {.rows = forces.rows,
-                            .cols = forces.cols,
-                            .planes = forces.shear_x.empty() ? 1U : 3U,
-                            .pitch_mm = static_cast<float>(pitch_mm_)};
-  std::vector<std::byte> bytes;
-  append_bytes(bytes, std::span(&head, 1));
-  for (const auto plane : {forces.shear_x, forces.shear_y, forces.normal}) {
-    append_bytes(bytes, plane);
-  }
-  append_bytes(bytes, forces.status);
-  append_bytes(bytes, std::span<const char>(json));
-  send(kPictureTopic, std::move(bytes));
+  const std::uint32_t planes = forces.shear_x.empty() ? 1 : 3;
+  const PictureHead head = {forces.rows, forces.cols, planes, pitch_mm_};
+  send(kPictureTopic, {std::as_bytes(std::span(&head, 1)), std::as_bytes(forces.shear_x),
+                       std::as_bytes(forces.shear_y), std::as_bytes(forces.normal),
+                       std::as_bytes(forces.status), std::as_bytes(std::span(json))});
   return true;
 }
 
 void WebConsumer::report(const HealthReport& health) {
   const std::string json = health_json(health).dump();
-  std::vector<std::byte> bytes;
-  append_bytes(bytes, std::span<const char>(json));
-  send(kHealthTopic, std::move(bytes));
+  send(kHealthTopic, {std::as_bytes(std::span(json))});
 }
 
 std::unique_ptr<LiveSink> create_web_sink(const std::string& target, const LiveSinkInfo& info) {
