@@ -34,6 +34,8 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
             "https://app.foxglove.dev")
       ->allow_extra_args(false)
       ->check(origin());
+  output.text("--relay", options.relay, "shm:NAME",
+              "Put the raw frames into a ring in shared memory, for other programs");
   output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
   add_overwrite(command, options.replace);
   Group run(command, "Run");

@@ -76,6 +76,7 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
       control_(options.control),
       cost_(plan) {
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
+  if (!options.relay.empty()) live_.add(create_live_relay(options.relay, info));
   for (const LiveSession::Sink& sink : live_.sinks()) {
     if (options.quiet || !sink.name.starts_with("http://")) continue;
     fmt::print(stderr, "Open {} in a browser\n", printable(sink.name));

@@ -99,6 +99,12 @@ struct LiveSinkInfo {
 [[nodiscard]] std::unique_ptr<LiveSink> create_live_sink(const std::string& target,
                                                          const LiveSinkInfo& info);
 
+/// A live sink that writes the raw frames, once they are solved, into the ring `shm:NAME`, which
+/// any number of programs open as a live source. Frames with readings missing are left out. Throws
+/// Error for another target, or a ring that cannot be written.
+[[nodiscard]] std::unique_ptr<LiveSink> create_live_relay(const std::string& target,
+                                                          const LiveSinkInfo& info);
+
 /// A live sink that records the raw frames, as RecordingWriter does, and survives a kill.
 [[nodiscard]] std::unique_ptr<LiveSink> create_live_recording(const std::string& path,
                                                               const LiveSinkInfo& info);
