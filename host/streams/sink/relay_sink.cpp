@@ -46,7 +46,7 @@ class RelaySink final : public LiveSink {
 
 /// A ring has whole frames; its readers count the others as lost.
 void RelaySink::append(const SolvedFrame& frame) {
-  constexpr double kOrigin_s = 1;  // Zero would mean that the sensor has no clock.
+  constexpr double kOriginSeconds = 1;  // Zero would mean that the sensor has no clock.
   if (!writer_) return;
   if (frame.readings.data == nullptr || !frame.missing.empty()) {
     ++done_.dropped;
@@ -62,7 +62,7 @@ void RelaySink::append(const SolvedFrame& frame) {
       .cols = layout_.cols,
       .session = session_,
       .sequence = frame.sequence,
-      .time_ns = static_cast<std::uint64_t>(1e9 * (kOrigin_s + frame.time_s)),
+      .time_ns = static_cast<std::uint64_t>(1e9 * (kOriginSeconds + frame.time_s)),
       .part = 0,
       .parts = 1,
       .first = 0,

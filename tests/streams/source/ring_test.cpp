@@ -267,7 +267,7 @@ TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
   const auto open = [](const std::string& source) {
     return message_of([&] { (void)open_live_source(source, {}); });
   };
-  EXPECT_NE(open(name.source()).find("is not a ring of frames"), std::string::npos);
+  EXPECT_NE(open(name.source()).find("it holds results, not frames"), std::string::npos);
   for (const char* const bad : {"shm:", "shm:a/b", "shm:.", "shm:..", "shm:a b"}) {
     EXPECT_NE(open(bad).find("is not the name of a ring"), std::string::npos) << bad;
   }
