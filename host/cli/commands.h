@@ -81,6 +81,7 @@ struct StreamOptions : PrintOptions {
   std::vector<std::string> sinks;
   std::vector<std::string> allowed_origins;  ///< of web pages
   std::string record;                        ///< file of raw frames; empty: none
+  std::string relay;                         ///< ring of raw frames; empty: none
   std::string control;                       ///< socket, "-" for standard input, empty: none
   Replace replace = Replace::results;
   double tare_s = 0;  ///< duration of a tare at the start; 0: none

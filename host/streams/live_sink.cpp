@@ -16,10 +16,11 @@ LiveSinkKind mcap_sink_kind();
 LiveSinkKind ring_sink_kind();
 LiveSinkKind udp_sink_kind();
 LiveSinkKind foxglove_sink_kind();
+LiveSinkKind web_sink_kind();
 
 std::span<const LiveSinkKind> live_sink_kinds() {
   static const std::array kinds = {mcap_sink_kind(), ring_sink_kind(), udp_sink_kind(),
-                                   foxglove_sink_kind()};
+                                   foxglove_sink_kind(), web_sink_kind()};
   return kinds;
 }
 

@@ -108,7 +108,7 @@ def sink(target: str, plan: _core.Plan, *, contacts: bool = False, source: str =
          overwrite: bool = False, allow_origins: Sequence[str] = ()) -> LiveSink:
     """Opens a live sink for the forces of a Processor of this plan.
 
-    target: 'foxglove:[ADDRESS:]PORT', 'udp:ADDRESS:PORT', 'shm:NAME', a .mcap file or a file of
+    target: 'foxglove:[ADDRESS:]PORT', 'web:[ADDRESS:]PORT' (a page in the browser), 'udp:ADDRESS:PORT', 'shm:NAME', a .mcap file or a file of
         forces such as .h5
     contacts: forces come with contacts
     source: name of the frames' source, for files

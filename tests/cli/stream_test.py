@@ -261,6 +261,7 @@ class Network(StreamTest):
                                "--health-interval", 0.1)
         sender.start()
         self.addCleanup(lambda: (done.set(), sender.join()))
+        self.assertEqual(process.stderr.readline(), f"Waiting for frames from udp:127.0.0.1:{address[1]}\n")
         self.assertIn("frames are 8 x 16, 12 x 16 expected", process.stderr.readline())
         rows[0] = 12
         while json.loads(process.stdout.readline())["health"]["solved"] < 3:

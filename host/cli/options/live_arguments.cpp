@@ -23,16 +23,19 @@ CLI::Validator origin() {
 void add_stream_ends(CLI::App* command, StreamOptions& options) {
   Group output(command, "Output");
   output
-      .text("--to", options.sinks, "SINK",
-            "Send forces on, any number of times: shm:NAME, udp:ADDRESS:PORT, foxglove[:PORT], "
-            "FILE.mcap, or a file as solve writes it")
+      .text(
+          "--to", options.sinks, "SINK",
+          "Send forces on, any number of times: shm:NAME, udp:ADDRESS:PORT, web[:PORT] (a page in "
+          "the browser), foxglove[:PORT], FILE.mcap, or a file as solve writes it")
       ->allow_extra_args(false);
   output
       .text("--allow-origin", options.allowed_origins, "ORIGIN",
-            "Let a web page connect to foxglove, any number of times, such as "
+            "Let a web page connect to foxglove or web, any number of times, such as "
             "https://app.foxglove.dev")
       ->allow_extra_args(false)
       ->check(origin());
+  output.text("--relay", options.relay, "shm:NAME",
+              "Put the raw frames into a ring in shared memory, for other programs");
   output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
   add_overwrite(command, options.replace);
   Group run(command, "Run");

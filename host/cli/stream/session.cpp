@@ -16,6 +16,7 @@
 #include "pillarfield/interrupt.h"
 #include "pillarfield/pipeline.h"
 #include "pillarfield/printable.h"
+#include "streams/message/health_json.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -75,6 +76,11 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
       control_(options.control),
       cost_(plan) {
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
+  if (!options.relay.empty()) live_.add(create_live_relay(options.relay, info));
+  for (const LiveSession::Sink& sink : live_.sinks()) {
+    if (options.quiet || !sink.name.starts_with("http://")) continue;
+    fmt::print(stderr, "Open {} in a browser\n", printable(sink.name));
+  }
   if (options.tare_s > 0) live_.start_tare(nanoseconds_of(options.tare_s));
   if (!options.record.empty()) live_.record(options.record);
 }
@@ -169,27 +175,12 @@ void StreamSession::report_health() {
 }
 
 nlohmann::ordered_json StreamSession::health_json(const HealthReport& health) const {
-  const StreamHealth& stream = health.stream;
-  nlohmann::ordered_json json = {
-      {"seconds", seconds_of(Clock::now() - start_)},
-      {"rate_hz", stream.rate_hz},
-      {"frames", stream.frames},
-      {"solved", health.solved},
-      {"lost", stream.lost},
-      {"incomplete", stream.incomplete},
-      {"late", stream.late},
-      {"duplicates", stream.duplicates},
-      {"reordered", stream.reordered},
-      {"invalid", stream.invalid},
-      {"restarts", stream.restarts},
-      {"clock_jumps", stream.clock_jumps},
-      {"overrun", stream.overrun},
-      {"since_frame_s", health.since_frame_s},
-      {"latency_ms", {{"median", health.latency_ms_median}, {"worst", health.latency_ms_worst}}},
-      {"sensels", {{"dead", health.dead}, {"stuck", health.stuck}, {"drifting", health.drifting}}},
-      {"contacts", contacts_},
-      {"paused", live_.is_paused()}};
-  if (!stream.mismatch.empty()) json["mismatch"] = stream.mismatch;
+  nlohmann::ordered_json json = {{"seconds", seconds_of(Clock::now() - start_)}};
+  json.update(pillarfield::health_json(health));
+  json["contacts"] = contacts_;
+  json["paused"] = live_.is_paused();
+  const std::string& mismatch = health.stream.mismatch;
+  if (!mismatch.empty()) json["mismatch"] = mismatch;
   if (const std::string file = live_.recording(); !file.empty()) json["recording"] = file;
   json["sinks"] = nlohmann::ordered_json::array();
   for (const LiveSession::Sink& sink : live_.sinks()) json["sinks"].push_back(sink_json(sink));

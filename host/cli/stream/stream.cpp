@@ -39,8 +39,10 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
     return replayed_file(options.source, frame_options(options.plan), options.rate_hz,
                          options.repeat, options.summary, options.quiet);
   }
-  if (const auto say = terminal_line(options.quiet)) {
-    say(fmt::format("Waiting for frames from {} ...", options.source));
+  if (!options.quiet) {
+    const bool is_input = options.source == "-";
+    fmt::print(stderr, "Waiting for frames from {}\n",
+               is_input ? "standard input" : printable(options.source));
   }
   LiveSourceOptions live;
   live.stop = is_interrupted;

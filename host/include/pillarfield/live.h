@@ -92,11 +92,18 @@ struct LiveSinkInfo {
 };
 
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON
-/// of contacts and total), `foxglove:[ADDRESS:]PORT` (a WebSocket server), a .mcap file, or any
+/// of contacts and total), `foxglove:[ADDRESS:]PORT` (a WebSocket server), `web:[ADDRESS:]PORT`
+/// (a page in the browser; the name of the sink is its URL), a .mcap file, or any
 /// file of create_force_sink() (docs/streams.md). Throws Error for another target, or one that
 /// cannot be opened.
 [[nodiscard]] std::unique_ptr<LiveSink> create_live_sink(const std::string& target,
                                                          const LiveSinkInfo& info);
+
+/// A live sink that writes the raw frames, once they are solved, into the ring `shm:NAME`, which
+/// any number of programs open as a live source. Frames with readings missing are left out. Throws
+/// Error for another target, or a ring that cannot be written.
+[[nodiscard]] std::unique_ptr<LiveSink> create_live_relay(const std::string& target,
+                                                          const LiveSinkInfo& info);
 
 /// A live sink that records the raw frames, as RecordingWriter does, and survives a kill.
 [[nodiscard]] std::unique_ptr<LiveSink> create_live_recording(const std::string& path,

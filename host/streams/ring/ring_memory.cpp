@@ -51,6 +51,11 @@ std::optional<std::uint64_t> content_bytes(const RingLayout& layout) {
   return sizeof(PillarfieldFrameSlot) + elements * bytes;
 }
 
+std::uint32_t slots_for(const RingLayout& layout) {
+  const std::uint64_t bytes = content_bytes(layout).value_or(1);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>((64U << 20) / bytes, 4, 64));
+}
+
 RingLayout layout_of(const PillarfieldRing& ring) {
   return {static_cast<PillarfieldRingKind>(ring.kind), ring.rows, ring.cols, ring.type};
 }

@@ -22,6 +22,9 @@ struct RingLayout {
 /// Bytes of a slot that a layout needs; none if it is out of range.
 [[nodiscard]] std::optional<std::uint64_t> content_bytes(const RingLayout& layout);
 
+/// As many slots as take up to 64 MiB, 4 to 64.
+[[nodiscard]] std::uint32_t slots_for(const RingLayout& layout);
+
 [[nodiscard]] RingLayout layout_of(const PillarfieldRing& ring);
 
 /// Whether the slots of a ring hold its layout and lie in a segment of `segment_bytes`.

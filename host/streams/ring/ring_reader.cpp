@@ -93,6 +93,10 @@ bool RingReader::fits(const PillarfieldRing& ring, std::uint64_t bytes) {
   if (valid && layout_ && layout_of(ring) != *layout_) other_ = layout_of(ring);
   if (layout_) return valid && layout_of(ring) == *layout_;
   if (valid) return true;
+  if (kind_ == PILLARFIELD_RING_FRAMES && is_valid(ring, bytes)) {
+    throw Error(name_, "it holds results, not frames",
+                "open the ring of the sensor, or of stream --relay");
+  }
   throw Error(
       name_,
       kind_ == PILLARFIELD_RING_FRAMES ? "is not a ring of frames" : "is not a ring of results",

@@ -32,6 +32,11 @@ HostAndPort split_address(std::string_view text) {
   return {std::string(host), std::string(text.substr(colon + 1))};
 }
 
+std::string host_and_port(const std::string& host, std::uint16_t port) {
+  const bool is_v6 = host.find(':') != std::string::npos;
+  return fmt::format("{}{}{}:{}", is_v6 ? "[" : "", host, is_v6 ? "]" : "", port);
+}
+
 SocketAddress address_of(std::string_view text, const std::string& target, int lowest_port) {
   const HostAndPort parts = split_address(text);
   if (!is_port(parts.port, lowest_port)) {

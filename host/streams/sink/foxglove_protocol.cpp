@@ -1,17 +1,16 @@
 #include "streams/sink/foxglove_protocol.h"
 
 #include <fmt/format.h>
-#include <strings.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <boost/asio/ip/address.hpp>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 namespace pillarfield {
 namespace {
@@ -37,12 +36,6 @@ const Json* list_in(const Json& object, const char* name) {
   return found != object.end() && found->is_array() ? &*found : nullptr;
 }
 
-}  // namespace
-
-bool is_foxglove_subprotocol(std::string_view name) {
-  return name == "foxglove.sdk.v1" || name == "foxglove.websocket.v1";
-}
-
 std::string server_info_json(const std::string& session) {
   return Json({{"op", "serverInfo"},
                {"name", "pillarfield"},
@@ -64,17 +57,45 @@ std::string advertise_json() {
   return Json({{"op", "advertise"}, {"channels", channels}}).dump();
 }
 
-std::string status_json(int level, const std::string& message) {
-  return Json({{"op", "status"}, {"level", level}, {"message", message}}).dump();
-}
+class FoxgloveClient final : public ClientProtocol {
+ public:
+  explicit FoxgloveClient(std::string session) : session_(std::move(session)) {}
 
-std::array<std::byte, kMessageDataBytes> message_data_head(std::uint32_t subscription,
-                                                           std::uint64_t time_ns) {
-  static_assert(std::endian::native == std::endian::little);
-  std::array<std::byte, kMessageDataBytes> head = {std::byte{1}};  // the operation
-  std::memcpy(&head[1], &subscription, sizeof subscription);
-  std::memcpy(&head[5], &time_ns, sizeof time_ns);
-  return head;
+  [[nodiscard]] std::vector<std::string> greeting() const override {
+    return {server_info_json(session_), advertise_json()};
+  }
+  [[nodiscard]] std::string obey(std::string_view text) override {
+    return subscriptions_.obey(text);
+  }
+  [[nodiscard]] std::string complaint(const std::string& why) const override {
+    constexpr int kError = 2;
+    return Json({{"op", "status"}, {"level", kError}, {"message", why}}).dump();
+  }
+  [[nodiscard]] TopicSet topics() const override { return subscriptions_.topics(); }
+  [[nodiscard]] std::vector<std::byte> take_head(std::size_t topic,
+                                                 std::uint64_t time_ns) override {
+    static_assert(std::endian::native == std::endian::little);
+    const std::uint32_t subscription = subscriptions_.of(topic).value();
+    std::vector<std::byte> head(kMessageDataBytes);
+    head[0] = std::byte{1};  // the operation
+    std::memcpy(&head[1], &subscription, sizeof subscription);
+    std::memcpy(&head[5], &time_ns, sizeof time_ns);
+    return head;
+  }
+
+ private:
+  std::string session_;
+  Subscriptions subscriptions_;
+};
+
+}  // namespace
+
+ServerProtocol foxglove_protocol() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return {.names = {"foxglove.sdk.v1", "foxglove.websocket.v1"},
+          .create = [session = std::to_string(now.count())] {
+            return std::make_unique<FoxgloveClient>(session);
+          }};
 }
 
 std::string Subscriptions::obey(std::string_view text) {
@@ -129,80 +150,6 @@ TopicSet Subscriptions::topics() const {
   TopicSet set;
   for (std::size_t topic = 0; topic < kTopics; ++topic) set[topic] = ids_[topic].has_value();
   return set;
-}
-
-namespace {
-
-bool same_name(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && strncasecmp(a.data(), b.data(), a.size()) == 0;
-}
-
-/// "NAME" of "NAME:PORT", "[ADDRESS]:PORT" and "NAME".
-std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
-  return host.substr(0, host.find(':'));
-}
-
-/// What follows "http://" or "https://"; none for another origin.
-std::optional<std::string_view> host_of_page(std::string_view origin) {
-  for (const std::string_view scheme : {"http://", "https://"}) {
-    if (same_name(origin.substr(0, scheme.size()), scheme)) return origin.substr(scheme.size());
-  }
-  return std::nullopt;
-}
-
-std::optional<boost::asio::ip::address> address_in(std::string_view host) {
-  boost::system::error_code error;
-  const auto address = boost::asio::ip::make_address(std::string(without_port(host)), error);
-  if (error) return std::nullopt;
-  return address;
-}
-
-bool is_loopback(std::string_view host) {
-  const auto address = address_in(host);
-  return same_name(without_port(host), "localhost") || (address && address->is_loopback());
-}
-
-bool is_name_of_this_computer(std::string_view host) {
-  std::array<char, 256> name = {};
-  if (gethostname(name.data(), name.size() - 1) != 0) return false;
-  return same_name(host, name.data()) || same_name(host, std::string(name.data()) + ".local");
-}
-
-bool may_ask(std::string_view origin, std::span<const std::string> allowed) {
-  if (origin.empty() || origin == "file://") return true;
-  const auto page = host_of_page(origin);
-  return (page && is_loopback(*page)) || std::ranges::any_of(allowed, [&](const std::string& each) {
-           return same_name(each, origin);
-         });
-}
-
-bool may_be_asked(std::string_view host, std::span<const std::string> allowed) {
-  if (address_in(host) || is_loopback(host) || is_name_of_this_computer(without_port(host))) {
-    return true;
-  }
-  return std::ranges::any_of(allowed, [&](const std::string& each) {
-    const auto page = host_of_page(each);
-    return page && same_name(without_port(*page), without_port(host));
-  });
-}
-
-}  // namespace
-
-std::string refusal_of(std::string_view origin, std::string_view host,
-                       std::span<const std::string> allowed) {
-  constexpr std::size_t kMostShown = 200;
-  if (!may_ask(origin, allowed)) {
-    return fmt::format("refused the web page {0}; --allow-origin {0} admits it",
-                       origin.substr(0, kMostShown));
-  }
-  if (!may_be_asked(host, allowed)) {
-    return fmt::format(
-        "refused a client that asked for the host '{0}'; --allow-origin http://{0} "
-        "admits it",
-        without_port(host).substr(0, kMostShown));
-  }
-  return "";
 }
 
 }  // namespace pillarfield

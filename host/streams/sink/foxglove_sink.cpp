@@ -1,13 +1,12 @@
-#include <fmt/format.h>
-
 #include <memory>
 #include <utility>
 
 #include "streams/live_sink.h"
 #include "streams/message/encoder.h"
 #include "streams/sink/address.h"
-#include "streams/sink/foxglove_server.h"
+#include "streams/sink/foxglove_protocol.h"
 #include "streams/sink/queued_sink.h"
+#include "streams/sink/websocket_server.h"
 
 namespace pillarfield {
 namespace {
@@ -19,17 +18,17 @@ constexpr std::chrono::nanoseconds kPictureInterval{16'000'000};
 /// arrows at most about 60 times a second.
 class FoxgloveConsumer final : public SinkConsumer {
  public:
-  FoxgloveConsumer(std::unique_ptr<FoxgloveServer> server, const LiveSinkInfo& info)
+  FoxgloveConsumer(std::unique_ptr<WebSocketServer> server, const LiveSinkInfo& info)
       : server_(std::move(server)), encoder_(info) {}
 
   [[nodiscard]] FrameParts wants(const SolvedFrame& frame) override;
   [[nodiscard]] bool consume(const SolvedFrame& frame) override {
-    encoder_.encode(frame, server_->subscribed(), receiver_);
+    encoder_.encode(frame, server_->wanted(), receiver_);
     send();
     return true;
   }
   void report(const HealthReport& health) override {
-    if (!server_->subscribed().test(topic::kHealth)) return;
+    if (!server_->wanted().test(topic::kHealth)) return;
     encoder_.encode(health, receiver_);
     send();
   }
@@ -42,7 +41,7 @@ class FoxgloveConsumer final : public SinkConsumer {
     messages_.clear();
   }
 
-  std::unique_ptr<FoxgloveServer> server_;
+  std::unique_ptr<WebSocketServer> server_;
   MessageEncoder encoder_;
   std::chrono::nanoseconds last_picture_{0};  // its arrival
   std::vector<ServerMessage> messages_;       // of the frame
@@ -54,7 +53,7 @@ class FoxgloveConsumer final : public SinkConsumer {
 };
 
 FrameParts FoxgloveConsumer::wants(const SolvedFrame& frame) {
-  const TopicSet wanted = server_->subscribed();
+  const TopicSet wanted = server_->wanted();
   FrameParts parts;
   // Contacts come with the time, too, since a frame without parts is skipped.
   parts.contacts =
@@ -70,16 +69,14 @@ FrameParts FoxgloveConsumer::wants(const SolvedFrame& frame) {
 
 std::unique_ptr<LiveSink> create_foxglove_sink(const std::string& target,
                                                const LiveSinkInfo& info) {
-  std::string_view text = "8765";
-  if (target.size() > kFoxglovePrefix.size()) {
-    text = std::string_view(target).substr(kFoxglovePrefix.size());
-  }
-  auto server = std::make_unique<FoxgloveServer>(
-      address_of(text, target, 0), target, ServerLimits{.allowed_origins = info.allowed_origins});
-  const std::string host = split_address(text).host;
-  const bool is_v6 = host.find(':') != std::string::npos;
-  const std::string name = fmt::format("{}{}{}{}:{}", kFoxglovePrefix, is_v6 ? "[" : "", host,
-                                       is_v6 ? "]" : "", server->port());
+  const std::string_view address = target.size() > kFoxglovePrefix.size()
+                                       ? std::string_view(target).substr(kFoxglovePrefix.size())
+                                       : "8765";
+  auto server =
+      std::make_unique<WebSocketServer>(address_of(address, target, 0), target, foxglove_protocol(),
+                                        ServerLimits{.allowed_origins = info.allowed_origins});
+  const std::string name =
+      std::string(kFoxglovePrefix) + host_and_port(split_address(address).host, server->port());
   return std::make_unique<QueuedSink>(name,
                                       std::make_unique<FoxgloveConsumer>(std::move(server), info));
 }

@@ -18,12 +18,6 @@ namespace {
 constexpr std::string_view kRingPrefix = "shm:";
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// As many slots as take up to 64 MiB, 4 to 64.
-std::uint32_t slots_of(const RingLayout& layout) {
-  const std::uint64_t bytes = content_bytes(layout).value_or(1);
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>((64U << 20) / bytes, 4, 64));
-}
-
 RingLayout layout_of_results(const Skin& skin) {
   return {skin.has_pillars() ? PILLARFIELD_RING_RESULTS : PILLARFIELD_RING_PRESSURES,
           skin.element_rows(), skin.element_cols(), 0};
@@ -72,7 +66,7 @@ class RingSink final : public LiveSink {
  public:
   RingSink(std::string name, const Skin& skin)
       : name_(std::move(name)), layout_(layout_of_results(skin)) {
-    writer_.emplace(name_.substr(kRingPrefix.size()), layout_, slots_of(layout_));
+    writer_.emplace(name_.substr(kRingPrefix.size()), layout_, slots_for(layout_));
   }
 
   [[nodiscard]] const std::string& name() const override { return name_; }

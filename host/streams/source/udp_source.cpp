@@ -134,6 +134,11 @@ std::unique_ptr<FrameStream> open_udp(const std::string& rest, const LiveSourceO
     setsockopt(opened, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
   }
   if (bind(opened, address.get(), address.size) != 0) {
+    if (errno == EADDRINUSE) {
+      throw Error(
+          name, "another program receives there",
+          "let that be stream with --relay shm:NAME and open shm:NAME, or give another port");
+    }
     throw Error(name, fmt::format("cannot be bound: {}", std::strerror(errno)),
                 "give an address of this computer and a free port");
   }

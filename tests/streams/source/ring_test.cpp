@@ -269,7 +269,7 @@ TEST(Ring, APollingReaderFollowsOneThatReplacesItToo) {
 TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
   const Name name;
   const RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);
-  EXPECT_NE(refusal_of(name.source()).find("is not a ring of frames"), std::string::npos);
+  EXPECT_NE(refusal_of(name.source()).find("it holds results, not frames"), std::string::npos);
   for (const char* const bad : {"shm:", "shm:a/b", "shm:.", "shm:..", "shm:a b"}) {
     EXPECT_NE(refusal_of(bad).find("is not the name of a ring"), std::string::npos) << bad;
   }

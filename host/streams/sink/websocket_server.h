@@ -10,6 +10,7 @@
 #include "pillarfield/live.h"
 #include "streams/message/topics.h"
 #include "streams/sink/address.h"
+#include "streams/sink/client_protocol.h"
 
 namespace pillarfield {
 
@@ -25,29 +26,29 @@ struct ServerLimits {
   std::vector<std::string> allowed_origins = {};  ///< as LiveSinkInfo has them
 };
 
-/// A message to the clients that subscribe to its topic.
+/// A message to the clients that want its topic.
 struct ServerMessage {
   std::size_t topic = 0;
   std::uint64_t time_ns = 0;
   std::shared_ptr<const std::vector<std::byte>> bytes;
 };
 
-/// A WebSocket server of the Foxglove protocol, in a thread of its own. Web pages must be allowed
-/// (refusal_of()). From a client it reads at most 1000 messages and 64 kB a second.
-class FoxgloveServer {
+/// A WebSocket server in a thread of its own. Web pages must be allowed (refusal_of()). From a
+/// client it reads at most 1000 messages and 64 kB a second.
+class WebSocketServer {
  public:
   /// Listens; port 0 is any free one. Throws Error, naming `target`, if it cannot.
-  FoxgloveServer(const SocketAddress& address, const std::string& target,
-                 const ServerLimits& limits = {});
+  WebSocketServer(const SocketAddress& address, const std::string& target,
+                  const ServerProtocol& protocol, const ServerLimits& limits = {});
   /// Disconnects all clients.
-  ~FoxgloveServer();
-  FoxgloveServer(const FoxgloveServer&) = delete;
-  FoxgloveServer& operator=(const FoxgloveServer&) = delete;
+  ~WebSocketServer();
+  WebSocketServer(const WebSocketServer&) = delete;
+  WebSocketServer& operator=(const WebSocketServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
 
-  /// Topics that some client subscribes to; any thread may ask.
-  [[nodiscard]] TopicSet subscribed() const;
+  /// Topics that some client wants; any thread may ask.
+  [[nodiscard]] TopicSet wanted() const;
 
   /// Queues the messages of one frame for each client, which loses all of them if its queue is
   /// full. Waits for the server's thread, never for a client.

@@ -1,6 +1,6 @@
 // The WebSocket server with small limits, and what clients may write to it.
 
-#include "streams/sink/foxglove_server.h"
+#include "streams/sink/websocket_server.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -113,10 +113,10 @@ class RawClient {
   bool timed_out_ = false;
 };
 
-class FoxgloveServerTest : public ::testing::Test {
+class WebSocketServerTest : public ::testing::Test {
  protected:
   void serve(const ServerLimits& limits) {
-    server_.emplace(address_of("127.0.0.1:0", "test", 0), "test", limits);
+    server_.emplace(address_of("127.0.0.1:0", "test", 0), "test", foxglove_protocol(), limits);
   }
   [[nodiscard]] LiveSinkStatistics statistics() const {
     LiveSinkStatistics statistics;
@@ -138,13 +138,13 @@ class FoxgloveServerTest : public ::testing::Test {
   }
   void subscribe(RawClient& client) {
     client.write_text(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":0}]})");
-    wait_until([&] { return server_->subscribed().test(0); });
+    wait_until([&] { return server_->wanted().test(0); });
   }
 
-  std::optional<FoxgloveServer> server_;
+  std::optional<WebSocketServer> server_;
 };
 
-TEST_F(FoxgloveServerTest, LostFramesOfAClientAreCountedExactly) {
+TEST_F(WebSocketServerTest, LostFramesOfAClientAreCountedExactly) {
   constexpr std::size_t kBytes = 1 << 20;
   constexpr std::size_t kFrames = 40;
   serve({.queue_bytes = 3 * kBytes});
@@ -165,7 +165,7 @@ TEST_F(FoxgloveServerTest, LostFramesOfAClientAreCountedExactly) {
   EXPECT_EQ(received + lost, kFrames);
 }
 
-TEST_F(FoxgloveServerTest, OneFrameMayAlwaysWait) {
+TEST_F(WebSocketServerTest, OneFrameMayAlwaysWait) {
   serve({.queue_bytes = 10});
   RawClient client(server_->port());
   client.greet();
@@ -175,7 +175,7 @@ TEST_F(FoxgloveServerTest, OneFrameMayAlwaysWait) {
   EXPECT_EQ(statistics().dropped, 0u);
 }
 
-TEST_F(FoxgloveServerTest, ClientsWithoutALifeSignAreDisconnected) {
+TEST_F(WebSocketServerTest, ClientsWithoutALifeSignAreDisconnected) {
   serve({.handshake_s = 0.2, .silence_s = 0.4});
   RawClient mute(server_->port());
   RawClient deaf(server_->port());
@@ -187,7 +187,7 @@ TEST_F(FoxgloveServerTest, ClientsWithoutALifeSignAreDisconnected) {
   EXPECT_EQ(statistics().refused, 1u);
 }
 
-TEST_F(FoxgloveServerTest, PlacesOfClientsAreFreedAgain) {
+TEST_F(WebSocketServerTest, PlacesOfClientsAreFreedAgain) {
   serve({.clients = 2});
   for (int i = 0; i < 20; ++i) {
     wait_until([&] { return statistics().clients < 2; });
@@ -203,7 +203,7 @@ TEST_F(FoxgloveServerTest, PlacesOfClientsAreFreedAgain) {
   EXPECT_EQ(statistics().refused, 1u);
 }
 
-TEST_F(FoxgloveServerTest, WebPagesMustBeAllowed) {
+TEST_F(WebSocketServerTest, WebPagesMustBeAllowed) {
   serve({.allowed_origins = {"https://app.foxglove.dev", "http://robot.example:80"}});
   const auto status = [&](const std::string& origin, const std::string& host) {
     return RawClient(server_->port()).shake_hands(origin, host);
@@ -215,20 +215,23 @@ TEST_F(FoxgloveServerTest, WebPagesMustBeAllowed) {
   for (const char* host : {"192.0.2.7:8765", "[2001:db8::7]:8765", "robot.example:8765"}) {
     EXPECT_EQ(status("", host), "101") << host;
   }
+  EXPECT_EQ(status("http://192.0.2.7:8766", "192.0.2.7:8766"), "101");  // a page of this server
   EXPECT_EQ(statistics().notice, "");
   for (const char* origin :
        {"https://evil.example", "null", "http://localhost.evil.example",
-        "https://127.0.0.1.evil.example", "https://app.foxglove.dev.evil.example", "file://x"}) {
+        "https://127.0.0.1.evil.example", "https://app.foxglove.dev.evil.example",
+        "http://192.0.2.7:8766", "file://x"}) {
     EXPECT_EQ(status(origin, "127.0.0.1:8765"), "403") << origin;
   }
   EXPECT_EQ(status("", "evil.example:8765"), "403");
-  EXPECT_EQ(statistics().refused, 7u);
+  EXPECT_EQ(status("http://evil.example:8766", "evil.example:8766"), "403");
+  EXPECT_EQ(statistics().refused, 9u);
   EXPECT_EQ(statistics().notice,
             "refused the web page https://evil.example; --allow-origin https://evil.example admits "
             "it");
 }
 
-TEST_F(FoxgloveServerTest, ClientsThatFloodWithPingsAreDisconnected) {
+TEST_F(WebSocketServerTest, ClientsThatFloodWithPingsAreDisconnected) {
   serve({.controls_per_s = 10});
   RawClient client(server_->port());
   client.greet();
@@ -240,7 +243,7 @@ TEST_F(FoxgloveServerTest, ClientsThatFloodWithPingsAreDisconnected) {
   EXPECT_EQ(statistics().refused, 1u);
 }
 
-TEST_F(FoxgloveServerTest, DestroyedAtAnyMoment) {
+TEST_F(WebSocketServerTest, DestroyedAtAnyMoment) {
   for (int i = 0; i < 20; ++i) {
     serve({});
     RawClient client(server_->port());

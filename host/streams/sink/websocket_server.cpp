@@ -1,4 +1,4 @@
-#include "streams/sink/foxglove_server.h"
+#include "streams/sink/websocket_server.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,6 +7,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -24,7 +25,7 @@
 #include "base/thread_pool.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
-#include "streams/sink/foxglove_protocol.h"
+#include "streams/sink/web_access.h"
 
 namespace pillarfield {
 namespace {
@@ -40,18 +41,19 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
 }
 
-/// The first subprotocol of the client's list that the server speaks; empty if there is none.
-std::string chosen_subprotocol(const http::request<http::empty_body>& request) {
+/// The first subprotocol of the client's list among `names`; empty if there is none.
+std::string chosen_subprotocol(const http::request<http::empty_body>& request,
+                               const std::vector<std::string>& names) {
   for (const auto word : http::token_list(request[http::field::sec_websocket_protocol])) {
     std::string name(word.data(), word.size());
-    if (is_foxglove_subprotocol(name)) return name;
+    if (std::ranges::count(names, name) > 0) return name;
   }
   return {};
 }
 
 /// What a client waits for.
 struct Outgoing {
-  std::array<std::byte, kMessageDataBytes> head;
+  std::vector<std::byte> head;
   std::shared_ptr<const std::vector<std::byte>> data;  // null: text
   std::string text;
 
@@ -63,17 +65,16 @@ class Session;
 /// What sessions share; used by the server's thread alone, but for the atomic members.
 struct Hub {
   ServerLimits limits;
-  std::string session_id;
-  std::string advertisement = advertise_json();
-  std::set<std::shared_ptr<Session>> sessions;
+  ServerProtocol protocol;
+  std::set<std::shared_ptr<Session>> sessions = {};
   std::atomic<std::uint64_t> clients = 0;
   std::atomic<std::uint64_t> refused = 0;
   std::atomic<std::uint64_t> lost = 0;
-  std::atomic<unsigned long> subscribed = 0;
-  mutable std::mutex mutex;  // guards `notice`
-  std::string notice;        // why a client was refused; the first one
+  std::atomic<unsigned long> wanted = 0;
+  mutable std::mutex mutex = {};  // guards `notice`
+  std::string notice = {};        // why a client was refused; the first one
 
-  void update_subscribed();
+  void update_wanted();
 };
 
 /// A connection. It lives while one of its operations is pending.
@@ -83,12 +84,12 @@ class Session : public std::enable_shared_from_this<Session> {
       : hub_(hub), socket_(std::move(socket)), pause_(socket_.get_executor()) {}
 
   void start();
-  /// Queues the messages that the client subscribes to.
+  /// Queues the messages that the client wants.
   void send(std::span<const ServerMessage> messages);
   [[nodiscard]] bool is_idle() const { return queue_.empty(); }
-  [[nodiscard]] const Subscriptions& subscriptions() const { return subscriptions_; }
+  [[nodiscard]] TopicSet wanted() const { return protocol_->topics(); }
   /// Ends the connection in an orderly way.
-  void close(websocket::close_code code);
+  void close();
 
  private:
   void accept_upgrade(ErrorCode error);
@@ -109,16 +110,18 @@ class Session : public std::enable_shared_from_this<Session> {
       (self.get()->*member)(error);
     };
   }
-
-  static constexpr std::size_t kMostHeaderBytes = 8192;
+  void answer(const char* status, const char* type, std::string_view text) {
+    answer_ = http_answer(status, type, text);
+    asio::async_write(socket_.next_layer(), asio::buffer(answer_), then(&Session::closed));
+  }
 
   Hub& hub_;
   websocket::stream<beast::tcp_stream> socket_;
   asio::steady_timer pause_;
   http::request<http::empty_body> request_;
-  http::response<http::string_body> forbidden_;
+  std::string answer_;
   beast::flat_buffer buffer_;
-  Subscriptions subscriptions_;
+  std::unique_ptr<ClientProtocol> protocol_ = hub_.protocol.create();
   std::deque<Outgoing> queue_;  // the first is being written
   std::size_t queued_bytes_ = 0;
   std::size_t invalid_ = 0;
@@ -129,13 +132,14 @@ class Session : public std::enable_shared_from_this<Session> {
   bool has_ended_ = false;
 };
 
-void Hub::update_subscribed() {
+void Hub::update_wanted() {
   TopicSet all;
-  for (const auto& session : sessions) all |= session->subscriptions().topics();
-  subscribed = all.to_ulong();
+  for (const auto& session : sessions) all |= session->wanted();
+  wanted = all.to_ulong();
 }
 
 void Session::start() {
+  constexpr std::size_t kMostHeaderBytes = 8192;
   ErrorCode ignored;
   beast::get_lowest_layer(socket_).socket().set_option(tcp::no_delay(true), ignored);
   beast::get_lowest_layer(socket_).expires_after(milliseconds_of(hub_.limits.handshake_s));
@@ -152,7 +156,11 @@ void Session::accept_upgrade(ErrorCode error) {
   const std::string why =
       refusal_of(text(http::field::origin), text(http::field::host), hub_.limits.allowed_origins);
   if (!why.empty()) return forbid(why);
-  const std::string subprotocol = chosen_subprotocol(request_);
+  if (!websocket::is_upgrade(request_) && !hub_.protocol.page.empty()) {
+    return request_.target() == "/" ? answer("200 OK", "text/html", hub_.protocol.page)
+                                    : answer("404 Not Found", "text/plain", "The page is at /\n");
+  }
+  const std::string subprotocol = chosen_subprotocol(request_, hub_.protocol.names);
   if (!websocket::is_upgrade(request_) || subprotocol.empty()) return refuse();
   beast::get_lowest_layer(socket_).expires_never();  // The WebSocket has timeouts of its own.
   socket_.set_option(
@@ -176,8 +184,7 @@ void Session::greet(ErrorCode error) {
   buffer_ = {};
   is_client_ = true;
   ++hub_.clients;
-  queue({{}, nullptr, server_info_json(hub_.session_id)});
-  queue({{}, nullptr, hub_.advertisement});
+  for (const std::string& text : protocol_->greeting()) queue({{}, nullptr, text});
   read();
 }
 
@@ -187,21 +194,17 @@ void Session::read() { socket_.async_read(buffer_, then(&Session::handle)); }
 void Session::handle(ErrorCode error) {
   constexpr std::chrono::microseconds kPause{1000};
   constexpr std::chrono::microseconds kPausePerByte{16};
-  if (error) {
-    const bool is_excess = error == websocket::error::message_too_big;
-    return is_excess ? refuse() : end();
-  }
+  if (error) return error == websocket::error::message_too_big ? refuse() : end();
   const auto bytes = buffer_.cdata();
   const std::string why =
-      socket_.got_text()
-          ? subscriptions_.obey({static_cast<const char*>(bytes.data()), bytes.size()})
-          : "this server takes no binary messages";
+      socket_.got_text() ? protocol_->obey({static_cast<const char*>(bytes.data()), bytes.size()})
+                         : "this server takes no binary messages";
   pause_.expires_after(kPause + bytes.size() * kPausePerByte);
   buffer_.consume(buffer_.size());
-  hub_.update_subscribed();
+  hub_.update_wanted();
   if (!why.empty()) {
     if (++invalid_ > hub_.limits.invalid_messages) return refuse();
-    queue({{}, nullptr, status_json(2, why)});
+    queue({{}, nullptr, protocol_->complaint(why)});
   }
   pause_.async_wait([self = shared_from_this()](ErrorCode cancelled) {
     if (!cancelled && !self->has_ended_) self->read();
@@ -210,9 +213,10 @@ void Session::handle(ErrorCode error) {
 
 void Session::send(std::span<const ServerMessage> messages) {
   if (!is_client_ || is_closing_) return;
+  const TopicSet wanted = protocol_->topics();
   std::size_t bytes = 0;
   for (const ServerMessage& message : messages) {
-    if (subscriptions_.of(message.topic)) bytes += message.bytes->size();
+    if (wanted.test(message.topic)) bytes += message.bytes->size();
   }
   if (bytes == 0) return;
   if (!queue_.empty() && queued_bytes_ + bytes > hub_.limits.queue_bytes) {
@@ -220,9 +224,8 @@ void Session::send(std::span<const ServerMessage> messages) {
     return;
   }
   for (const ServerMessage& message : messages) {
-    if (const auto subscription = subscriptions_.of(message.topic)) {
-      queue({message_data_head(*subscription, message.time_ns), message.bytes, {}});
-    }
+    if (!wanted.test(message.topic)) continue;
+    queue({protocol_->take_head(message.topic, message.time_ns), message.bytes, {}});
   }
 }
 
@@ -251,10 +254,10 @@ void Session::write() {
   }
 }
 
-void Session::close(websocket::close_code code) {
+void Session::close() {
   if (std::exchange(is_closing_, true)) return;
   if (!is_client_) return end();
-  socket_.async_close(code, then(&Session::closed));
+  socket_.async_close(websocket::close_code::going_away, then(&Session::closed));
 }
 
 /// Ends the connection of a client that broke a limit.
@@ -283,11 +286,7 @@ void Session::forbid(const std::string& why) {
     const std::scoped_lock lock(hub_.mutex);
     if (hub_.notice.empty()) hub_.notice = why;
   }
-  forbidden_ = {http::status::forbidden, request_.version(), why + "\n"};
-  forbidden_.set(http::field::content_type, "text/plain; charset=utf-8");
-  forbidden_.keep_alive(false);
-  forbidden_.prepare_payload();
-  http::async_write(socket_.next_layer(), forbidden_, then(&Session::closed));
+  answer("403 Forbidden", "text/plain", why + "\n");
 }
 
 void Session::end() {
@@ -297,13 +296,14 @@ void Session::end() {
   pause_.cancel();
   beast::get_lowest_layer(socket_).close();
   hub_.sessions.erase(shared_from_this());
-  hub_.update_subscribed();
+  hub_.update_wanted();
 }
 
 }  // namespace
 
-struct FoxgloveServer::State {
-  State(const SocketAddress& address, const std::string& target, const ServerLimits& limits);
+struct WebSocketServer::State {
+  State(const SocketAddress& address, const std::string& target, const ServerProtocol& protocol,
+        const ServerLimits& limits);
   ~State();
 
   void serve() noexcept;
@@ -321,10 +321,9 @@ struct FoxgloveServer::State {
   std::thread thread;
 };
 
-FoxgloveServer::State::State(const SocketAddress& address, const std::string& target,
-                             const ServerLimits& limits) {
-  hub.limits = limits;
-  hub.session_id = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
+WebSocketServer::State::State(const SocketAddress& address, const std::string& target,
+                              const ServerProtocol& protocol, const ServerLimits& limits)
+    : hub{.limits = limits, .protocol = protocol} {
   try {
     tcp::endpoint endpoint;
     endpoint.resize(address.size);
@@ -344,14 +343,14 @@ FoxgloveServer::State::State(const SocketAddress& address, const std::string& ta
   });
 }
 
-FoxgloveServer::State::~State() {
+WebSocketServer::State::~State() {
   context.stop();
   thread.join();
   hub.sessions.clear();
 }
 
 /// An exception (for example bad_alloc) ends one client's operation; its timeout then closes it.
-void FoxgloveServer::State::serve() noexcept {
+void WebSocketServer::State::serve() noexcept {
   while (!context.stopped()) {
     try {
       context.run();
@@ -360,7 +359,7 @@ void FoxgloveServer::State::serve() noexcept {
   }
 }
 
-void FoxgloveServer::State::accept() {
+void WebSocketServer::State::accept() {
   acceptor.async_accept([this](ErrorCode error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (!error) {
@@ -376,7 +375,7 @@ void FoxgloveServer::State::accept() {
   });
 }
 
-void FoxgloveServer::State::take(tcp::socket socket) {
+void WebSocketServer::State::take(tcp::socket socket) {
   if (hub.sessions.size() >= hub.limits.clients) {
     ++hub.refused;
     return;  // The destructor closes the socket.
@@ -386,7 +385,7 @@ void FoxgloveServer::State::take(tcp::socket socket) {
   session->start();
 }
 
-void FoxgloveServer::State::run(const std::function<void()>& action) {
+void WebSocketServer::State::run(const std::function<void()>& action) {
   std::binary_semaphore done(0);
   std::exception_ptr error;
   asio::post(context, [&] {
@@ -401,24 +400,25 @@ void FoxgloveServer::State::run(const std::function<void()>& action) {
   if (error) std::rethrow_exception(error);
 }
 
-FoxgloveServer::FoxgloveServer(const SocketAddress& address, const std::string& target,
-                               const ServerLimits& limits)
-    : state_(std::make_unique<State>(address, target, limits)) {}
+WebSocketServer::WebSocketServer(const SocketAddress& address, const std::string& target,
+                                 const ServerProtocol& protocol, const ServerLimits& limits)
+    : state_(std::make_unique<State>(address, target, protocol, limits)) {}
 
-FoxgloveServer::~FoxgloveServer() = default;
+WebSocketServer::~WebSocketServer() = default;
 
-std::uint16_t FoxgloveServer::port() const { return state_->port; }
+std::uint16_t WebSocketServer::port() const { return state_->port; }
 
-TopicSet FoxgloveServer::subscribed() const { return {state_->hub.subscribed.load()}; }
+TopicSet WebSocketServer::wanted() const { return {state_->hub.wanted.load()}; }
 
-void FoxgloveServer::send(std::span<const ServerMessage> messages) {
+void WebSocketServer::send(std::span<const ServerMessage> messages) {
   state_->run([&] {
     const auto sessions = state_->hub.sessions;  // send() may end one
     for (const auto& session : sessions) session->send(messages);
+    state_->hub.update_wanted();
   });
 }
 
-void FoxgloveServer::finish() {
+void WebSocketServer::finish() {
   constexpr std::chrono::milliseconds kStep{5};
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
   const auto wait_until_all = [&](auto condition) {
@@ -432,12 +432,12 @@ void FoxgloveServer::finish() {
   state_->run([&] {
     state_->acceptor.close();
     const auto sessions = state_->hub.sessions;
-    for (const auto& session : sessions) session->close(websocket::close_code::going_away);
+    for (const auto& session : sessions) session->close();
   });
   wait_until_all([](const auto&) { return false; });  // gone
 }
 
-void FoxgloveServer::add_to(LiveSinkStatistics& statistics) const {
+void WebSocketServer::add_to(LiveSinkStatistics& statistics) const {
   const Hub& hub = state_->hub;
   statistics.clients = hub.clients;
   statistics.refused = hub.refused;

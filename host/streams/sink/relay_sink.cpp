@@ -1,0 +1,87 @@
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/live.h"
+#include "pillarfield/printable.h"
+#include "pillarfield/stream_format.h"
+#include "streams/ring/ring_writer.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::string_view kRelayPrefix = "shm:";
+
+PillarfieldReadingType type_in_ring(SenselType type) {
+  if (type == SenselType::u8) return PILLARFIELD_U8;
+  return type == SenselType::u16 ? PILLARFIELD_U16 : PILLARFIELD_F32;
+}
+
+class RelaySink final : public LiveSink {
+ public:
+  RelaySink(const std::string& target, const LiveSinkInfo& info)
+      : name_(target),
+        layout_{PILLARFIELD_RING_FRAMES, info.skin.rows, info.skin.cols,
+                type_in_ring(info.sensel_type)} {
+    if (!target.starts_with(kRelayPrefix)) {
+      throw Error(printable(target), "frames are relayed into shared memory", "give shm:NAME");
+    }
+    writer_.emplace(target.substr(kRelayPrefix.size()), layout_, slots_for(layout_));
+  }
+
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] LiveSinkStatistics statistics() const override { return done_; }
+  void append(const SolvedFrame& frame) override;
+  void finish() override { writer_.reset(); }
+
+ private:
+  std::string name_;
+  RingLayout layout_;
+  std::uint64_t session_ =
+      static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+  std::optional<RingWriter> writer_;
+  LiveSinkStatistics done_;
+};
+
+/// A ring has whole frames; its readers count the others as lost.
+void RelaySink::append(const SolvedFrame& frame) {
+  constexpr double kOriginSeconds = 1;  // Zero would mean that the sensor has no clock.
+  if (!writer_) return;
+  if (frame.readings.data == nullptr || !frame.missing.empty()) {
+    ++done_.dropped;
+    return;
+  }
+  const std::size_t bytes = std::size_t{layout_.rows} * layout_.cols * size_of(frame.readings.type);
+  std::byte* const slot = writer_->begin().data();
+  reinterpret_cast<PillarfieldFrameSlot*>(slot)->packet = {
+      .magic = PILLARFIELD_PACKET_MAGIC,
+      .content = PILLARFIELD_FRAME,
+      .type = static_cast<std::uint16_t>(layout_.type),
+      .rows = layout_.rows,
+      .cols = layout_.cols,
+      .session = session_,
+      .sequence = frame.sequence,
+      .time_ns = static_cast<std::uint64_t>(1e9 * (kOriginSeconds + frame.time_s)),
+      .part = 0,
+      .parts = 1,
+      .first = 0,
+      .count = 0,
+      .patch = 0,
+      .bytes = static_cast<std::uint32_t>(bytes)};
+  copy_readings(frame.readings, slot + sizeof(PillarfieldFrameSlot));
+  if (writer_->publish()) {
+    ++done_.frames;
+    return;
+  }
+  done_.failure = "another program shortened the shared memory";
+  writer_.reset();
+}
+
+}  // namespace
+
+std::unique_ptr<LiveSink> create_live_relay(const std::string& target, const LiveSinkInfo& info) {
+  return std::make_unique<RelaySink>(target, info);
+}
+
+}  // namespace pillarfield
