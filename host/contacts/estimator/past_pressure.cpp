@@ -61,22 +61,29 @@ void PastPressure::begin(std::uint32_t rows, std::uint32_t cols) {
   ++frame_;
 }
 
+PastPressure::Origin::Origin(const Movement& movement)
+    : rows(static_cast<std::int64_t>(std::floor(-movement.rows))),
+      cols(static_cast<std::int64_t>(std::floor(-movement.cols))) {
+  const double down = -movement.rows - static_cast<double>(rows);
+  const double right = -movement.cols - static_cast<double>(cols);
+  weights = {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
+}
+
 /// The frame before between its pillars. Where they differ, so may the place meant.
-std::optional<PastPressure::Cell> PastPressure::before(double row, double col) const {
-  const double top = std::floor(row);
-  const double left = std::floor(col);
+std::optional<PastPressure::Cell> PastPressure::before(std::uint32_t row, std::uint32_t col,
+                                                       const Origin& origin) const {
   double weights = 0;
   double normal = 0;
   double squares = 0;
   double variance = 0;
   double most = 0;
-  for (int corner = 0; corner < 4; ++corner) {
-    const double r = top + corner / 2;
-    const double c = left + corner % 2;
+  for (std::size_t corner = 0; corner < origin.weights.size(); ++corner) {
+    const std::int64_t r = row + origin.rows + static_cast<std::int64_t>(corner / 2);
+    const std::int64_t c = col + origin.cols + static_cast<std::int64_t>(corner % 2);
     if (r < 0 || c < 0 || r >= rows_ || c >= cols_) continue;
-    const Cell& cell = before_[static_cast<std::size_t>(r) * cols_ + static_cast<std::size_t>(c)];
+    const Cell& cell = before_[static_cast<std::size_t>(r * cols_ + c)];
     if (cell.frame + 1 != frame_) continue;
-    const double weight = (1 - std::abs(row - r)) * (1 - std::abs(col - c));
+    const double weight = origin.weights[corner];
     weights += weight;
     normal += weight * cell.normal;
     squares += weight * cell.normal * cell.normal;
@@ -126,13 +133,14 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
     return has_feasible_segment(status) ? segment_at(forces, index, model, {}).high
                                         : forces.normal[index];
   };
+  const Origin origin(movement);
   // Evenly spread pillars, which bounds the cost of large contacts.
   const std::uint32_t step = std::max(1U, pillars / kMostCompared);
   std::uint32_t place = 0;
   Load load;
   for_each_pillar(runs, cols_, [&](std::uint32_t row, std::uint32_t col, std::uint32_t index) {
     if (place++ % step != 0) return;
-    const auto past = before(row - movement.rows, col - movement.cols);
+    const auto past = before(row, col, origin);
     if (!past || !(forces.normal[index] < kMostNormalN)) return;
     load.now += most_of(index);
     load.before += past->most;
@@ -145,7 +153,7 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
   load.conclude(noise, own);
   for_each_pillar(runs, cols_, [&](std::uint32_t row, std::uint32_t col, std::uint32_t index) {
     if (is_determined(forces.status[index])) return;
-    const auto past = before(row - movement.rows, col - movement.cols);
+    const auto past = before(row, col, origin);
     if (!past) return;
     const double normal = load.factor * past->normal;
     // The factor errs alike from frame to frame, so deviations add and not variances.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -47,7 +48,18 @@ class PastPressure {
   };
   struct Load;
 
-  [[nodiscard]] std::optional<Cell> before(double row, double col) const;
+  /// Where pillars of a contact were: between four pillars, of which the first is so many rows and
+  /// columns away.
+  struct Origin {
+    explicit Origin(const Movement& movement);
+
+    std::int64_t rows;
+    std::int64_t cols;
+    std::array<double, 4> weights;  ///< upper left, upper right, lower left, lower right
+  };
+
+  [[nodiscard]] std::optional<Cell> before(std::uint32_t row, std::uint32_t col,
+                                           const Origin& origin) const;
   void keep(std::uint32_t index, double normal, double variance, double most);
 
   std::uint32_t rows_ = 0;
