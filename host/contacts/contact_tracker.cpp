@@ -179,7 +179,8 @@ ContactTracker::State::State(double element_pitch_mm, const ContactOptions& cont
     : pitch_mm(element_pitch_mm),
       options(checked(contact_options)),
       moments(options.threads),
-      friction_estimator(sensor_of(pitch_mm, options), options.friction, moments.threads()) {
+      friction_estimator(sensor_of(pitch_mm, options), options.friction, moments.threads(),
+                         {.past_pressure = false}) {
   if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
     throw Error(kPlace, fmt::format("a pitch of {} mm", pitch_mm), "it must be above zero");
   }

@@ -63,6 +63,9 @@ struct ContactParameters {
   double most_above = 0.02;
   /// Relative standard deviation of a reported friction beyond that of its posterior.
   double friction_deviation = 0.02;
+  /// Whether pillars remember their normal forces (contact.md, section 4): costly beside a solve
+  /// that does not resolve them.
+  bool past_pressure = true;
 };
 
 }  // namespace pillarfield

@@ -69,7 +69,7 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
   models_.assign(labels.contacts(), {});
   friction_.assign(labels.contacts(), {});
   if (!carries_over_) return;
-  past_.begin(forces.rows, forces.cols);
+  if (parameters_.past_pressure) past_.begin(forces.rows, forces.cols);
   movements_.assign(labels.contacts(), {});
   std::swap(snapshot_, earlier_snapshot_);
   snapshot_.runs.assign(labels.runs_by_row().begin(), labels.runs_by_row().end());
@@ -122,8 +122,10 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   }
   samples.sample(forces, leans_, runs, model.noise_n, sensor_.segment, parameters_);
   model.box = samples.box();
-  if (carries_over_)
+  const bool remembers = carries_over_ && parameters_.past_pressure;
+  if (remembers) {
     past_.update(forces, runs, movements_[contact], model.noise_n, sensor_.segment, parameters_);
+  }
   // Pillars that were not sampled may be ambiguous.
   model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
 
@@ -137,7 +139,7 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
     if (!samples.pressure().empty()) samples.add_edges();
     model.pressure = PressureRegression::fit(samples.pressure());
     work.predicted.clear();
-    if (model.pressure || carries_over_) predict(forces, model, work);
+    if (model.pressure || remembers) predict(forces, model, work);
     likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
                                   log_likelihood);
   }
