@@ -22,7 +22,7 @@ class Effect(NamedTuple):
     coefficient: float = 1  # of shear, which decides the sensels that a force loads
 
 
-PRESSURES = ("press12", "press30", "press60", "press100", "press160", "press240")
+PRESSURES = ("press12", "press30", "press60", "press100", "press160", "press190")
 
 EFFECTS = {
     "off_centre": Effect("off-centre pressure, arm 0.224 mm", "pillar_arm_mm = 0.224",
