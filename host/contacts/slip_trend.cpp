@@ -73,8 +73,11 @@ std::optional<SlipForecast> SlipTrend::forecast(double friction, double deviatio
     const double sigma = std::sqrt(variance + rate_variance * t * t);
     found.probability[i] = normal_probability((rate * t - left) / sigma);
   }
-  if (left <= 0 || rate > 0) found.time_s = std::max(left, 0.0) / std::max(rate, 1e-300);
-  if (left <= 0) found.time_s = 0;
+  if (left <= 0) {
+    found.time_s = 0;
+  } else if (rate > 0) {
+    found.time_s = left / rate;
+  }
   const double z = kEndsDeviations * kEndsDeviations;
   const double a = rate * rate - z * rate_variance;
   const double c = left * left - z * variance;

@@ -13,7 +13,8 @@ class SlipTrend {
   /// The ratio at a time after those before. A time that is not later begins anew.
   void add(double time_s, double ratio);
 
-  /// Unset before four frames.
+  /// When the ratio reaches this friction, of this standard deviation: times in s from the newest
+  /// frame, probabilities within SlipForecast::kWithinS. Unset before four frames.
   [[nodiscard]] std::optional<SlipForecast> forecast(double friction, double deviation) const;
 
  private:
