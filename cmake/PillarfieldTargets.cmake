@@ -71,6 +71,19 @@ function(pillarfield_library name)
   pillarfield_compile_options(pillarfield_${name})
 endfunction()
 
+# pillarfield_embed(<variable> <file> <function> [files...]): sets the variable to a source file whose function
+# pillarfield::<function>() returns the bytes of the file, which includes the further files.
+function(pillarfield_embed variable file function)
+  set(output "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp")
+  set(script "${PROJECT_SOURCE_DIR}/cmake/Embed.cmake")
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DFILE=${file} -DFUNCTION=${function} -DOUTPUT=${output} -P ${script}
+    DEPENDS ${file} ${ARGN} ${script} COMMENT "Embedding ${function}" VERBATIM)
+  add_custom_target(embed_${function} DEPENDS ${output})
+  add_dependencies(generated_sources embed_${function})
+  set(${variable} ${output} PARENT_SCOPE)
+endfunction()
+
 # pillarfield_precompile(<target> <headers...>): precompiles slow headers in builds without unity (the
 # preset dev). A unity build reads them once per batch.
 function(pillarfield_precompile target)
