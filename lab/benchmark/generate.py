@@ -83,10 +83,10 @@ def slide_and_spin():
 
 def twisted():
     x, y = cells(20, 20, PER_PILLAR // 2)
-    ball = Indenter(x, y, lambda x, y: (x**2 + y**2) / 200, 1.0)
+    ball = Indenter(x, y, lambda x, y: (x**2 + y**2) / 200, 1.6)
     return [ball.move((0.2, -0.1), angle, depth) for angle, depth in
-            ((0, 0.3), (0, 0.45), (0.02, 0.45), (0.05, 0.45), (0.08, 0.45), (0.12, 0.45), (0.18, 0.45), (0.15, 0.45),
-             (0.1, 0.45), (0.05, 0.45))]
+            ((0, 0.3), (0, 0.45), (0.03, 0.45), (0.08, 0.45), (0.13, 0.45), (0.19, 0.45), (0.29, 0.45), (0.24, 0.45),
+             (0.16, 0.45), (0.08, 0.45))]
 
 
 def roller(friction, share, degrees):
@@ -100,9 +100,9 @@ def punch_pushed():
     """A flat punch sticks all over until it slides all over."""
     x, y = cells(20, 20, PER_PILLAR)
     frames = []
-    for t, ratio in enumerate((0, 0.3, 0.6, 0.9, 1.15, 1.3, 1.39, 1.4, 1.4, 1.4)):
+    for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)):
         p = punch(x - 0.3 * max(0, t - 7), y + 0.4, 6)
-        frames.append(along(p, ratio * p, np.radians(-65)))
+        frames.append(along(p, ratio * p, np.radians(-85)))
     return frames
 
 
@@ -118,19 +118,19 @@ def rough_ball():
 
     friction = 3 * (1 + 0.1 * np.cos(0.5 * x + 0.3 * y))
     ball = Indenter(x, y, lambda x, y: (x**2 + y**2) / 200 + 0.3 * surface(x, y), friction)
-    return [ball.move(direction(0.9, step), 0, 0.4)
+    return [ball.move(direction(0.15, step), 0, 0.4)
             for step in (0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)], friction
 
 
 def narrow_edge():
     """The edge of a plate, 0.8 of a pillar wide, dragged across itself at an angle to the pillars."""
     x, y = cells(18, 18, PER_PILLAR)
-    ahead, side = turned(x, y, np.radians(25), (0.1, 0.2))
+    ahead, side = turned(x, y, np.radians(12), (0.1, 0.2))
 
     def pressure(part):
         return np.where(abs(side) < 5, np.sqrt(np.maximum((0.4 * part)**2 - ahead**2, 0)), 0)
 
-    return [dragged(pressure, 2, 1.6, np.radians(25), share) for share in (*DRAG, 1, 1)]
+    return [dragged(pressure, 2, 2.0, np.radians(12), share) for share in (*DRAG, 1, 1)]
 
 
 def swinging_load():
@@ -145,9 +145,9 @@ def swinging_load():
 HISTORIES = {  # name: frames, and the friction where the function does not return it
     "two balls": (two_balls, 1.2), "ball dragged back": (drag_back, 2.2),
     "ball of 19 pillars": (pressed_askew, 3.0), "fingertip": (round_a_corner, 1.6),
-    "ball slides and spins": (slide_and_spin, 1.8), "ball twisted": (twisted, 1.0),
+    "ball slides and spins": (slide_and_spin, 1.8), "ball twisted": (twisted, 1.6),
     "roller driven": (lambda: roller(2.2, 0.8, 0), 2.2), "roller braked": (lambda: roller(0.8, -0.9, 60), 0.8),
-    "flat punch": (punch_pushed, 1.4), "rough ball": (rough_ball, None), "edge": (narrow_edge, 1.6),
+    "flat punch": (punch_pushed, 2.6), "rough ball": (rough_ball, None), "edge": (narrow_edge, 2.0),
     "swinging load": (swinging_load, 4.5)}
 
 
