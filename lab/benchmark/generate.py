@@ -1,6 +1,6 @@
 """generate.py FOLDER: writes the twelve histories of the open benchmark (docs/histories.md), the same bytes each time.
 
-A history is a list of frames (p, qx, qy) on cells, with its friction; half_space.py has the mechanics."""
+A history is a list of frames (p, qx, qy) on cells, 4 or 8 to the edge of a pillar (half_space.py), and its friction."""
 
 import sys
 from pathlib import Path
@@ -8,192 +8,143 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from half_space import Indenter, along, cells, dragged, hertz, punch, rolling, sliding, turned
+from half_space import along, boundary_elements, cells, dragged, hertz, line, punch, rolling, sliding, turned
 
-PER_PILLAR = 8          # cells on the edge of a pillar; boundary elements take half
-PITCH_MM = 0.632455532  # of the sensels
-K = 320.0               # counts per newton
-PEAK, NOISE, THRESHOLD, FULL_SCALE = 150, 0.5, 2, 255  # counts
+SKIN = {"sensel_pitch_mm": 0.632455532, "counts_per_newton": 320.0, "threshold_counts": 2.0, "full_scale_counts": 255.0}
+K, THRESHOLD, PEAK, NOISE = 320, 2, 150, 0.5  # counts per newton; counts
 RATE_HZ = 30
 DRAG = (0, 0.2, 0.4, 0.6, 0.75, 0.9, 0.97)  # shares of the friction, before a body slides
 
 
-def direction(angle, length=1.0):
-    return length * np.cos(angle), length * np.sin(angle)
-
-
-def drag_and_slide(size, friction, degrees, radii=(1, 1), at=(0, 0), slides=3, grid=(24, 24)):
-    """An ellipsoid is dragged under a constant load until it slides, a third of a pillar a frame."""
-    x, y = cells(*grid, PER_PILLAR)
+def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), shares=DRAG, slides=((0, 1), (0, 1), (0, 1))):
+    """An ellipsoid is dragged until it slides, a third of a pillar a frame; slides: its turn, degrees, and its size."""
+    x, y = cells(*grid, 8)
     angle = np.radians(degrees)
-
-    def pressure(part, moved=0.0):
-        step = direction(angle, moved)
-        return hertz(x - at[0] - step[0], y - at[1] - step[1], part * size, radii)
-
-    frames = [dragged(pressure, 3, friction, angle, share) for share in DRAG]
-    return frames + [along(p, friction * p, angle)
-                     for p in (pressure(1, step / 3) for step in range(slides))]
+    frames = [dragged(lambda part: hertz(x - at[0], y - at[1], size * part, radii), 3, friction, angle, share)
+              for share in shares]
+    for turn, scale in slides:
+        step = np.cos(angle + np.radians(turn)) / 3, np.sin(angle + np.radians(turn)) / 3
+        at = np.add(at, step)
+        frames.append(sliding(x, y, hertz(x - at[0], y - at[1], size * scale, radii), friction, step))
+    return frames
 
 
 def two_balls():
-    frames = zip(drag_and_slide(5, 1.2, 30, at=(-7, 4), grid=(26, 30)),
-                 drag_and_slide(4, 1.2, 215, at=(6, -5), grid=(26, 30)))
-    return [np.add(one, other) for one, other in frames]
+    return [np.add(*both) for both in zip(drag_and_slide((26, 30), 5, 1.2, 30, at=(-7, 4)),
+                                          drag_and_slide((26, 30), 4, 1.2, 215, at=(6, -5)))]
 
 
-def drag_back():
-    x, y = cells(24, 24, PER_PILLAR)
-
-    def pressure(part):
-        return hertz(x - 0.2, y + 0.3, 9 * part)
-
-    return ([dragged(pressure, 3, 2.2, np.radians(80), share) for share in (0, 0.4, 0.7, 0.9)] +
-            [dragged(pressure, 3, 2.2, np.radians(80), share, 0.9) for share in (0.6, 0.2, -0.2, -0.5, -0.7, -0.85)])
+def drag_back(friction):
+    x, y = cells(24, 24, 8)
+    shares = [(share, None) for share in (0, 0.4, 0.7, 0.9)] + [(share, 0.9) for share in (0.6, 0.2, -0.2, -0.5, -0.7, -0.85)]
+    return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), *share) for share in shares]
 
 
 def pressed_askew():
-    """A force that grows in one direction: sticks everywhere, at one ratio of shear to pressure (19 pillars)."""
-    x, y = cells(14, 14, PER_PILLAR)
-    sizes = 2.46 * np.array([0.5, 0.6, 0.7, 0.8, 0.9, 1, 1, 0.95])
-    return [along(p, 1.9 * p, np.radians(4)) for p in (hertz(x - 0.3, y - 0.1, size) for size in sizes)]
+    """A force that grows in one direction: the ball sticks, at one ratio of shear to pressure."""
+    x, y = cells(14, 14, 8)
+    return [along(p, 1.9 * p, np.radians(4)) for p in
+            (hertz(x - 0.3, y - 0.1, 2.46 * scale) for scale in (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1, 0.95))]
 
 
-def round_a_corner():
-    """A fingertip is dragged until it slides, then slides on round a corner."""
-    frames = drag_and_slide(9, 1.6, 15, (1.15, 0.8), slides=2, grid=(26, 30))
-    x, y = cells(26, 30, PER_PILLAR)
-    place = np.array(direction(np.radians(15), 1 / 3))
-    for degrees in (35, 55, 75, 95):
-        step = direction(np.radians(degrees), 0.5)
-        place = place + step
-        frames.append(sliding(x, y, hertz(x - place[0], y - place[1], 9, (1.15, 0.8)), 1.6, step))
-    return frames
+def slide_and_spin(friction):
+    x, y = cells(24, 26, 8)
+    return [sliding(x, y, hertz(x - a, y - 0.2, 8), friction, (1, 0.2), 0.08 * t, (a, 0.2))
+            for t, a in enumerate(np.linspace(-1.4, 1.3, 10))]
 
 
-def slide_and_spin():
-    x, y = cells(24, 26, PER_PILLAR)
-    frames = []
-    for t in range(10):
-        at = (0.3 * t - 1.4, 0.2)
-        p = hertz(x - at[0], y - at[1], 8)
-        frames.append(sliding(x, y, p, 1.8, (1, 0.2), 0.08 * t, at))
-    return frames
-
-
-def twisted():
-    x, y = cells(20, 20, PER_PILLAR // 2)
-    ball = Indenter(x, y, lambda x, y: (x**2 + y**2) / 200, 1.6)
-    return [ball.move((0.2, -0.1), angle, depth) for angle, depth in
-            ((0, 0.3), (0, 0.45), (0.03, 0.45), (0.08, 0.45), (0.13, 0.45), (0.19, 0.45), (0.29, 0.45), (0.24, 0.45),
-             (0.16, 0.45), (0.08, 0.45))]
+def twisted(friction):
+    angles = (0, 0, 0.03, 0.08, 0.13, 0.19, 0.29, 0.24, 0.16, 0.08)
+    return boundary_elements(*cells(20, 20, 4), lambda x, y: (x**2 + y**2) / 200, friction,
+                             [((0.2, -0.1), angle, 0.45 if t else 0.3) for t, angle in enumerate(angles)])
 
 
 def roller(friction, share, degrees):
     """A long cylinder rolls half a pillar a frame, driven (share above zero) or braked."""
-    x, y = cells(24, 24, PER_PILLAR)
-    angle = np.radians(degrees)
-    return [rolling(x, y, 4, 12, friction, share, angle, direction(angle, t / 2 - 2.2)) for t in range(10)]
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return [rolling(*cells(24, 24, 8), 4, 12, friction, share, np.radians(degrees), (c * way, s * way))
+            for way in np.arange(10) / 2 - 2.2]
 
 
 def punch_pushed():
     """A flat punch sticks all over until it slides all over."""
-    x, y = cells(20, 20, PER_PILLAR)
-    frames = []
-    for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)):
-        p = punch(x - 0.3 * max(0, t - 7), y + 0.4, 6)
-        frames.append(along(p, ratio * p, np.radians(-85)))
-    return frames
+    x, y = cells(20, 20, 8)
+    return [along(p, ratio * p, np.radians(-85)) for ratio, p in
+            ((ratio, punch(x, y - 0.4 + 0.3 * max(0, t - 7), 6))
+             for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)))]
 
 
-def rough_ball():
-    """Hills of a third of the depth, and friction of 3 within a tenth."""
-    x, y = cells(24, 28, PER_PILLAR // 2)
+ROUGH_X, ROUGH_Y = cells(24, 28, 4)
+ROUGH_FRICTION = 3 * (1 + 0.1 * np.cos(0.5 * ROUGH_X + 0.3 * ROUGH_Y))
+
+
+def rough_ball(friction):
     rng = np.random.default_rng(11)
-    waves = [(direction(a, k), phase) for a, k, phase in
-             zip(rng.uniform(0, np.pi, 12), rng.uniform(0.5, 1.8, 12), rng.uniform(0, 2 * np.pi, 12))]
+    waves = np.transpose([rng.uniform(0, np.pi, 12), rng.uniform(0.5, 1.8, 12), rng.uniform(0, 2 * np.pi, 12)])
 
-    def surface(x, y):
-        return sum(np.cos(k[0] * x + k[1] * y + phase) / np.hypot(*k) for k, phase in waves) / 12
+    def shape(x, y):
+        hills = sum(np.cos(k * turned(x, y, a)[0] + phase) / k for a, k, phase in waves) / 12
+        return (x**2 + y**2) / 200 + 0.3 * hills
 
-    friction = 3 * (1 + 0.1 * np.cos(0.5 * x + 0.3 * y))
-    ball = Indenter(x, y, lambda x, y: (x**2 + y**2) / 200 + 0.3 * surface(x, y), friction)
-    return [ball.move(direction(0.15, step), 0, 0.4)
-            for step in (0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)], friction
+    return boundary_elements(ROUGH_X, ROUGH_Y, shape, friction, [((way, 0.15 * way), 0, 0.4) for way in np.arange(8) * 0.3])
 
 
-def narrow_edge():
+def edge(friction):
     """The edge of a plate, 0.8 of a pillar wide, dragged across itself at an angle to the pillars."""
-    x, y = cells(18, 18, PER_PILLAR)
-    ahead, side = turned(x, y, np.radians(12), (0.1, 0.2))
-
-    def pressure(part):
-        return np.where(abs(side) < 5, np.sqrt(np.maximum((0.4 * part)**2 - ahead**2, 0)), 0)
-
-    return [dragged(pressure, 2, 2.0, np.radians(12), share) for share in (*DRAG, 1, 1)]
+    ahead, side = turned(*cells(18, 18, 8), np.radians(12), (0.1, 0.2))
+    return [dragged(lambda part: line(ahead, side, 0.4 * part, 10), 2, friction, np.radians(12), share)
+            for share in (*DRAG, 1, 1)]
 
 
-def swinging_load():
-    """A large ball is pressed and dragged until it slides, then slides under a load that rises and falls."""
-    x, y = cells(30, 32, PER_PILLAR)
-    frames = [dragged(lambda part: hertz(x + 1.3, y - 0.2, 10 * part), 3, 4.5, np.radians(8), share)
-              for share in (0, 0.3, 0.6, 0.9)]
-    return frames + [along(p, 4.5 * p, np.radians(8)) for p in
-                     (hertz(x + 1.3 - t / 3, y - 0.2, size) for t, size in enumerate((10, 11, 12, 10, 8, 9, 11, 12)))]
-
-
-HISTORIES = {  # name: frames, and the friction where the function does not return it
-    "two balls": (two_balls, 1.2), "ball dragged back": (drag_back, 2.2),
-    "ball of 19 pillars": (pressed_askew, 3.0), "fingertip": (round_a_corner, 1.6),
-    "ball slides and spins": (slide_and_spin, 1.8), "ball twisted": (twisted, 1.6),
-    "roller driven": (lambda: roller(2.2, 0.8, 0), 2.2), "roller braked": (lambda: roller(0.8, -0.9, 60), 0.8),
-    "flat punch": (punch_pushed, 2.6), "rough ball": (rough_ball, None), "edge": (narrow_edge, 2.0),
-    "swinging load": (swinging_load, 4.5)}
-
-
-def pillar_forces(tractions, size):
-    """Forces [..., pillar rows, columns] of tractions on cells, size x size to a pillar."""
-    *rest, rows, cols = np.shape(tractions)
-    return np.reshape(tractions, (*rest, rows // size, size, cols // size, size)).sum(axis=(-3, -1))
+HISTORIES = {  # name: frames, friction
+    "two balls": (two_balls, 1.2),
+    "ball dragged back": (lambda: drag_back(2.2), 2.2),
+    "ball of 19 pillars": (pressed_askew, 3.0),
+    "fingertip": (lambda: drag_and_slide((26, 30), 9, 1.6, 15, (1.15, 0.8), slides=(
+        (0, 1), (0, 1), (20, 1), (40, 1), (60, 1), (80, 1))), 1.6),
+    "ball slides and spins": (lambda: slide_and_spin(1.8), 1.8),
+    "ball twisted": (lambda: twisted(1.6), 1.6),
+    "roller driven": (lambda: roller(2.2, 0.8, 0), 2.2),
+    "roller braked": (lambda: roller(0.8, -0.9, 60), 0.8),
+    "flat punch": (punch_pushed, 2.6),
+    "rough ball": (lambda: rough_ball(ROUGH_FRICTION), ROUGH_FRICTION),
+    "edge": (lambda: edge(2.0), 2.0),
+    "swinging load": (lambda: drag_and_slide((30, 32), 10, 4.5, 8, at=(-1.3, 0.2), shares=(0, 0.3, 0.6, 0.9), slides=[
+        (0, scale) for scale in (1, 1.1, 1.2, 1, 0.8, 0.9, 1.1, 1.2)]), 4.5)}
 
 
 def model(forces):
-    """Readings [T, 2 P, 2 Q] of an ideal skin, counts per K, of forces [T, 3, P, Q] (docs/derivations/pillar_model.md)."""
-    x, y, n = np.moveaxis(forces, 1, 0)
+    """Readings [T, 2 P, 2 Q] of forces [T, 3, P, Q], counts, without noise (docs/derivations/pillar_model.md)."""
+    x, y, n = K * np.moveaxis(forces, 1, 0)
     v = np.empty((len(n), 2 * n.shape[1], 2 * n.shape[2]))
     for row, col, sx, sy in ((0, 1, 1, 1), (0, 0, -1, 1), (1, 0, -1, -1), (1, 1, 1, -1)):
         v[:, row::2, col::2] = np.maximum(n + (sx * x + sy * y) / np.sqrt(2), 0)
     return v
 
 
-def history(frames, friction, size, seed):
-    """Readings [T, R, C], uint8; forces [T, 3, P, Q] (shear_x, shear_y, normal), N; share of the load that slips [T]."""
-    p, qx, qy = np.moveaxis(np.array(frames), 1, 0)
+def history(frames, friction, per_pillar, seed):
+    """Readings [T, R, C], uint8; forces [T, 3, P, Q], N, scaled to the peak; share of the load that slips [T]."""
+    p, qx, qy = np.moveaxis(np.array(list(frames)), 1, 0)
     slips = np.hypot(qx, qy) >= 0.999 * friction * p
-    load = p.sum(axis=(1, 2))
-    slip_share = (p * slips).sum(axis=(1, 2)) / np.where(load > 0, load, 1)
-    forces = np.moveaxis(pillar_forces([qx, qy, p], size), 0, 1)
-    forces *= PEAK / K / model(forces).max()
-    noisy = K * model(forces) + np.random.default_rng(seed).normal(0, NOISE, model(forces).shape)
-    return np.clip(np.rint(noisy), 0, FULL_SCALE).astype(np.uint8), forces, slip_share
+    slip_share = (p * slips).sum((1, 2)) / p.sum((1, 2))
+    rows, cols = np.array(p.shape[1:]) // per_pillar
+    forces = np.stack([qx, qy, p], 1).reshape(len(p), 3, rows, per_pillar, cols, per_pillar).sum((3, 5))
+    forces *= PEAK / model(forces).max()
+    noisy = model(forces) + np.random.default_rng(seed).normal(0, NOISE, (len(p), 2 * rows, 2 * cols))
+    return np.clip(np.rint(noisy), 0, 255).astype(np.uint8), forces, slip_share
 
 
 def make(name):
-    """The named history, as history() returns it, and its mean friction."""
-    function, friction = HISTORIES[name]
-    frames = function()
-    if friction is None:
-        frames, friction = frames
-    size = PER_PILLAR // 2 if function in (twisted, rough_ball) else PER_PILLAR
-    return *history(frames, friction, size, list(HISTORIES).index(name)), np.mean(friction)
+    """Readings, forces, share that slips, and mean friction of a history."""
+    frames, friction = HISTORIES[name]
+    return *history(frames(), friction, 4 if name in ("ball twisted", "rough ball") else 8,
+                    list(HISTORIES).index(name)), np.mean(friction)
 
 
 def write(path, readings, forces, slip_share, friction):
     with h5py.File(path, "w") as file:
         file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
-        file.create_group("skin").attrs.update({
-            "sensel_pitch_mm": PITCH_MM, "counts_per_newton": K, "threshold_counts": THRESHOLD,
-            "full_scale_counts": FULL_SCALE})
+        file.create_group("skin").attrs.update(SKIN)
         file["frames/raw"], file["frames/time"] = readings, np.arange(len(readings)) / RATE_HZ
         for name, plane in zip(("shear_x", "shear_y", "normal"), np.moveaxis(forces, 1, 0)):
             file[f"truth/{name}"] = plane.astype(np.float32)

@@ -1,8 +1,7 @@
-"""Rigid bodies on an elastic half-space of Poisson's ratio 1/2: pressure and shear on square cells.
+"""Rigid bodies on an elastic half-space of Poisson's ratio 1/2: pressure p and shear qx, qy on the skin, on square cells.
 
-Arrays are cells [rows, columns], row 0 at +y; lengths in pillars, pressures over pi E* (no unit). Closed forms of
-Hertz, Cattaneo and Mindlin, Mindlin and Deresiewicz, and Carter: K. L. Johnson, Contact Mechanics (1985), chapters
-4, 7 and 8. Boundary elements: docs/derivations/half_space.md, whose equations are cited; no code is shared."""
+Arrays are [rows, columns] of cells, row 0 at +y; lengths in pillars, tractions over pi E*. Closed forms: K. L. Johnson,
+Contact Mechanics (1985), chapters 4, 7, 8. Boundary elements: docs/derivations/half_space.md, with no code shared."""
 
 import numpy as np
 
@@ -13,8 +12,6 @@ def cells(rows, cols, per_pillar):
     return np.meshgrid(x, -y)
 
 
-# --- Closed forms. Each returns p, qx, qy: the pressure, and the shear on the skin ---
-
 def turned(x, y, angle, at=(0, 0)):
     """Coordinates along and across a direction, rad, from a point."""
     x, y, c, s = x - at[0], y - at[1], np.cos(angle), np.sin(angle)
@@ -22,9 +19,13 @@ def turned(x, y, angle, at=(0, 0)):
 
 
 def hertz(x, y, size, radii=(1, 1)):
-    """Pressure of an ellipsoid whose contact has the semi-axes size * radii."""
-    inside = size**2 - (x / radii[0])**2 - (y / radii[1])**2
-    return np.sqrt(np.maximum(inside, 0)) if size > 0 else 0 * x
+    """Hertz's pressure of an ellipsoid whose contact has the semi-axes size * radii."""
+    return np.sqrt(np.maximum(size**2 - (x / radii[0])**2 - (y / radii[1])**2, 0))
+
+
+def line(ahead, side, half, length):
+    """Pressure of a cylinder whose contact is 2 half wide, cut off at its ends."""
+    return np.where(abs(side) < length / 2, hertz(ahead, 0, half), 0)
 
 
 def punch(x, y, size):
@@ -34,119 +35,90 @@ def punch(x, y, size):
 
 
 def along(p, q, angle):
-    """Shear of the size q in one direction."""
     return p, q * np.cos(angle), q * np.sin(angle)
 
 
 def dragged(pressure, order, friction, angle, share, before=None):
-    """Partial slip under a constant load: pressure(s) is that of a contact of s times the size, whose load grows with
-    the power `order` of s (3 of a point, 2 of a line contact). Shear of `share` (-1 to 1) of the friction, from zero,
-    or from a drag to the share `before` that turned back."""
+    """Cattaneo's and Mindlin's partial slip: shear of `share` (-1 to 1) of the friction at a constant load, from zero, or
+    from a drag to the share `before` that turned back. pressure(s): of the contact scaled by s, whose load grows with
+    s**order (3 of a point, 2 of a line)."""
     def stuck(part):
-        return pressure(max(1 - part, 0)**(1 / order))
+        return pressure(part**(1 / order))
 
     p = pressure(1)
-    if before is None:
-        q = np.sign(share) * (p - stuck(abs(share)))
-    else:
-        q = p - stuck(before) - 2 * (p - stuck((before - share) / 2))
+    q = p - stuck(1 - share) if before is None else p - stuck(1 - before) - 2 * (p - stuck(1 - (before - share) / 2))
     return along(p, friction * q, angle)
 
 
 def sliding(x, y, p, friction, velocity, spin=0, at=(0, 0)):
-    """Shear under a body that slides with a velocity and spins, 1/s, about a point."""
+    """Shear under a body that slides with a velocity and spins about a point."""
     vx, vy = velocity[0] - spin * (y - at[1]), velocity[1] + spin * (x - at[0])
-    speed = np.maximum(np.hypot(vx, vy), 1e-9)
-    return p, friction * p * vx / speed, friction * p * vy / speed
+    scale = friction * p / np.maximum(np.hypot(vx, vy), 1e-9)
+    return p, scale * vx, scale * vy
 
 
 def rolling(x, y, half, length, friction, share, angle, at):
-    """Carter's cylinder, which rolls along `angle`: it sticks at the leading edge. Shear of `share` of the friction."""
+    """Carter's cylinder, which rolls along `angle` and sticks at its leading edge; shear of `share` of the friction."""
     ahead, side = turned(x, y, angle, at)
-    inside = abs(side) < length / 2
     stick = half * np.sqrt(1 - abs(share))
-
-    def line(centre, width):
-        return np.where(inside, np.sqrt(np.maximum(width**2 - (ahead - centre)**2, 0)), 0)
-
-    p = line(0, half)
-    return along(p, np.sign(share) * friction * (p - line(half - stick, stick)), angle)
+    p = line(ahead, side, half, length)
+    return along(p, np.sign(share) * friction * (p - line(ahead - half + stick, side, stick, length)), angle)
 
 
-# --- Boundary elements ---
-
-def convolution(kernel, shape, size, odd=False):
-    """Transform of the displacement of cells of a size by a load on one of them; kernel: twice its integral, (H4)."""
-    dy, dx = (abs(np.fft.fftfreq(2 * n, 1 / (2 * n))) * size for n in shape)
-    x, y = np.meshgrid(dx, dy)
-    half = size / 2
-    values = sum(a * b * kernel(x + a * half, y + b * half) for a in (-1, 1) for b in (-1, 1))
-    if odd:
-        signs = [np.sign(np.fft.fftfreq(2 * n)) for n in shape]
-        values = values * signs[0][:, None] * signs[1]
-    return np.fft.rfft2(values)
+def convolution(kernel, x, odd=False):
+    """Transform of the displacements that a loaded cell causes; kernel: twice its integral, (H4)."""
+    size = x[0, 1] - x[0, 0]
+    steps = [np.fft.fftfreq(2 * n, 1 / (2 * n)) for n in x.shape]
+    a, b = np.meshgrid(*(abs(step) * size for step in steps[::-1]))
+    values = sum(s * t * kernel(a + s * size / 2, b + t * size / 2) for s in (-1, 1) for t in (-1, 1))
+    return np.fft.rfft2(values * np.outer(*map(np.sign, steps)) if odd else values)
 
 
-def minimise(gradient, project, start, steepest, tolerance):
-    """Least q.Aq / 2 - q.b where `project` allows, by accelerated projected gradients that start anew when they turn;
-    gradient(q) = A q - b, whose slope is at most `steepest`. Ends when a step moves A q by less than `tolerance`."""
+def minimise(product, b, project, start, steepest, tolerance):
+    """Least q.Aq / 2 - q.b where `project` allows, product(q) = A q, which stretches by at most `steepest`: accelerated
+    projected gradients that start anew when they turn back. Ends when a step moves A q by less than `tolerance`."""
     now, ahead, weight = start, start, 1.0
     for _ in range(5000):
-        new = project(ahead - gradient(ahead) / steepest)
+        new = project(ahead - (product(ahead) - b) / steepest)
         if steepest * abs(new - ahead).max() < tolerance:
             return new
         if ((ahead - new) * (new - now)).sum() > 0:
-            weight, ahead, now = 1.0, new, new
-            continue
+            weight = 1.0
         grown = (1 + np.sqrt(1 + 4 * weight**2)) / 2
         now, ahead, weight = new, new + (weight - 1) / grown * (new - now), grown
     raise ArithmeticError("boundary elements: no convergence in 5000 steps; take a shorter step of the path")
 
 
-class Indenter:
-    """A body of the height shape(x, y) above its lowest point, its friction a number or one a cell, moved in steps.
-    y of the skin points up, so rows run against it."""
+def boundary_elements(x, y, shape, friction, poses):
+    """(p, qx, qy) of each pose (place, rotation, rad, depth) of a body of the height shape(x, y) above its lowest point."""
+    def first(a, b):
+        return b * np.log(a + np.hypot(a, b))
 
-    def __init__(self, x, y, shape, friction):
-        self.x, self.y, self.shape, self.friction = x, y, shape, friction
-        size = x[0, 1] - x[0, 0]
+    normal = convolution(lambda a, b: first(a, b) + first(b, a), x)
+    xx = convolution(lambda a, b: 2 * first(a, b) + first(b, a), x)
+    yy = convolution(lambda a, b: first(a, b) + 2 * first(b, a), x)
+    xy = convolution(np.hypot, x, odd=True)  # the kernel is -hypot, and y points against the rows
 
-        def first(a, b):
-            return b * np.log(a + np.hypot(a, b))  # of a^2 / r^3
+    def applied(q, *matrix):
+        q = np.fft.rfft2(q, [2 * n for n in x.shape])
+        moved = np.fft.irfft2(np.array([sum(a * b for a, b in zip(row, q)) for row in matrix]))
+        return moved[:, :x.shape[0], :x.shape[1]]
 
-        def transform(kernel, odd=False):
-            return convolution(kernel, x.shape, size, odd)
+    def pressed(p):
+        return applied(p, [normal])
 
-        self.normal = transform(lambda a, b: first(a, b) + first(b, a))
-        self.xx = transform(lambda a, b: 2 * first(a, b) + first(b, a))
-        self.yy = transform(lambda a, b: first(a, b) + 2 * first(b, a))
-        self.xy = -transform(lambda a, b: -np.hypot(a, b), odd=True)
-        self.p, self.q = 0 * x, np.zeros((2, *x.shape))
-        self.pose = None
+    def sheared(q):
+        return applied(q, [xx, xy], [xy, yy])
 
-    def displaced(self, tractions, kernel):
-        rows, cols = self.x.shape
-        return np.fft.irfft2(np.fft.rfft2(tractions, (2 * rows, 2 * cols)) * kernel)[:rows, :cols]
-
-    def sheared(self, q):
-        rows, cols = self.x.shape
-        u, v = np.fft.rfft2(q, (2 * rows, 2 * cols))
-        both = np.fft.irfft2(np.array([self.xx * u + self.xy * v, self.xy * u + self.yy * v]))
-        return both[:, :rows, :cols]
-
-    def move(self, at, angle, depth):
-        """Next pose: place, rotation, rad, and depth of the lowest point. Returns p, qx, qy."""
-        room = depth - self.shape(*turned(self.x, self.y, angle, at))
-        self.p = minimise(lambda p: self.displaced(p, self.normal) - room, lambda p: np.maximum(p, 0), self.p,
-                          abs(self.normal).max(), 1e-4 * depth)
-        old_at, old_angle = self.pose or (at, angle)
-        middle, turn = np.add(at, old_at) / 2, angle - old_angle
-        moved = np.array([at[0] - old_at[0] - turn * (self.y - middle[1]),
-                          at[1] - old_at[1] + turn * (self.x - middle[0])])
-        moved = moved + self.sheared(self.q)
-        limit = self.friction * self.p
-        self.q = minimise(lambda q: self.sheared(q) - moved,
-                          lambda q: q * (limit / np.maximum(np.hypot(*q), np.maximum(limit, 1e-30))), self.q,
-                          (abs(self.xx) + abs(self.xy)).max(), 1e-3 * abs(moved).max() + 1e-12)
-        self.pose = at, angle
-        return self.p, *self.q
+    p, q, before = np.zeros((1, *x.shape)), np.zeros((2, *x.shape)), poses[0]
+    for place, angle, depth in poses:
+        p = minimise(pressed, depth - shape(*turned(x, y, angle, place)), lambda p: np.maximum(p, 0), p,
+                     abs(normal).max(), 1e-4 * depth)
+        middle, turn = np.add(place, before[0]) / 2, angle - before[1]
+        moved = np.array([place[0] - before[0][0] - turn * (y - middle[1]),
+                          place[1] - before[0][1] + turn * (x - middle[0])])
+        limit = friction * p[0]
+        q = minimise(sheared, moved + sheared(q), lambda q: q * (limit / np.maximum(np.hypot(*q), limit + 1e-30)), q,
+                     (abs(xx) + abs(xy)).max(), 1e-3 * abs(moved).max() + 1e-12)
+        before = place, angle, depth
+        yield p[0], *q
