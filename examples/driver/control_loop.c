@@ -1,5 +1,6 @@
 /* A control loop in C99: reads the results of `pillarfield stream ... --to shm:forces`, and prints
- * the total force and the lowest slip margin about ten times a second.
+ * the total force and how long the contacts will hold about ten times a second, and at once when
+ * one is about to slip.
  *
  *     cc -O2 -o control_loop control_loop.c        with pillarfield/stream_format.h on the path
  *     ./control_loop forces --seconds 10 */
@@ -34,10 +35,22 @@ static void close_results(Results* results) {
 }
 
 static int is_valid(const PillarfieldRing* layout, size_t bytes) {
-  return layout->magic == PILLARFIELD_RING_MAGIC && layout->kind == PILLARFIELD_RING_RESULTS &&
-         layout->slots > 1 && layout->slots < 1u << 20 && layout->slot_bytes < 1u << 30 &&
-         layout->slot_bytes >= sizeof(PillarfieldResultSlot) &&
+  return layout->magic == PILLARFIELD_RING_MAGIC && layout->slots > 1 && layout->slots < 1u << 20 &&
+         layout->slot_bytes < 1u << 30 && layout->slot_bytes >= sizeof(PillarfieldResultSlot) &&
          sizeof *layout + layout->slots * layout->slot_bytes <= bytes;
+}
+
+/* Ends the program if the ring holds frames, or results of another version of Pillarfield. */
+static void check_kind(const PillarfieldRing* layout, const char* name) {
+  if (layout->magic != PILLARFIELD_RING_MAGIC || layout->kind == PILLARFIELD_RING_RESULTS ||
+      layout->kind == PILLARFIELD_RING_PRESSURES) {
+    return;
+  }
+  fprintf(stderr, "control_loop: shm:%s: %s\n", name + 1,
+          layout->kind == PILLARFIELD_RING_FRAMES
+              ? "it holds frames, not results; open the ring of stream --to"
+              : "its layout is of another version; compile this program with its stream_format.h");
+  exit(1);
 }
 
 /* Opens the ring `name`, if there is one of this user or root. */
@@ -56,6 +69,7 @@ static void open_results(Results* results, const char* name) {
     results->ring = memory;
     results->layout = *results->ring;
     results->next = results->layout.published;
+    check_kind(&results->layout, name);
     if (is_valid(&results->layout, results->bytes)) return;
   }
   close_results(results);
@@ -98,20 +112,37 @@ static double seconds_now(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Replace this by what your robot does. */
+/* Replace this by what your robot does. Comparisons with NaN, what is unknown, are false. */
 static void act(const PillarfieldResultSlot* result) {
   static double printed = 0;
+  static uint64_t alarmed = 0;
+  const PillarfieldContact* first = NULL; /* to slip */
   double lowest = INFINITY;
+  int alarm;
   uint32_t i;
   for (i = 0; i < result->contacts && i < PILLARFIELD_MAX_CONTACTS; ++i) {
-    const double margin = result->contact[i].slip_margin;
-    if (margin < lowest) lowest = margin; /* false for NaN, an unknown margin */
+    const PillarfieldContact* contact = &result->contact[i];
+    if (contact->slip_margin < lowest) lowest = contact->slip_margin;
+    if (contact->time_to_slip_s < (first == NULL ? INFINITY : first->time_to_slip_s)) {
+      first = contact;
+    }
   }
+  alarm = first != NULL && first->slip_within[1] > 0.5;
+  if (alarm && first->track_id != alarmed) {
+    printf("alarm: contact %llu slips within 0.3 s with a probability of %.0f %%: grip anew\n",
+           (unsigned long long)first->track_id, 100 * first->slip_within[1]);
+    fflush(stdout);
+  }
+  alarmed = alarm ? first->track_id : 0;
   if (seconds_now() - printed < 0.1) return;
   printed = seconds_now();
-  printf("frame %llu: %.3f N, %u contacts, lowest slip margin %.2f, %.3f ms after its arrival\n",
-         (unsigned long long)result->sequence, result->total.normal_n, result->contacts, lowest,
-         1e3 * seconds_now() - 1e-6 * (double)result->arrived_ns);
+  printf("frame %llu: %.3f N, %u contacts, lowest slip margin %.2f, ",
+         (unsigned long long)result->sequence, result->total.normal_n, result->contacts, lowest);
+  if (first != NULL) {
+    printf("slips in %.2f s (%.2f to %.2f), ", first->time_to_slip_s, first->time_to_slip_low_s,
+           first->time_to_slip_high_s);
+  }
+  printf("%.3f ms after its arrival\n", 1e3 * seconds_now() - 1e-6 * (double)result->arrived_ns);
   fflush(stdout);
 }
 

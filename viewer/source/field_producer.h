@@ -21,7 +21,7 @@ namespace pillarfield::viewer {
 /// Properties of a source of fields.
 struct SourceInfo {
   std::string name;           ///< of the file
-  std::string kind;           ///< "scene", "recording", "Tekscan ASCII" or "force field"
+  std::string kind;           ///< "scene", "recording", "sensor", "results", "force field", ...
   Skin skin;                  ///< a force file gives only size and pitch
   Calibration calibration;    ///< empty for a force file
   std::uint64_t frames = 0;   ///< at least one

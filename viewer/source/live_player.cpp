@@ -12,9 +12,10 @@
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
+#include "viewer/source/newest_field.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/plane_block.h"
-#include "viewer/source/recent_times.h"
+#include "viewer/source/result_player.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -26,8 +27,6 @@ constexpr auto kTareTime = std::chrono::milliseconds(500);
 constexpr std::size_t kMostLivePoints = 120'000;
 
 LiveTime live_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
-
-double live_seconds(LiveTime time) { return std::chrono::duration<double>(time).count(); }
 
 SourceInfo live_info(const std::string& name, const SolverPlan& plan, const Processor& processor) {
   SourceInfo info;
@@ -78,10 +77,8 @@ struct LivePlayer::State final : ForceSink {
   // Run in the thread.
   void run();
   void run_pipeline();
-  void follow_clock(const SolvedFrame& frame);
   [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
   void publish(const SolvedFrame& frame);
-  void wake_display();
 
   void take_events();
 
@@ -91,14 +88,13 @@ struct LivePlayer::State final : ForceSink {
   const SourceInfo info;
   const std::shared_ptr<Curves> curves;
   LiveSession session;
-  const LiveTime start = live_now();
   // Of the thread.
+  FieldClock clock{live_now()};
   ContactTracker tracker;
   PeakHold peak;
   ObjectPool<LiveField> fields;
   bool tracks = false;
-  double last_time_s = -1;               ///< of the frame solved last, since `start`
-  std::optional<double> clock_offset_s;  ///< that time less the sensor's
+  double time_s = 0;  ///< of the frame solved last
 
   std::atomic<bool> stopping = false;
   std::atomic<bool> paused = false;
@@ -108,16 +104,11 @@ struct LivePlayer::State final : ForceSink {
   std::atomic<bool> ended = false;
   std::atomic<std::uint64_t> solved = 0;
 
-  mutable std::mutex mutex;  ///< guards the members up to `failed`
-  std::unique_ptr<ShownField> waiting;
-  std::uint64_t taken = 0;
-  RecentTimes times;
+  mutable std::mutex mutex;  ///< guards `message` and `messages`
   std::string message;
   std::uint64_t messages = 0;
-  std::exception_ptr failed;
 
-  std::mutex waking;  ///< guards `wake`, also while it runs
-  std::function<void()> wake;
+  NewestField newest;
   std::thread thread;  ///< last: uses the other members
 };
 
@@ -144,14 +135,14 @@ LivePlayer::State::~State() {
 }
 
 void LivePlayer::State::run() {
+  std::exception_ptr failure;
   try {
     while (!stopping && !ended) run_pipeline();
   } catch (...) {
-    const std::scoped_lock lock(mutex);
-    failed = std::current_exception();
+    failure = std::current_exception();
   }
   ended = true;
-  wake_display();
+  newest.fail(failure);
 }
 
 /// Runs until the player ends, or contacts are switched.
@@ -185,7 +176,7 @@ ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t i
   ShownField field;
   field.forces = frame.forces;
   field.raw = frame.readings;
-  field.time_s = last_time_s;
+  field.time_s = time_s;
   field.index = index;
   field.arrived = frame.arrived;
   if (plan.estimator == Estimator::direct) field.direct_point = plan.segment_point;
@@ -193,30 +184,16 @@ ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t i
   return field;
 }
 
-/// Follows the sensor's clock from the first frame on, which evens out delays on the way; where it
-/// stands still, jumps, or leaves the time of arrival, takes that.
-void LivePlayer::State::follow_clock(const SolvedFrame& frame) {
-  constexpr double kMostApartS = 5;
-  constexpr double kLeastStepS = 1e-6;
-  const double arrived_s = live_seconds(frame.arrived - start);
-  const double by_sensor_s = frame.time_s + clock_offset_s.value_or(arrived_s - frame.time_s);
-  const bool follows = clock_offset_s && by_sensor_s > last_time_s &&
-                       std::abs(by_sensor_s - arrived_s) < kMostApartS;
-  last_time_s = follows ? by_sensor_s : std::max(arrived_s, last_time_s + kLeastStepS);
-  clock_offset_s = last_time_s - frame.time_s;
-}
-
 void LivePlayer::State::append(const SolvedFrame& frame) {
-  follow_clock(frame);
+  time_s = clock.time_s(frame.time_s, frame.arrived);
   curves->add(field_of(frame, solved));
   if (wants_peak) {
     if (peak_begins.exchange(false)) peak.reset();
     peak.add(frame.forces);
   }
+  newest.count(frame.arrived);
   ++solved;
   if (!paused) publish(frame);
-  const std::scoped_lock lock(mutex);
-  times.add(frame.arrived, live_now());
 }
 
 /// Hands the frame solved last to the display: its forces in place, its readings copied.
@@ -224,36 +201,26 @@ void LivePlayer::State::publish(const SolvedFrame& frame) {
   const auto owner = std::make_shared<LiveFieldOwner>(fields.acquire());
   if (owner->field == nullptr) return;
   copy_readings(frame.readings, owner->field->readings.bytes().data());
-  auto field = std::make_unique<ShownField>(field_of(frame, solved - 1));
-  field->raw = owner->field->readings.view();
+  ShownField field = field_of(frame, solved - 1);
+  field.raw = owner->field->readings.view();
   if (frame.missing.empty()) {
     owner->result = processor.pin();
-    field->pages = owner->result->pages();
+    field.pages = owner->result->pages();
   } else {
     std::optional<PlaneBlock>& planes = owner->field->planes;
     if (!planes)
       planes.emplace(plan.skin.layout, frame.forces.rows, frame.forces.cols, plan.uncertainty);
     planes->copy(frame.forces);
-    field->forces = planes->view();
-    field->pages = planes->pages();
+    field.forces = planes->view();
+    field.pages = planes->pages();
   }
-  field->keep_alive = owner;
+  field.keep_alive = owner;
   if (tracks) {
-    field->contacts = std::make_shared<const ShownContacts>(
+    field.contacts = std::make_shared<const ShownContacts>(
         with_extents(*frame.contacts, tracker.labels(), info.contacts.noise_n));
   }
-  if (wants_peak) field->peak = peak.field(*field);
-  {
-    const std::scoped_lock lock(mutex);
-    std::swap(waiting, field);
-  }
-  field.reset();
-  wake_display();
-}
-
-void LivePlayer::State::wake_display() {
-  const std::scoped_lock lock(waking);
-  if (wake) wake();
+  if (wants_peak) field.peak = peak.field(field);
+  newest.set(std::move(field));
 }
 
 LivePlayer::LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name,
@@ -283,33 +250,11 @@ PlayerState LivePlayer::state() const {
           .rate_hz = state_->session.health().stream.rate_hz};
 }
 
-PlayerStatistics LivePlayer::statistics() const {
-  const std::scoped_lock lock(state_->mutex);
-  state_->times.forget_before(live_now());
-  PlayerStatistics statistics;
-  statistics.produced = state_->solved;
-  statistics.taken = state_->taken;
-  statistics.waiting = state_->waiting != nullptr ? 1 : 0;
-  statistics.not_shown = statistics.produced - statistics.taken - statistics.waiting;
-  statistics.produced_hz = state_->times.rate_hz();
-  statistics.produce_ms_median = state_->times.median_ms();
-  statistics.produce_ms_worst = state_->times.worst_ms();
-  return statistics;
-}
-
-std::optional<ShownField> LivePlayer::take() {
-  const std::scoped_lock lock(state_->mutex);
-  if (state_->waiting != nullptr) {
-    ++state_->taken;
-    return std::move(*std::exchange(state_->waiting, nullptr));
-  }
-  if (state_->failed) std::rethrow_exception(std::exchange(state_->failed, nullptr));
-  return std::nullopt;
-}
+PlayerStatistics LivePlayer::statistics() const { return state_->newest.statistics(); }
+std::optional<ShownField> LivePlayer::take() { return state_->newest.take(); }
 
 void LivePlayer::on_new_field(std::function<void()> wake) {
-  const std::scoped_lock lock(state_->waking);
-  state_->wake = std::move(wake);
+  state_->newest.on_new_field(std::move(wake));
 }
 
 void LivePlayer::tare() { state_->session.start_tare(kTareTime); }
@@ -361,6 +306,22 @@ SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
   return plan;
 }
 
+namespace {
+
+OpenedSensor open_results(std::unique_ptr<ResultStream> results, const std::string& source,
+                          const LiveOptions& options) {
+  if (options.counts_per_newton || !options.calibration.empty()) {
+    throw Error(source, "it holds results, which are calibrated already",
+                "leave --calibration and --counts-per-newton out");
+  }
+  OpenedSensor opened;
+  opened.curves = std::make_shared<Curves>(results->skin().element_pitch_mm(), kMostLivePoints);
+  opened.player = std::make_unique<ResultPlayer>(std::move(results), source, opened.curves);
+  return opened;
+}
+
+}  // namespace
+
 OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) {
   LiveSourceOptions live;
   live.stop = options.stop;
@@ -368,6 +329,11 @@ OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) 
   if (!options.calibration.empty()) {
     const auto stated = read_calibration_file(options.calibration, options.producer.read);
     live.size = {stated.rows, stated.cols};
+  }
+  if (source.starts_with("shm:")) {
+    if (auto results = open_result_stream(source, options.stop)) {
+      return open_results(std::move(results), source, options);
+    }
   }
   std::unique_ptr<FrameStream> stream = open_live_source(source, live);
   if (stream == nullptr) return {};

@@ -25,13 +25,15 @@ struct LiveStatus {
 /// "12 frames, 3 dropped, failed: the disk is full".
 [[nodiscard]] std::string recorded_words(const LiveSinkStatistics& recorded);
 
-/// What a user can do with a sensor.
+/// What a user can do with a sensor. Results of another program have no tare and no raw frames:
+/// then SourceInfo::has_readings is false.
 class LiveControl {
  public:
   virtual ~LiveControl() = default;
   /// Takes the mean of the readings of the next half second as tare of an untouched skin.
   virtual void tare() = 0;
-  /// Records the raw frames from now on. Throws Error where the file cannot be made.
+  /// Records the raw frames from now on. Throws Error where the file cannot be made, and for
+  /// results.
   virtual void record(const std::filesystem::path& path) = 0;
   virtual void stop_recording() = 0;
   [[nodiscard]] virtual LiveStatus status() const = 0;
@@ -89,12 +91,13 @@ class LivePlayer final : public Player, public LiveControl {
 [[nodiscard]] SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options);
 
 struct OpenedSensor {
-  std::unique_ptr<LivePlayer> player;
+  std::unique_ptr<Player> player;
   std::shared_ptr<Curves> curves;  ///< of the last minutes
 };
 
-/// Opens a live source and waits for its first frame; null if LiveOptions::stop gave up. Throws
-/// Error where the source or the calibration cannot be opened.
+/// Opens a live source and waits for its first frame, or for the ring if it is one of results;
+/// null if LiveOptions::stop gave up. Throws Error where the source or the calibration cannot be
+/// opened, or results are to be calibrated.
 [[nodiscard]] OpenedSensor open_sensor(const std::string& source, const LiveOptions& options);
 
 }  // namespace pillarfield::viewer

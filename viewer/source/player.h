@@ -39,7 +39,8 @@ struct PlayerState {
 class LiveControl;
 
 /// Produces fields in its own thread, and never waits for the display: a newer field replaces one
-/// that was not taken. Thread safe. FilePlayer plays a file or a scene, LivePlayer a sensor.
+/// that was not taken. Thread safe. FilePlayer plays a file or a scene, LivePlayer a
+/// sensor, ResultPlayer the results of another program.
 class Player {
  public:
   Player() = default;

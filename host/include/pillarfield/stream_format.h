@@ -61,10 +61,11 @@ typedef struct PillarfieldPacket {
  */
 #define PILLARFIELD_RING_MAGIC 0x31475250u /* "PRG1" */
 
+/* A reader refuses other kinds. 2 and 3 are results of earlier versions, in another layout. */
 enum PillarfieldRingKind {
   PILLARFIELD_RING_FRAMES = 1,
-  PILLARFIELD_RING_RESULTS = 2,  /* of pillars */
-  PILLARFIELD_RING_PRESSURES = 3 /* results of sensels without pillars */
+  PILLARFIELD_RING_RESULTS = 4,  /* of pillars */
+  PILLARFIELD_RING_PRESSURES = 5 /* results of sensels without pillars */
 };
 
 typedef struct PillarfieldRing {
@@ -79,7 +80,7 @@ typedef struct PillarfieldRing {
   uint64_t published;  /* how many were published; the newest has the number published - 1 */
   uint32_t signal;     /* the lower 32 bits of `published` */
   uint32_t closed;     /* 1: the writer has ended */
-  uint64_t reserved;   /* 0 */
+  double pitch_mm;     /* of results: from one pillar, or sensel, to the next; of frames 0 */
 } PillarfieldRing;
 
 /* A slot of frames: this, then all readings, row by row from the top left. */
@@ -91,21 +92,53 @@ typedef struct PillarfieldFrameSlot {
 
 #define PILLARFIELD_MAX_CONTACTS 64u
 
+enum PillarfieldSlip {
+  PILLARFIELD_SLIP_UNKNOWN = 0,
+  PILLARFIELD_STICKING = 1,
+  PILLARFIELD_PARTIAL_SLIP = 2,
+  PILLARFIELD_SLIDING = 3
+};
+
+enum PillarfieldFrictionSource {
+  PILLARFIELD_FRICTION_UNKNOWN = 0,
+  PILLARFIELD_FRICTION_GIVEN = 1,
+  PILLARFIELD_FRICTION_OBSERVED = 2,    /* by the pillars of this frame */
+  PILLARFIELD_FRICTION_CARRIED_OVER = 3 /* from earlier frames */
+};
+
 /* Forces act on the skin: x right, y up, normal positive under pressure. Places are in mm from the
- * centre of the patch. NaN: unknown. */
+ * centre of the patch. NaN: unknown. docs/contacts_found.md defines each quantity. */
 typedef struct PillarfieldContact {
   uint64_t track_id; /* 1, 2, ...; never reused */
   uint64_t pillars;  /* in contact, or sensels */
+  uint64_t ambiguous;
+  uint64_t resolved;        /* of the ambiguous */
+  uint32_t label;           /* its number among the connected parts of the loaded pillars */
+  uint32_t slip;            /* PillarfieldSlip */
+  uint32_t friction_source; /* PillarfieldFrictionSource */
+  uint32_t reserved;        /* 0 */
+  double first_time_s;      /* time_s of its first frame */
   double shear_x_n;
   double shear_y_n;
   double normal_n;
   double torque_nmm;  /* about the outward normal through the centre of pressure */
   double centre_x_mm; /* centre of pressure */
   double centre_y_mm;
+  double middle_x_mm; /* mean place of its pillars */
+  double middle_y_mm;
   double area_mm2;
-  double friction;       /* coefficient */
-  double slip_margin;    /* 1 - |shear| / (friction * normal) */
-  double slipping_share; /* part of the normal force on pillars that slip */
+  double peak_n; /* the largest normal force of a pillar */
+  double peak_x_mm;
+  double peak_y_mm;
+  double friction;           /* coefficient */
+  double friction_deviation; /* its standard deviation; NaN too if it was given */
+  double slip_margin;        /* 1 - |shear| / (friction * normal) */
+  double slipping_share;     /* part of the normal force on pillars that slip */
+  /* Until the whole contact slides at the present rates, with a 95 % interval; infinite: never. */
+  double time_to_slip_s;
+  double time_to_slip_low_s;
+  double time_to_slip_high_s;
+  double slip_within[3]; /* probability of that within 0.1, 0.3 and 1 s */
 } PillarfieldContact;
 
 /* A slot of results: this, then planes [rows, cols] one after the other, row by row from the top

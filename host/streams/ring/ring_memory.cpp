@@ -20,6 +20,8 @@ constexpr std::uint64_t kMostSlots = 1 << 20;
 constexpr std::uint64_t kMostSlotBytes = 1 << 30;
 constexpr std::uint64_t kResultBytes = 3 * sizeof(float) + 1;  ///< of a pillar
 constexpr std::uint64_t kPressureBytes = sizeof(float) + 1;    ///< of a sensel without pillars
+constexpr double kLeastPitchMm = 1e-3;  ///< of a sensel, as check(Skin) has it
+constexpr double kMostPitchMm = 2e3;    ///< of a pillar
 
 std::uint64_t reading_bytes_of(std::uint32_t type) {
   switch (type) {
@@ -36,15 +38,18 @@ std::uint64_t reading_bytes_of(std::uint32_t type) {
 
 }  // namespace
 
+bool holds_results(const RingLayout& layout) {
+  return layout.kind == PILLARFIELD_RING_RESULTS || layout.kind == PILLARFIELD_RING_PRESSURES;
+}
+
 std::optional<std::uint64_t> content_bytes(const RingLayout& layout) {
   if (layout.rows < 1 || layout.cols < 1) return std::nullopt;
   const std::uint64_t elements = std::uint64_t{layout.rows} * layout.cols;
   if (elements > PILLARFIELD_MAX_SENSELS) return std::nullopt;
-  if (layout.kind == PILLARFIELD_RING_RESULTS) {
-    return sizeof(PillarfieldResultSlot) + elements * kResultBytes;
-  }
-  if (layout.kind == PILLARFIELD_RING_PRESSURES) {
-    return sizeof(PillarfieldResultSlot) + elements * kPressureBytes;
+  if (holds_results(layout)) {
+    if (!(layout.pitch_mm >= kLeastPitchMm && layout.pitch_mm <= kMostPitchMm)) return std::nullopt;
+    const bool pillars = layout.kind == PILLARFIELD_RING_RESULTS;
+    return sizeof(PillarfieldResultSlot) + elements * (pillars ? kResultBytes : kPressureBytes);
   }
   const std::uint64_t bytes = reading_bytes_of(layout.type);
   if (layout.kind != PILLARFIELD_RING_FRAMES || bytes == 0) return std::nullopt;
@@ -57,7 +62,9 @@ std::uint32_t slots_for(const RingLayout& layout) {
 }
 
 RingLayout layout_of(const PillarfieldRing& ring) {
-  return {static_cast<PillarfieldRingKind>(ring.kind), ring.rows, ring.cols, ring.type};
+  RingLayout layout{static_cast<PillarfieldRingKind>(ring.kind), ring.rows, ring.cols, ring.type};
+  if (holds_results(layout)) layout.pitch_mm = ring.pitch_mm;
+  return layout;
 }
 
 bool is_valid(const PillarfieldRing& ring, std::uint64_t segment_bytes) {

@@ -15,9 +15,13 @@ struct RingLayout {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   std::uint32_t type = 0;  ///< PillarfieldReadingType of frames
+  double pitch_mm = 0;     ///< of the elements of results
 
   bool operator==(const RingLayout&) const = default;
 };
+
+/// Results of pillars or of sensels, rather than frames.
+[[nodiscard]] bool holds_results(const RingLayout& layout);
 
 /// Bytes of a slot that a layout needs; none if it is out of range.
 [[nodiscard]] std::optional<std::uint64_t> content_bytes(const RingLayout& layout);

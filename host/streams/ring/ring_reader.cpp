@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
@@ -27,10 +28,31 @@ constexpr RingReader::Time kLongestWait = 50ms;
 
 RingReader::Time now_of_ring() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
+/// A ring that cannot be read as this content.
+[[noreturn]] void throw_unfit(const std::string& name, RingReader::Content content,
+                              const PillarfieldRing& ring, bool valid) {
+  using Content = RingReader::Content;
+  constexpr std::uint32_t kEarlierResults = 2;
+  constexpr std::uint32_t kEarlierPressures = 3;
+  if (ring.magic == PILLARFIELD_RING_MAGIC && content != Content::frames &&
+      (ring.kind == kEarlierResults || ring.kind == kEarlierPressures)) {
+    throw Error(name, "it holds results in the layout of an earlier version",
+                "let this version write it");
+  }
+  if (valid && content == Content::frames) {
+    throw Error(name, "it holds results, not frames",
+                "open the ring of the sensor, or of stream --relay");
+  }
+  if (valid) throw Error(name, "it holds frames, not results", "open the ring of stream --to");
+  constexpr std::array kContents = {"frames or results", "frames", "results"};
+  throw Error(name, fmt::format("is not a ring of {}", kContents[static_cast<int>(content)]),
+              "docs/stream_format.md describes the ring");
+}
+
 }  // namespace
 
-RingReader::RingReader(const std::string& name, PillarfieldRingKind kind)
-    : name_("shm:" + name), segment_name_(segment_name(name)), kind_(kind) {}
+RingReader::RingReader(const std::string& name, Content content)
+    : name_("shm:" + name), segment_name_(segment_name(name)), content_(content) {}
 
 template <class T>
 T RingReader::load(std::size_t offset) const {
@@ -88,19 +110,18 @@ bool RingReader::attach() {
   return true;
 }
 
+bool RingReader::is_wanted(const RingLayout& layout) const {
+  return content_ == Content::any || holds_results(layout) == (content_ == Content::results);
+}
+
 bool RingReader::fits(const PillarfieldRing& ring, std::uint64_t bytes) {
-  const bool valid = is_valid(ring, bytes) && layout_of(ring).kind == kind_;
-  if (valid && layout_ && layout_of(ring) != *layout_) other_ = layout_of(ring);
-  if (layout_) return valid && layout_of(ring) == *layout_;
-  if (valid) return true;
-  if (kind_ == PILLARFIELD_RING_FRAMES && is_valid(ring, bytes)) {
-    throw Error(name_, "it holds results, not frames",
-                "open the ring of the sensor, or of stream --relay");
-  }
-  throw Error(
-      name_,
-      kind_ == PILLARFIELD_RING_FRAMES ? "is not a ring of frames" : "is not a ring of results",
-      "docs/streams.md describes the ring");
+  const RingLayout layout = layout_of(ring);
+  const bool valid = is_valid(ring, bytes);
+  const bool wanted = valid && is_wanted(layout);
+  if (wanted && layout_ && layout != *layout_) other_ = layout;
+  if (layout_) return wanted && layout == *layout_;
+  if (wanted) return true;
+  throw_unfit(name_, content_, ring, valid);
 }
 
 void RingReader::detach() {

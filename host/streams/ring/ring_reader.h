@@ -16,11 +16,14 @@ class RingReader {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// `name` without "shm:". The ring need not exist yet. Throws Error if the name is not allowed.
-  RingReader(const std::string& name, PillarfieldRingKind kind);
+  /// What the ring may hold.
+  enum class Content : std::uint8_t { any, frames, results };
 
-  /// Opens the ring if it exists; whether it is open. Throws Error if the segment is none of this
-  /// kind, belongs to another user than this one or root, or may not be read.
+  /// `name` without "shm:". The ring need not exist yet. Throws Error if the name is not allowed.
+  RingReader(const std::string& name, Content content);
+
+  /// Opens the ring if it exists; whether it is open. Throws Error if the segment has none of this
+  /// content, belongs to another user than this one or root, or may not be read.
   bool open();
 
   /// The layout of the first ring; later ones must have it too. Set once the ring was open.
@@ -35,13 +38,14 @@ class RingReader {
   [[nodiscard]] std::uint64_t overrun() const { return overrun_; }
   /// Segments that did not fit.
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
-  /// The layout of the latest ring of this kind that did not fit.
+  /// The layout of the latest ring of this content that did not fit.
   [[nodiscard]] const std::optional<RingLayout>& other() const { return other_; }
   void clear_counts() { overrun_ = invalid_ = 0; }
 
  private:
   [[nodiscard]] bool attach();
   [[nodiscard]] bool fits(const PillarfieldRing& ring, std::uint64_t bytes);
+  [[nodiscard]] bool is_wanted(const RingLayout& layout) const;
   void detach();
   bool is_replaced() const;
   void detach_if_replaced();
@@ -53,7 +57,7 @@ class RingReader {
 
   std::string name_;
   std::string segment_name_;
-  PillarfieldRingKind kind_;
+  Content content_;
   Descriptor segment_;
   Mapping head_;  ///< for the address of the futex; never read
   PillarfieldRing ring_ = {};

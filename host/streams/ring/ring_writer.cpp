@@ -81,6 +81,7 @@ RingWriter::RingWriter(const std::string& name, const RingLayout& layout, std::u
   layout_.rows = layout.rows;
   layout_.cols = layout.cols;
   layout_.type = layout.type;
+  layout_.pitch_mm = layout.pitch_mm;
   layout_.slots = slots;
   layout_.slot_bytes = (*content + 63) / 64 * 64;
   guard_.begin();
@@ -125,7 +126,8 @@ bool RingWriter::open() {
     store(ring().magic, PILLARFIELD_RING_MAGIC);
     return true;
   }
-  if (size == bytes && std::memcmp(&ring(), &layout_, offsetof(PillarfieldRing, session)) == 0) {
+  if (size == bytes && std::memcmp(&ring(), &layout_, offsetof(PillarfieldRing, session)) == 0 &&
+      ring().pitch_mm == layout_.pitch_mm) {
     return true;
   }
   shm_unlink(segment_name_.c_str());

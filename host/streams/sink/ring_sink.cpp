@@ -10,6 +10,7 @@
 
 #include "streams/live_sink.h"
 #include "streams/message/host_clock.h"
+#include "streams/ring/ring_contact.h"
 #include "streams/ring/ring_writer.h"
 
 namespace pillarfield {
@@ -20,24 +21,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 RingLayout layout_of_results(const Skin& skin) {
   return {skin.has_pillars() ? PILLARFIELD_RING_RESULTS : PILLARFIELD_RING_PRESSURES,
-          skin.element_rows(), skin.element_cols(), 0};
-}
-
-PillarfieldContact contact_of(std::uint64_t track_id, const ContactQuantities& contact) {
-  return {
-      .track_id = track_id,
-      .pillars = contact.pillars,
-      .shear_x_n = contact.shear_x_n,
-      .shear_y_n = contact.shear_y_n,
-      .normal_n = contact.normal_n,
-      .torque_nmm = contact.torque_nmm,
-      .centre_x_mm = contact.centre_of_pressure.x_mm,
-      .centre_y_mm = contact.centre_of_pressure.y_mm,
-      .area_mm2 = contact.area_mm2,
-      .friction = contact.friction.value_or(kUnknown),
-      .slip_margin = contact.slip_margin.value_or(kUnknown),
-      .slipping_share = contact.slipping_share.value_or(kUnknown),
-  };
+          skin.element_rows(), skin.element_cols(), 0, skin.element_pitch_mm()};
 }
 
 double sum_of(std::span<const float> plane) {
@@ -52,14 +36,10 @@ PillarfieldContact total_of(const ForceFieldView& forces) {
   total.shear_x_n = sum_of(forces.shear_x);
   total.shear_y_n = sum_of(forces.shear_y);
   total.normal_n = sum_of(forces.normal);
-  total.torque_nmm = total.area_mm2 = kUnknown;
-  total.centre_of_pressure = {kUnknown, kUnknown};
-  return contact_of(0, total);
-}
-
-/// Without pillars, shear is unknown.
-void forget_shear(PillarfieldContact& contact) {
-  contact.shear_x_n = contact.shear_y_n = contact.torque_nmm = kUnknown;
+  total.has_shear = !forces.shear_x.empty();
+  total.torque_nmm = total.area_mm2 = total.peak_n = kUnknown;
+  total.centre_of_pressure = total.centre = total.peak = {kUnknown, kUnknown};
+  return ring_contact(total);
 }
 
 class RingSink final : public LiveSink {
@@ -123,13 +103,10 @@ void RingSink::write_head(PillarfieldResultSlot& slot, const SolvedFrame& frame)
   } else {
     write_contacts(slot, *frame.contacts);
   }
-  if (layout_.kind == PILLARFIELD_RING_RESULTS) return;
-  forget_shear(slot.total);
-  for (std::uint32_t i = 0; i < slot.contacts; ++i) forget_shear(slot.contact[i]);
 }
 
 void RingSink::write_contacts(PillarfieldResultSlot& slot, const FrameContacts& contacts) {
-  slot.total = contact_of(0, contacts.total);
+  slot.total = ring_contact(contacts.total);
   slot.contacts_found = contacts.contacts.size();
   const std::size_t count =
       std::min<std::size_t>(contacts.contacts.size(), PILLARFIELD_MAX_CONTACTS);
@@ -140,7 +117,7 @@ void RingSink::write_contacts(PillarfieldResultSlot& slot, const FrameContacts& 
       [](const TrackedContact* contact) { return contact->quantities.normal_n; });
   slot.contacts = static_cast<std::uint32_t>(count);
   for (std::size_t i = 0; i < count; ++i) {
-    slot.contact[i] = contact_of(strongest_[i]->track_id, strongest_[i]->quantities);
+    slot.contact[i] = ring_contact(*strongest_[i]);
   }
 }
 

@@ -10,7 +10,7 @@ namespace {
 /// Frames of a ring in shared memory.
 class RingSource final : public PacketSource {
  public:
-  explicit RingSource(const std::string& name) : reader_(name, PILLARFIELD_RING_FRAMES) {}
+  explicit RingSource(const std::string& name) : reader_(name, RingReader::Content::frames) {}
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   [[nodiscard]] Counts counts() const override;

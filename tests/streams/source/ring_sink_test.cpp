@@ -3,12 +3,17 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
+#include <tuple>
 
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
+#include "pillarfield/result_stream.h"
 #include "streams/ring/ring_reader.h"
+#include "streams/ring/ring_writer.h"
 #include "tests/base/message.h"
 #include "tests/streams/source/assembler_run.h"
 
@@ -57,7 +62,7 @@ PillarfieldResultSlot head_of(const std::byte* slot) {
 TEST(RingSink, PublishesPlanesTimesAndTotal) {
   const auto sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
   EXPECT_EQ(sink->name(), "shm:" + results_name());
-  RingReader reader(results_name(), PILLARFIELD_RING_RESULTS);
+  RingReader reader(results_name(), RingReader::Content::results);
   for (std::uint64_t sequence = 40; sequence < 60; ++sequence) {
     Solved solved(sequence);
     const SenselBlock missing = {0, 1, 0, 10};
@@ -105,7 +110,7 @@ TEST(RingSink, KeepsTheStrongestContacts) {
   Solved solved(1);
   solved.frame.contacts = &contacts;
   sink->append(solved.frame);
-  RingReader reader(results_name(), PILLARFIELD_RING_RESULTS);
+  RingReader reader(results_name(), RingReader::Content::results);
   const PillarfieldResultSlot head = head_of(reader.read(300s));
   EXPECT_EQ(head.total.normal_n, 77);
   EXPECT_EQ(head.contacts_found, 100);
@@ -118,6 +123,165 @@ TEST(RingSink, KeepsTheStrongestContacts) {
     EXPECT_EQ(contact.centre_x_mm, source.quantities.centre_of_pressure.x_mm);
     EXPECT_EQ(std::isnan(contact.slip_margin), !source.quantities.slip_margin);
   }
+}
+
+/// A contact whose every quantity differs.
+TrackedContact told_contact() {
+  TrackedContact contact;
+  contact.track_id = 9;
+  contact.label = 3;
+  contact.first_time_s = 0.2;
+  ContactQuantities& q = contact.quantities;
+  q.pillars = 12;
+  q.ambiguous = 5;
+  q.resolved = 4;
+  q.shear_x_n = -1;
+  q.shear_y_n = 2;
+  q.normal_n = 3;
+  q.torque_nmm = 4;
+  q.centre_of_pressure = {5, 6};
+  q.centre = {7, 8};
+  q.area_mm2 = 9;
+  q.peak_n = 0.5;
+  q.peak = {10, 11};
+  q.friction = 0.8;
+  q.friction_deviation = 0.05;
+  q.friction_source = FrictionSource::carried_over;
+  q.slip = SlipState::partial;
+  q.slip_margin = 0.3;
+  q.slipping_share = 0.4;
+  q.slip_forecast = {0.45, 0.3, std::nullopt, {0.01, 0.2, 0.97}};
+  return contact;
+}
+
+TEST(ResultStream, GivesWhatWasWritten) {
+  LiveSinkInfo info = info_of_skin(6, 10);
+  info.skin.sensel_pitch_mm = 0.7;
+  const auto sink = create_live_sink("shm:" + results_name(), info);
+  FrameContacts contacts;
+  contacts.contacts = {told_contact(), TrackedContact{.track_id = 4, .label = 1}};
+  contacts.total.area_mm2 = 20;
+  contacts.total.normal_n = 30;
+  Solved solved(8);
+  solved.frame.contacts = &contacts;
+  sink->append(solved.frame);
+  const auto stream = open_result_stream("shm:" + results_name(), {});
+  ASSERT_NE(stream, nullptr);
+  EXPECT_EQ(stream->skin().element_rows(), 3);
+  EXPECT_EQ(stream->skin().element_cols(), 5);
+  EXPECT_EQ(stream->skin().element_pitch_mm(), 1.4);
+  StreamedResult result;
+  ASSERT_TRUE(stream->next(result, 300s));
+  EXPECT_EQ(result.sequence, 8);
+  EXPECT_EQ(result.time_s, 2);
+  EXPECT_EQ(result.arrived, solved.frame.arrived);
+  EXPECT_EQ(result.forces.shear_x, solved.field.shear_x);
+  EXPECT_EQ(result.forces.shear_y, solved.field.shear_y);
+  EXPECT_EQ(result.forces.normal, solved.field.normal);
+  EXPECT_EQ(result.forces.status, solved.field.status);
+  ASSERT_TRUE(result.contacts);
+  EXPECT_EQ(result.contacts->total.normal_n, 30);
+  ASSERT_EQ(result.contacts->contacts.size(), 2);
+  EXPECT_EQ(result.contacts->contacts[0].track_id, 4);
+  EXPECT_FALSE(result.contacts->contacts[0].quantities.slip_forecast);
+  const TrackedContact& told = result.contacts->contacts[1];
+  const TrackedContact expected = told_contact();
+  EXPECT_EQ(told.track_id, expected.track_id);
+  EXPECT_EQ(told.label, expected.label);
+  EXPECT_EQ(told.age_s, 1.8);
+  const ContactQuantities& q = told.quantities;
+  const ContactQuantities& e = expected.quantities;
+  EXPECT_EQ(std::tie(q.pillars, q.ambiguous, q.resolved, q.shear_x_n, q.shear_y_n, q.normal_n,
+                     q.torque_nmm, q.area_mm2, q.peak_n),
+            std::tie(e.pillars, e.ambiguous, e.resolved, e.shear_x_n, e.shear_y_n, e.normal_n,
+                     e.torque_nmm, e.area_mm2, e.peak_n));
+  EXPECT_EQ(std::tie(q.centre_of_pressure.x_mm, q.centre.y_mm, q.peak.y_mm),
+            std::tie(e.centre_of_pressure.x_mm, e.centre.y_mm, e.peak.y_mm));
+  EXPECT_EQ(std::tie(q.friction, q.friction_deviation, q.friction_source, q.slip, q.slip_margin,
+                     q.slipping_share),
+            std::tie(e.friction, e.friction_deviation, e.friction_source, e.slip, e.slip_margin,
+                     e.slipping_share));
+  ASSERT_TRUE(q.slip_forecast);
+  EXPECT_EQ(q.slip_forecast->time_s, 0.45);
+  EXPECT_EQ(q.slip_forecast->low_s, 0.3);
+  EXPECT_FALSE(q.slip_forecast->high_s);
+  EXPECT_EQ(q.slip_forecast->probability, e.slip_forecast->probability);
+  EXPECT_FALSE(stream->next(result, 0s));
+
+  // Without contacts there are none, rather than an empty list; a gap is counted.
+  sink->append(Solved(11).frame);
+  ASSERT_TRUE(stream->next(result, 300s));
+  EXPECT_FALSE(result.contacts);
+  EXPECT_EQ(stream->health().frames, 2);
+  EXPECT_EQ(stream->health().lost, 2);
+}
+
+TEST(ResultStream, WithoutPillarsHasNoShear) {
+  LiveSinkInfo info = info_of_skin(3, 5);
+  info.skin.layout = SkinLayout::sensels;
+  const auto sink = create_live_sink("shm:" + results_name(), info);
+  Solved solved(1);
+  solved.frame.forces.shear_x = solved.frame.forces.shear_y = {};
+  FrameContacts contacts;
+  contacts.total.has_shear = false;
+  solved.frame.contacts = &contacts;
+  sink->append(solved.frame);
+  RingReader reader(results_name(), RingReader::Content::results);
+  EXPECT_TRUE(std::isnan(head_of(reader.read(300s)).total.shear_x_n));
+  const auto stream = open_result_stream("shm:" + results_name(), {});
+  StreamedResult result;
+  ASSERT_TRUE(stream->next(result, 300s));
+  EXPECT_FALSE(stream->skin().has_pillars());
+  EXPECT_TRUE(result.forces.shear_x.empty());
+  EXPECT_EQ(result.forces.normal, solved.field.normal);
+  EXPECT_FALSE(result.contacts->total.has_shear);
+  EXPECT_EQ(result.contacts->total.shear_x_n, 0);
+}
+
+TEST(ResultStream, FollowsANewRingOfTheSameLayoutAlone) {
+  auto sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
+  sink->append(Solved(1).frame);
+  const auto stream = open_result_stream("shm:" + results_name(), {});
+  StreamedResult result;
+  ASSERT_TRUE(stream->next(result, 300s));
+  sink.reset();
+  LiveSinkInfo info = info_of_skin(6, 10);
+  info.skin.sensel_pitch_mm = 2;
+  sink = create_live_sink("shm:" + results_name(), info);
+  sink->append(Solved(2).frame);
+  for (int i = 0; i < 3000 && stream->health().mismatch.empty(); ++i) {
+    EXPECT_FALSE(stream->next(result, 100ms));
+  }
+  EXPECT_EQ(stream->health().mismatch, "results are 3 x 5 of 4 mm, 3 x 5 of 1.26491 mm expected");
+  sink.reset();
+  sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
+  sink->append(Solved(0).frame);
+  ASSERT_TRUE(stream->next(result, 300s));
+  EXPECT_EQ(result.sequence, 0);
+  EXPECT_EQ(stream->health().restarts, 1);
+}
+
+TEST(ResultStream, IsNoneOfFramesNorOfAnEarlierVersion) {
+  const std::string source = "shm:" + results_name();
+  const auto message = [&] {
+    return core_test::message_of([&] { (void)open_result_stream(source, {}); });
+  };
+  {
+    const RingWriter frames(results_name(), {PILLARFIELD_RING_FRAMES, 6, 10, PILLARFIELD_U8}, 4);
+    EXPECT_EQ(open_result_stream(source, {}), nullptr);
+  }
+  int asked = 0;
+  EXPECT_EQ(open_result_stream(source, [&] { return ++asked == 2; }), nullptr);
+  const auto sink = create_live_sink(source, info_of_skin(6, 10));
+  std::fstream segment("/dev/shm/" + results_name(), std::ios::in | std::ios::out);
+  for (const char kind : {2, 3}) {
+    segment.seekp(offsetof(PillarfieldRing, kind)).put(kind).flush();
+    EXPECT_NE(message().find("results in the layout of an earlier version"), std::string::npos);
+  }
+  segment.seekp(offsetof(PillarfieldRing, kind)).put(7).flush();
+  EXPECT_NE(message().find("is not a ring of frames or results"), std::string::npos);
+  EXPECT_NE(core_test::message_of([] { (void)open_result_stream("udp:1", {}); }).find("shm:NAME"),
+            std::string::npos);
 }
 
 TEST(RingSink, StopsAtAFrameOfAnotherSize) {

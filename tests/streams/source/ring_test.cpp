@@ -119,7 +119,7 @@ TEST(Ring, DeliversFramesAndUnlinksAtTheEnd) {
 TEST(Ring, WakesItsReader) {
   const Name name;
   RingWriter writer(name.text(), kLayout, 8);
-  RingReader reader(name.text(), PILLARFIELD_RING_FRAMES);
+  RingReader reader(name.text(), RingReader::Content::frames);
   std::atomic<bool> read = false;
   std::thread waiting([&] { read = reader.read(300s) != nullptr; });
   std::this_thread::sleep_for(20ms);
@@ -268,7 +268,7 @@ TEST(Ring, APollingReaderFollowsOneThatReplacesItToo) {
 
 TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
   const Name name;
-  const RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);
+  const RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0, 1}, 4);
   EXPECT_NE(refusal_of(name.source()).find("it holds results, not frames"), std::string::npos);
   for (const char* const bad : {"shm:", "shm:a/b", "shm:.", "shm:..", "shm:a b"}) {
     EXPECT_NE(refusal_of(bad).find("is not the name of a ring"), std::string::npos) << bad;

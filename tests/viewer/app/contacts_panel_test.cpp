@@ -29,16 +29,35 @@ TEST(FormatContact, FollowTheHeads) {
     return viewer::format_contact(name, of, SkinLayout::pillars, kPressureUnits.front());
   };
   EXPECT_EQ(format_contact("7", contact),
-            (Words{"7", "50.1", "5.00", "–", "unknown", "0 %", "157", "285", "320", "0.457"}));
+            (Words{"7", "50.1", "5.00", "–", "unknown", "–", "0 %", "157", "285", "320", "0.457"}));
   contact.ambiguous = 50;
   contact.friction = 0.6;
   contact.slip = SlipState::partial;
   EXPECT_EQ(format_contact("7", contact)[3], "0.60");
   EXPECT_EQ(format_contact("7", contact)[4], "partial");
-  EXPECT_EQ(format_contact("7", contact)[5], "25 %");
+  EXPECT_EQ(format_contact("7", contact)[6], "25 %");
   contact.resolved = 45;
-  EXPECT_EQ(format_contact("all", contact)[5], "25 % / 90 %");
-  EXPECT_EQ(format_contact("all", {})[5], "–");
+  EXPECT_EQ(format_contact("all", contact)[6], "25 % / 90 %");
+  EXPECT_EQ(format_contact("all", {})[6], "–");
+}
+
+TEST(FormatContact, TellsWhenItSlips) {
+  ContactQuantities contact = a_contact();
+  const auto slips_in = [&] {
+    return format_contact("7", contact, SkinLayout::pillars, kPressureUnits.front())[5];
+  };
+  EXPECT_EQ(format_slip_forecast(contact), "");
+  contact.slip_forecast = {0.423, 0.31, std::nullopt, {0.004, 0.2, 0.97}};
+  EXPECT_EQ(slips_in(), "0.42 s");
+  EXPECT_EQ(format_slip_forecast(contact),
+            "slips in 0.31 s … never (95 %)\nslips within 0.1 s  0 %\n"
+            "slips within 0.3 s  20 %\nslips within 1 s  97 %");
+  contact.slip_forecast->time_s = 12.6;
+  EXPECT_EQ(slips_in(), "13 s");
+  contact.slip_forecast->time_s = 1e9;
+  EXPECT_EQ(slips_in(), "> 60 s");
+  contact.slip_forecast->time_s.reset();
+  EXPECT_EQ(slips_in(), "–");
 }
 
 TEST(FormatContact, OfSenselsHasNoShear) {

@@ -14,7 +14,7 @@ template <class LookedFor>
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
                                  const char* ending, const LookedFor& looked_for) {
   std::string stem = std::filesystem::path(source.name).stem().string();
-  if (source.kind == "sensor") {  // No path: "udp:127.0.0.1:9870".
+  if (source.frames == 0) {  // Live, no path: "udp:127.0.0.1:9870".
     stem = source.name;
     for (char& letter : stem) {
       if (std::string_view(":./ ").find(letter) != std::string_view::npos) letter = '_';

@@ -89,6 +89,21 @@ std::string time_text(const AppState& state, const PlayerState& playback, std::u
   return fmt::format("{:.3f} s   {} / {}", time, shown + 1, playback.frames);
 }
 
+/// Record and tare, where frames are solved here.
+void sensor_icons(const Command& command, LiveControl& live, const LiveStatus& status) {
+  const float gap = ImGui::GetFontSize();
+  ImGui::SameLine(0, gap / 2);
+  const bool records = !status.recording.empty();
+  if (icon_button("record", icon::record, records, "Record the raw frames (Ctrl+R)")) {
+    command.pending.record = true;
+  }
+  ImGui::SameLine(0, gap / 2);
+  if (icon_button("tare", icon::tare, status.taring,
+                  "Tare: the mean of the next half second becomes zero (Z)")) {
+    live.tare();
+  }
+}
+
 /// The row of a sensor: freeze, record, tare, and the time.
 void live_transport(const Command& command, LiveControl& live) {
   AppState& state = command.state;
@@ -100,16 +115,7 @@ void live_transport(const Command& command, LiveControl& live) {
                   "Freeze the picture, not the sensor (Space)")) {
     playing ? player.pause() : player.play();
   }
-  ImGui::SameLine(0, gap / 2);
-  const bool records = !status.recording.empty();
-  if (icon_button("record", icon::record, records, "Record the raw frames (Ctrl+R)")) {
-    command.pending.record = true;
-  }
-  ImGui::SameLine(0, gap / 2);
-  if (icon_button("tare", icon::tare, status.taring,
-                  "Tare: the mean of the next half second becomes zero (Z)")) {
-    live.tare();
-  }
+  if (player.info().has_readings) sensor_icons(command, live, status);
   ImGui::SameLine(0, gap);
   const std::string time =
       state.field ? fmt::format("{:.2f} s   frame {}", state.field->time_s, state.field->index + 1)

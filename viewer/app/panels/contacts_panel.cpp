@@ -60,12 +60,16 @@ void write_right(const std::string& words) {
   ImGui::TextUnformatted(words.c_str());
 }
 
-/// All values of a row, also those that do not fit.
-void show_all(const std::vector<std::string>& words, SkinLayout layout) {
+/// All values of a row, also those that do not fit, and how likely the contact slips.
+void show_all(const std::vector<std::string>& words, const ContactQuantities& contact,
+              SkinLayout layout) {
   const std::vector<ContactColumn>& columns = contact_columns(layout);
   std::string lines;
   for (std::size_t i = 0; i < words.size(); ++i) {
     lines += fmt::format("{}{}  {}", i == 0 ? "" : "\n", columns[i].head, words[i]);
+  }
+  if (const std::string forecast = format_slip_forecast(contact); !forecast.empty()) {
+    lines += "\n" + forecast;
   }
   ImGui::SetTooltip("%s", lines.c_str());
 }
@@ -80,7 +84,7 @@ bool write_row(const std::string& name, const ContactQuantities& contact, SkinLa
     ImGui::TableNextColumn();
     if (i == 0) {
       clicked = ImGui::Selectable(words[i].c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
-      if (ImGui::IsItemHovered()) show_all(words, layout);
+      if (ImGui::IsItemHovered()) show_all(words, contact, layout);
     } else {
       write_right(words[i]);
     }

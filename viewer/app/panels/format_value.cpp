@@ -218,6 +218,15 @@ std::string format_friction(const ContactQuantities& contact) {
   return fmt::format("{:.2f} ± {:.2f}", *contact.friction, *contact.friction_deviation);
 }
 
+/// "0.42 s"; "–" if it is not foretold, or will not slide.
+std::string format_time_to_slip(const ContactQuantities& contact) {
+  constexpr double kFarS = 60;
+  const auto& forecast = contact.slip_forecast;
+  if (!forecast || !forecast->time_s) return "–";
+  if (*forecast->time_s > kFarS) return fmt::format("> {:.0f} s", kFarS);
+  return fmt::format("{:.{}f} s", *forecast->time_s, *forecast->time_s < 9.95 ? 2 : 0);
+}
+
 /// Columns of pillars alone.
 std::vector<ContactColumn> shear_columns() {
   return {{"shear", "shear force, N", "00000",
@@ -227,6 +236,8 @@ std::vector<ContactColumn> shear_columns() {
           {"µ", "friction and its standard deviation, if observed", "0.00 ± 0.00", format_friction},
           {"slip", "sticking, partial, sliding or unknown", "unknown",
            [](const ContactQuantities& contact) -> std::string { return name_of(contact.slip); }},
+          {"slips in", "seconds until the whole contact slides at the present rates", "> 60 s",
+           format_time_to_slip},
           {"ambiguous", "fraction of pillars / fraction of these resolved from the contact",
            "00 % / 00 %", format_ambiguous}};
 }
@@ -260,6 +271,21 @@ const std::vector<ContactColumn>& contact_columns(SkinLayout layout) {
   static const std::vector<ContactColumn> of_pillars = columns_of(SkinLayout::pillars);
   static const std::vector<ContactColumn> of_sensels = columns_of(SkinLayout::sensels);
   return layout == SkinLayout::pillars ? of_pillars : of_sensels;
+}
+
+std::string format_slip_forecast(const ContactQuantities& contact) {
+  const auto& forecast = contact.slip_forecast;
+  if (!forecast) return {};
+  const auto end = [](const std::optional<double>& time_s) {
+    return time_s ? fmt::format("{:.2f} s", *time_s) : "never";
+  };
+  std::string words =
+      fmt::format("slips in {} … {} (95 %)", end(forecast->low_s), end(forecast->high_s));
+  for (std::size_t i = 0; i < forecast->probability.size(); ++i) {
+    words += fmt::format("\nslips within {} s  {:.0f} %", SlipForecast::kWithinS[i],
+                         100 * forecast->probability[i]);
+  }
+  return words;
 }
 
 std::vector<std::string> format_contact(const std::string& name, const ContactQuantities& contact,

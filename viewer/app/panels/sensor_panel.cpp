@@ -42,6 +42,21 @@ std::string state_words(const LiveStatus& status) {
   return fmt::format("newest frame {:.0f} ms old", 1e3 * status.health.since_frame_s);
 }
 
+/// Record and tare, where frames are solved here.
+void sensor_buttons(const Command& command, LiveControl& live, const LiveStatus& status) {
+  const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  const bool records = !status.recording.empty();
+  if (ImGui::Button(records ? "Stop recording" : "Record", ImVec2(half, 0))) {
+    command.pending.record = true;
+  }
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Record the raw frames (Ctrl+R)");
+  ImGui::SameLine();
+  if (ImGui::Button(status.taring ? "Measuring ..." : "Tare", ImVec2(half, 0))) live.tare();
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("The mean of the next half second becomes zero; touch nothing (Z)");
+  }
+}
+
 }  // namespace
 
 std::string silent_words(const LiveStatus& status) {
@@ -87,19 +102,9 @@ void sensor_panel(const Command& command) {
   LiveControl* const live = command.state.player->live();
   if (live == nullptr) return;
   const LiveStatus status = live->status();
-  const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-  const bool records = !status.recording.empty();
-  if (ImGui::Button(records ? "Stop recording" : "Record", ImVec2(half, 0))) {
-    command.pending.record = true;
-  }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Record the raw frames (Ctrl+R)");
-  ImGui::SameLine();
-  if (ImGui::Button(status.taring ? "Measuring ..." : "Tare", ImVec2(half, 0))) live->tare();
-  if (ImGui::IsItemHovered()) {
-    ImGui::SetTooltip("The mean of the next half second becomes zero; touch nothing (Z)");
-  }
+  if (command.state.player->info().has_readings) sensor_buttons(command, *live, status);
   faint_text(style, state_words(status).c_str());
-  if (records) {
+  if (!status.recording.empty()) {
     const std::string name = std::filesystem::path(status.recording).filename().string();
     faint_text(style, fmt::format("{}: {}", name, recorded_words(status.recorded)).c_str());
   }

@@ -46,7 +46,8 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
                          .stop = stop,
                          .say = [&](const std::string& words) { waiting += ": " + words; }});
   if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
-  if (!options.plain.layout && options.calibration.empty()) {
+  const bool solves_here = opened.player->info().has_readings;
+  if (solves_here && !options.plain.layout && options.calibration.empty()) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name),
                layout_note(opened.player->info().skin));
   }
