@@ -13,6 +13,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
+#include "pillarfield/result_stream.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
 #include "python/process.h"
@@ -22,7 +23,76 @@ namespace pillarfield::python {
 namespace {
 
 constexpr const char* kLiveSource = "Frames of a sensor as they come.";
+constexpr const char* kLiveResults = "Results that another program writes, as they come.";
 constexpr const char* kLiveSink = "Passes forces on without ever waiting for who receives them.";
+
+/// Waits for next_within(patience) to give something, at most for `timeout_s`; None if nothing
+/// came.
+template <class Next>
+py::object wait_for_next(double timeout_s, Next next_within) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::nanoseconds kPatience = std::chrono::milliseconds(100);
+  constexpr double kMostSeconds = 1e9;
+  const double seconds =
+      std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
+  const auto end =
+      Clock::now() + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+  for (;;) {
+    const std::chrono::nanoseconds left = end - Clock::now();
+    py::object next = next_within(std::clamp(left, std::chrono::nanoseconds(0), kPatience));
+    if (!next.is_none() || left <= std::chrono::nanoseconds(0)) return next;
+    // Signal handlers and other threads may use, or close, the source meanwhile.
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+}
+
+py::dict counts_of(const StreamHealth& health) {
+  py::dict counts;
+  counts["frames"] = health.frames;
+  counts["lost"] = health.lost;
+  counts["incomplete"] = health.incomplete;
+  counts["late"] = health.late;
+  counts["duplicates"] = health.duplicates;
+  counts["reordered"] = health.reordered;
+  counts["invalid"] = health.invalid;
+  counts["restarts"] = health.restarts;
+  counts["clock_jumps"] = health.clock_jumps;
+  counts["overrun"] = health.overrun;
+  counts["rate_hz"] = health.rate_hz;
+  counts["mismatch"] = health.mismatch;
+  return counts;
+}
+
+/// A stream that several threads use in turn, until it is closed.
+template <class Stream>
+class SharedStream {
+ public:
+  explicit SharedStream(std::unique_ptr<Stream> stream) : stream_(std::move(stream)) {}
+
+  template <class Call>
+  void use(Call call) {
+    if (stream_.is_foreign()) throw_foreign("the live source");
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(mutex_);
+    if (stream_.get() == nullptr) throw Error("the live source", "it is closed", "open it again");
+    call(*stream_.get());
+  }
+  py::dict health() {
+    StreamHealth health;
+    use([&](Stream& stream) { health = stream.health(); });
+    return counts_of(health);
+  }
+  void close() {
+    const py::gil_scoped_release unlocked;
+    if (stream_.is_foreign()) return;
+    const std::lock_guard alone(mutex_);
+    stream_.reset();
+  }
+
+ private:
+  std::mutex mutex_;
+  ProcessBound<Stream> stream_;
+};
 
 /// A live source, used by one thread at a time.
 class LiveFrames {
@@ -34,75 +104,27 @@ class LiveFrames {
     options.serial_baud = serial_baud;
     SignalCheck check_signals;
     options.stop = [&] { return check_signals(), false; };
-    stream_.emplace(open_live_source(source, options));
-    skin_ = stream_->get()->skin();
-    sensel_type_ = stream_->get()->sensel_type();
+    auto stream = open_live_source(source, options);
+    skin_ = stream->skin();
+    sensel_type_ = stream->sensel_type();
     frame_ = std::make_unique<StreamedFrame>(sensel_type_, skin_);
+    stream_.emplace(std::move(stream));
   }
 
   /// The next frame as (readings, time, sequence, missing); None where none came in time. Throws
   /// StopIteration at the end.
   py::object next(double timeout_s) {
-    using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::nanoseconds kPatience = std::chrono::milliseconds(100);
-    constexpr double kMostSeconds = 1e9;
-    const double seconds =
-        std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
-    const auto end =
-        Clock::now() + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
-    for (;;) {
-      const std::chrono::nanoseconds left = end - Clock::now();
-      py::object frame = next_within(std::clamp(left, std::chrono::nanoseconds(0), kPatience));
-      if (!frame.is_none() || left <= std::chrono::nanoseconds(0)) return frame;
-      // Signal handlers and other threads may use, or close, the source meanwhile.
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    }
+    return wait_for_next(timeout_s, [&](auto patience) { return next_within(patience); });
   }
-
-  [[nodiscard]] py::dict health() {
-    StreamHealth health;
-    with_stream([&](FrameStream& stream) { health = stream.health(); });
-    py::dict counts;
-    counts["frames"] = health.frames;
-    counts["lost"] = health.lost;
-    counts["incomplete"] = health.incomplete;
-    counts["late"] = health.late;
-    counts["duplicates"] = health.duplicates;
-    counts["reordered"] = health.reordered;
-    counts["invalid"] = health.invalid;
-    counts["restarts"] = health.restarts;
-    counts["clock_jumps"] = health.clock_jumps;
-    counts["overrun"] = health.overrun;
-    counts["rate_hz"] = health.rate_hz;
-    counts["mismatch"] = health.mismatch;
-    return counts;
-  }
-
+  [[nodiscard]] py::dict health() { return stream_->health(); }
   void discard_waiting() {
-    with_stream([](FrameStream& stream) { stream.discard_waiting(); });
+    stream_->use([](FrameStream& stream) { stream.discard_waiting(); });
   }
-
-  void close() {
-    const py::gil_scoped_release unlocked;
-    if (stream_->is_foreign()) return;
-    const std::lock_guard alone(mutex_);
-    stream_->reset();
-  }
-
+  void close() { stream_->close(); }
   [[nodiscard]] const Skin& skin() const { return skin_; }
   [[nodiscard]] SenselType sensel_type() const { return sensel_type_; }
 
  private:
-  template <class Call>
-  void with_stream(Call call) {
-    if (stream_->is_foreign()) throw_foreign("the live source");
-    const py::gil_scoped_release unlocked;
-    const std::lock_guard alone(mutex_);
-    FrameStream* const stream = stream_->get();
-    if (stream == nullptr) throw Error("the live source", "it is closed", "open it again");
-    call(*stream);
-  }
-
   py::object next_within(std::chrono::nanoseconds patience) {
     py::array readings(dtype_of(sensel_type_), Shape{skin_.rows, skin_.cols});
     auto* const copy = static_cast<std::byte*>(readings.mutable_data());
@@ -110,7 +132,7 @@ class LiveFrames {
     std::vector<std::array<std::uint32_t, 4>> missing;
     double time_s = 0;
     std::uint64_t sequence = 0;
-    with_stream([&](FrameStream& stream) {
+    stream_->use([&](FrameStream& stream) {
       arrival = stream.next(*frame_, patience);
       if (arrival != Arrival::arrived) return;
       pillarfield::copy_readings(frame_->readings, copy);
@@ -125,11 +147,49 @@ class LiveFrames {
     return py::make_tuple(readings, time_s, sequence, missing);
   }
 
-  std::mutex mutex_;
-  std::optional<ProcessBound<FrameStream>> stream_;
+  std::optional<SharedStream<FrameStream>> stream_;
   Skin skin_;
   SenselType sensel_type_ = SenselType::u8;
   std::unique_ptr<StreamedFrame> frame_;
+};
+
+/// The results of another program, used by one thread at a time.
+class LiveResults {
+ public:
+  explicit LiveResults(const std::string& source) {
+    const py::gil_scoped_release unlocked;
+    SignalCheck check_signals;
+    auto stream = open_result_stream(source, [&] { return check_signals(), false; });
+    if (stream == nullptr) {
+      throw Error(source, "it holds frames, not results", "open it with live()");
+    }
+    skin_ = stream->skin();
+    stream_.emplace(std::move(stream));
+  }
+
+  /// The planes of the next result, with its time and contacts; None where none came in time.
+  py::object next(double timeout_s) {
+    return wait_for_next(timeout_s, [&](auto patience) { return next_within(patience); });
+  }
+  [[nodiscard]] py::dict health() { return stream_->health(); }
+  void close() { stream_->close(); }
+  [[nodiscard]] const Skin& skin() const { return skin_; }
+
+ private:
+  py::object next_within(std::chrono::nanoseconds patience) {
+    auto result = std::make_unique<StreamedResult>();
+    bool came = false;
+    stream_->use([&](ResultStream& stream) { came = stream.next(*result, patience); });
+    if (!came) return py::none();
+    const StreamedResult& kept = *result;
+    py::dict planes = lent_planes(kept.forces.view(), capsule_of(std::move(result)));
+    planes["times"] = kept.time_s;
+    if (kept.contacts) planes["contacts"] = std::make_shared<FrameContacts>(*kept.contacts);
+    return planes;
+  }
+
+  std::optional<SharedStream<ResultStream>> stream_;
+  Skin skin_;
 };
 
 /// A live sink, used by one thread at a time.
@@ -221,6 +281,15 @@ void bind_live(py::module_& module) {
       .def_property_readonly(
           "sensel_type", [](const LiveFrames& self) { return name_of(self.sensel_type()); },
           "'uint8', 'uint16' or 'float32', for a Plan");
+  py::class_<LiveResults>(module, "LiveResults", kLiveResults)
+      .def(py::init<const std::string&>(), py::arg("source"))
+      .def("next", &LiveResults::next, py::arg("timeout_s"))
+      .def_property_readonly("health", &LiveResults::health,
+                             "What came and what did not: frames, lost, overrun, restarts, ...; as "
+                             "mismatch, the size of results that came instead, or ''.")
+      .def("close", &LiveResults::close, "Closes the source.")
+      .def_property_readonly("skin", &LiveResults::skin,
+                             "Skin with its size, layout and pitch; the rest is not known");
   py::class_<Sink>(module, "LiveSink", kLiveSink)
       .def(py::init<const std::string&, const SolverPlan&, bool, const std::string&, bool,
                     std::vector<std::string>>(),

@@ -19,7 +19,7 @@ from ._core import (Calibration, Contact, ContactTotal, Device, FrameContacts, P
                     Scene, Skin, Surface, VectorErrors, __version__, devices)
 from ._error import Error
 from ._field import ForceField, Intervals, Points, Uncertainty
-from ._live import Frame, LiveSink, LiveSource, live, sink
+from ._live import Frame, LiveForces, LiveSink, LiveSource, live, live_forces, sink
 from ._processor import Contacts, Processor
 from ._recording import ForceFile, Recording, open, save_recording
 from ._scene import Simulation, scene, simulate
@@ -29,8 +29,8 @@ from .calibrate import SenselFinding
 
 __all__ = ["Calibration", "Comparison", "Contact", "ContactErrors", "ContactTotal", "Contacts",
            "Device", "Error", "ForceField", "ForceFile", "Frame", "FrameContacts", "Intervals",
-           "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
+           "LiveForces", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
            "RegionErrors", "ResultantErrors", "Scene", "SenselFinding", "Simulation", "Skin",
            "Status", "Surface", "Uncertainty", "VectorErrors", "__version__", "calibrate",
-           "compare", "devices", "distributed", "live", "open", "save_recording", "scene",
+           "compare", "devices", "distributed", "live", "live_forces", "open", "save_recording", "scene",
            "simulate", "sink", "solve"]

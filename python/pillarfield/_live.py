@@ -8,6 +8,8 @@ from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Any, Optional
 
+import numpy as np
+
 from . import _core
 from ._error import Error
 from ._field import ForceField
@@ -77,6 +79,53 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
     pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]
     """
     return LiveSource(source, skin=skin, serial_baud=serial_baud)
+
+
+class LiveForces(_core.LiveResults):
+    """Results of another program as they come, an iterator of ForceField; live_forces() opens one."""
+
+    def receive(self, timeout_s: float) -> Optional[ForceField]:
+        """The next result, read-only, or None if none comes in time."""
+        planes = self.next(timeout_s)
+        if planes is None:
+            return None
+        contacts = planes.pop("contacts", None)
+        return ForceField._of(planes, np.asarray(planes.pop("times")),
+                              None if contacts is None else [contacts], self.skin)
+
+    def __iter__(self) -> Iterator[ForceField]:
+        return self
+
+    def __next__(self) -> ForceField:
+        forces = self.receive(math.inf)
+        assert forces is not None
+        return forces
+
+    def __enter__(self) -> LiveForces:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self.close()
+
+
+def live_forces(source: str) -> LiveForces:
+    """Opens the results that another program writes, and waits for their ring; Ctrl+C gives up.
+
+    source: 'shm:NAME' of `pillarfield stream --to shm:NAME`, or of sink()
+
+    The first result is the newest; a reader that falls behind goes on with the newest. Contacts are
+    the 64 strongest, without parent, ended and wrench. When the stream ends, receive()
+    gives None until there are results of the next stream of this skin.
+
+    Raises Error for another source, or a ring of frames.
+
+    >>> import pillarfield as pf
+    >>> pf.live_forces("udp:127.0.0.1:9870")
+    Traceback (most recent call last):
+    pillarfield.Error: udp:127.0.0.1:9870: it is not a ring of results; give shm:NAME
+    """
+    return LiveForces(source)
 
 
 class LiveSink(_core.LiveSink):

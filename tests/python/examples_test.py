@@ -34,6 +34,9 @@ def number(pattern, text):
 class Message:
     """A message of ROS 2, whose fields come into being."""
 
+    def __init__(self, **fields):
+        self.__dict__.update(fields)
+
     def __getattr__(self, name):
         return self.__dict__.setdefault(name, Message())
 
@@ -90,6 +93,7 @@ class Examples(unittest.TestCase):
         made = types.SimpleNamespace(create_publisher=publisher)
         sys.modules["rclpy"] = types.SimpleNamespace(init=lambda: None, ok=ok, create_node=lambda _: made)
         sys.modules["geometry_msgs"] = sys.modules["geometry_msgs.msg"] = types.SimpleNamespace(WrenchStamped=Message)
+        sys.modules["std_msgs"] = sys.modules["std_msgs.msg"] = types.SimpleNamespace(Float64=Message)
         exec(compile(node.replace("9871", port), "docs/ros2.md", "exec"), {})
 
         forces = pf.solve(pf.simulate(scene))
@@ -103,11 +107,19 @@ class Examples(unittest.TestCase):
             np.testing.assert_allclose(got[0], force[near], rtol=1e-4, atol=1e-4)
             np.testing.assert_allclose(got[1], moment[near], rtol=1e-3, atol=1e-4)
             self.assertEqual(message.header.frame_id, "skin")
+        chances = [message.data for message in published["skin/contacts/1/slip"]]
+        self.assertTrue(chances and all(0 <= chance <= 1 for chance in chances), chances)
 
     def test_hold_without_slip(self):
         text = run("hold_without_slip")
         self.assertGreater(number(r"least ([-\d.]+)", text), 0.2)
         self.assertAlmostEqual(number(r"at the end ([-\d.]+)", text), 0.3, delta=0.05)
+
+    def test_regrip(self):
+        text = run("regrip")
+        self.assertGreaterEqual(number(r"gripped anew (\d+) times", text), 3)
+        self.assertGreater(number(r"at least ([-\d.]+) s before slip", text), 0.3)
+        self.assertGreater(number(r"never nearer than ([-\d.]+) s", text), 0)
 
     @unittest.skipUnless(os.environ.get("LEARN"), "takes half a minute")
     def test_learn_forces(self):

@@ -90,6 +90,37 @@ class Live(unittest.TestCase):
         self.assertEqual(read[3].contacts[0].track_id, 1)
         saved.unlink()
 
+    def test_forces_to_another_program(self):
+        name = f"shm:pillarfield-python-{os.getpid()}"
+        plan = pf.Plan(pf.Skin(16, 24, counts_per_newton=100, sensel_pitch_mm=0.7), friction=0.5)
+        readings = np.zeros((16, 24), np.uint8)
+        readings[4:8, 6:12] = 40, 50, 60, 50, 40, 60
+        with pf.Processor(plan, contacts=True) as processor, pf.sink(name, plan, contacts=True) as sink, \
+                pf.live_forces(name) as source:
+            self.assertIsNone(source.receive(0))
+            for _ in range(5):
+                processor.submit(readings)
+                sent = processor.receive().copy()
+                sink.send(sent)
+                got = next(source)
+                self.assertEqual(float(got.times), float(sent.times))
+                for plane in ("shear_x", "shear_y", "normal", "status"):
+                    np.testing.assert_array_equal(getattr(got, plane), getattr(sent, plane))
+                [there], [here] = sent.contacts, got.contacts
+                for quantity in (*sent.contact_records().dtype.names[2:], "age_s"):
+                    if hasattr(there, quantity):
+                        self.assertEqual(getattr(here, quantity), getattr(there, quantity), quantity)
+            self.assertEqual(got.contacts[0].friction, 0.5)
+            self.assertIsNotNone(got.contacts[0].slip_within_0_3_s)
+            self.assertEqual(got.contacts.total.normal_n, sent.contacts.total.normal_n)
+            self.assertEqual((source.health["frames"], source.health["lost"]), (5, 0))
+            self.assertEqual((source.skin.rows, source.skin.sensel_pitch_mm), (16, 0.7))
+            with self.assertRaisesRegex(pf.Error, "results, not frames"):
+                pf.live(name)
+        self.assertEqual(len(got.contacts), 1)  # It is kept.
+        with self.assertRaisesRegex(pf.Error, "closed"):
+            source.receive(0)
+
     def test_missing_rows_are_pillars_without_force(self):
         plan = pf.Plan(pf.Skin(8, 12, counts_per_newton=100))
         with pf.Processor(plan) as processor:

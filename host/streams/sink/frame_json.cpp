@@ -2,9 +2,14 @@
 
 #include <chrono>
 #include <iterator>
+#include <optional>
 
 namespace pillarfield {
 namespace {
+
+void append_known(fmt::memory_buffer& json, const char* name, const std::optional<double>& value) {
+  if (value) fmt::format_to(std::back_inserter(json), R"(,"{}":{})", name, *value);
+}
 
 /// The members of a contact or of the total.
 void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contact) {
@@ -19,16 +24,18 @@ void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contac
   fmt::format_to(out, R"("{}":{},"centre_mm":{{"x":{},"y":{}}})",
                  contact.has_shear ? "pillars" : "sensels", contact.pillars,
                  contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm);
-  if (contact.friction) {
-    fmt::format_to(std::back_inserter(json), R"(,"friction":{})", *contact.friction);
-  }
-  if (contact.slip_margin) {
-    fmt::format_to(std::back_inserter(json), R"(,"slip_margin":{})", *contact.slip_margin);
-  }
-  if (contact.slip_forecast && contact.slip_forecast->time_s) {
-    fmt::format_to(std::back_inserter(json), R"(,"time_to_slip_s":{})",
-                   *contact.slip_forecast->time_s);
-  }
+  append_known(json, "friction", contact.friction);
+  append_known(json, "friction_deviation", contact.friction_deviation);
+  append_known(json, "slip_margin", contact.slip_margin);
+  append_known(json, "slipping_share", contact.slipping_share);
+  if (!contact.slip_forecast) return;
+  const SlipForecast& forecast = *contact.slip_forecast;
+  append_known(json, "time_to_slip_s", forecast.time_s);
+  append_known(json, "time_to_slip_low_s", forecast.low_s);
+  append_known(json, "time_to_slip_high_s", forecast.high_s);
+  const auto& [soon, next, later] = forecast.probability;
+  fmt::format_to(out, R"(,"slip_within_0_1_s":{},"slip_within_0_3_s":{},"slip_within_1_s":{})",
+                 soon, next, later);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ class Drivers(DriverTest):
         driver = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 3600,
                             "--rows", 48, "--cols", 48)
         def next_frame():
-            line = loop.stdout.readline()
+            while (line := loop.stdout.readline()).startswith("alarm:"):
+                pass
             found = re.fullmatch(r"frame (\d+): ([\d.]+) N, 1 contacts, .*\n", line)
             self.assertIsNotNone(found, line)
             self.assertGreater(float(found[2]), 1)
@@ -76,9 +77,17 @@ class Drivers(DriverTest):
         busy = subprocess.run([driver, NAME], stderr=subprocess.PIPE, text=True, check=False)
         self.assertEqual(busy.returncode, 1)
         self.assertIn("another driver", busy.stderr)
+        loop = subprocess.run([self.folder / "control_loop", NAME], stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(loop.returncode, 1)
+        self.assertIn("it holds frames, not results", loop.stderr)
         killed.kill()
         killed.wait()
         self.assertEqual(segments(), [NAME])
+        with open(f"/dev/shm/{NAME}", "r+b") as segment:
+            segment.write(b"PRG1\x02")  # results of an earlier version
+        loop = subprocess.run([self.folder / "control_loop", NAME], stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(loop.returncode, 1)
+        self.assertIn("compile this program", loop.stderr)
         subprocess.run([driver, NAME, "--rows", "20", "--seconds", "0.05"], check=True)
         self.assertEqual(segments(), [])
 
