@@ -2,30 +2,43 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 #include "bench/cases/cases.h"
 #include "bench/timing/solve_timing.h"
 
 namespace pillarfield::bench {
 namespace {
 
-/// A patch of 32 x 32 pillars, 10 x 10 cm, and a square metre.
-constexpr std::uint32_t kLatencySides[] = {32, 79, kSquareMetre};
+/// From a pad of 36 pillars to a square metre.
+constexpr std::uint32_t kLatencySides[] = {6, 16, 32, 79, 128, 256, kSquareMetre};
 
-/// From submit to result, one frame at a time, interleaved with empty launches.
+/// From submit to result, one frame at a time: the host and the OpenCL device, interleaved with
+/// empty launches.
 Measurement time_latency(const Session& session, const SolverPlan& plan) {
   const Frames frames(plan.skin, plan.sensel_type, {});
-  FrameSolver solver(session.solver, plan, frames, {.frames_in_flight = 1});
+  FrameSolver host(open_device("host"), plan, frames, {.frames_in_flight = 1});
+  FrameSolver opencl(session.device, plan, frames, {.frames_in_flight = 1});
   EmptyLaunch launch(session.device);
   InterleavedTiming timing;
-  const std::size_t solve = timing.add([&](int count) { solver.run(count); });
+  const std::size_t on_host = timing.add([&](int count) { host.run(count); });
+  const std::size_t on_opencl = timing.add([&](int count) { opencl.run(count); });
   const std::size_t empty = timing.add([&](int count) { launch.run(count); });
   // Turns have one frame each: quantiles are of single frames.
   timing.run({session.length.seconds, 20 * session.length.rounds, 0, 1});
+  const bool is_hosts = session.solver.for_plan(plan).info().type == "host";
+  const std::size_t solve = is_hosts ? on_host : on_opencl;
   Measurement measured = measurement_of(timing, solve, plan);
-  measured.counters["median_us"] = timing.median(solve) * 1e6;
-  measured.counters["p99_us"] = timing.quantile(solve, 0.99) * 1e6;
+  const auto report = [&](const std::string& prefix, std::size_t entry) {
+    measured.counters[prefix + "median_us"] = timing.median(entry) * 1e6;
+    measured.counters[prefix + "p99_us"] = timing.quantile(entry, 0.99) * 1e6;
+  };
+  report("", solve);
+  report("host_", on_host);
+  report("opencl_", on_opencl);
   measured.counters["of_empty_launch"] = timing.ratio(solve, empty);
-  measured.label = fmt::format("{} times", timing.times(solve).size());
+  measured.label = fmt::format("{} times, {}", timing.times(solve).size(),
+                               (is_hosts ? host : opencl).device());
   return measured;
 }
 

@@ -195,8 +195,28 @@ def contact_rows(bare, every):
 # --- Latency ---
 
 def latency_rows(bench):
-    return [bench.cells(case, "pillars:.0f median_us:.1f p99_us:.1f of_empty_launch:.2f")
+    return [bench.cells(case, "pillars:.0f host_median_us:.1f host_p99_us:.1f opencl_median_us:.1f "
+                              "opencl_p99_us:.1f median_us:.1f of_empty_launch:.2f")
             for case in bench.group("latency")]
+
+
+def draw_latency(bench, folder):
+    """Bands reach from the median to the 99 % quantile."""
+    figure, axis = pictures.panels(640, 400)
+    cases = bench.group("latency")
+    pillars = [bench.value(case, "pillars") for case in cases]
+    for key, label, style, colour in (("opencl", "OpenCL", "s-", pictures.ORANGE),
+                                      ("host", "host", "o-", pictures.BLUE)):
+        median, late = ([bench.value(case, f"{key}_{what}_us") for case in cases]
+                        for what in ("median", "p99"))
+        axis.fill_between(pillars, median, late, color=colour, alpha=0.15, linewidth=0)
+        axis.plot(pillars, median, style, color=colour, label=label)
+    axis.set(xscale="log", yscale="log", xlabel="pillars", ylabel="latency of a frame (µs)")
+    pictures.plain_ticks(axis.xaxis, (1e2, 1e3, 1e4, 1e5, 1e6),
+                         ("$10^2$", "$10^3$", "$10^4$", "$10^5$", "$10^6$"))
+    pictures.plain_ticks(axis.yaxis)
+    axis.legend(loc="upper left")
+    pictures.save(figure, folder, "latency")
 
 
 # --- Baselines, stages, lanes ---
@@ -273,6 +293,7 @@ def main(docs, bench_json, live_json):
     found = list(sizes(bench))
     bare, every = list(contact_costs(bench, "bare")), list(contact_costs(bench, "all"))
     draw_sizes(found, bare, every, folder)
+    draw_latency(bench, folder)
     context = {"commit": "unknown"} | bench.context
     kept = processors.keep(docs, "goals", {"date": context["date"][:10], "commit": context["commit"],
                                            "goals": goals(bench, live)})

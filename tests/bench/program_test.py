@@ -51,6 +51,8 @@ class Cases(unittest.TestCase):
         found, _ = cases("^latency/1024$")
         case = found["latency/1024"]
         self.assertLessEqual(case["median_us"], case["p99_us"])
+        self.assertEqual(case["median_us"], case["host_median_us"])
+        self.assertGreater(case["opencl_median_us"], 0)
         self.assertGreater(case["of_empty_launch"], 0)
 
     def test_a_baseline_is_compared(self):
