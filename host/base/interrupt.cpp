@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
@@ -39,14 +40,24 @@ bool is_ignored(int signal) {
   std::_Exit(1);
 }
 
+/// A repeated signal ends the program, but not within this time: `timeout` sends its signal twice,
+/// to the program and to its group.
+constexpr std::chrono::milliseconds kOneSignal{500};
+
 void* wait_for_signals(void* /*nothing*/) {
+  using Clock = std::chrono::steady_clock;
   sigset_t seen;
   sigemptyset(&seen);
+  Clock::time_point first;
   while (true) {
     int signal = 0;
     if (sigwait(&waited_signals, &signal) != 0) continue;
-    if (sigismember(&seen, signal) == 1) end_by(signal);
+    if (sigismember(&seen, signal) == 1) {
+      if (Clock::now() - first > kOneSignal) end_by(signal);
+      continue;
+    }
     sigaddset(&seen, signal);
+    first = Clock::now();
     interrupted = true;
     pthread_kill(calling_thread, SIGURG);
   }

@@ -291,6 +291,9 @@ class PlainData(CommandTest):
         np.save(array, np.random.default_rng(1).normal(20, 1, (30, 6, 8)))
         self.assertEqual(run_json("info", array)["frames"], 30)
         run("calibrate", "tare", array, "-o", self.path("tare.h5"))
+        said = run("solve", array, "--rate", 50, "--calibration", self.path("tare.h5"), "-o", self.path("f.h5")).stderr
+        self.assertIn("no counts_per_newton", said)
+        self.assertNotIn("no threshold_counts", said)  # The calibration has one.
         self.assert_fails("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"),
                           names=["--rate"])
         run("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"), "--rate", 50)

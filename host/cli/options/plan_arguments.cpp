@@ -110,6 +110,12 @@ ReadOptions frame_options(const PlanOptions& options) {
   read.counts_per_newton = options.settings.counts_per_newton;
   read.threshold_counts = options.settings.threshold_counts;
   read.full_scale_counts = options.settings.full_scale_counts;
+  if (options.calibration.empty()) return read;
+  const SkinCalibration known = read_calibration_file(options.calibration, options.read);
+  if (!read.counts_per_newton) read.counts_per_newton = known.counts_per_newton;
+  if (!read.threshold_counts && read.tare_frames == 0) {
+    read.threshold_counts = known.threshold_counts;
+  }
   return read;
 }
 
