@@ -281,8 +281,9 @@ class Network(StreamTest):
                                (("--layout", "sensels"), None), (("--layout", "pillars"), None)):
             process = self.started("-", *options, stdin=subprocess.PIPE)
             process.stdin.buffer.write(frames)
-            errors = process.communicate(timeout=PATIENCE_S)[1]
+            output, errors = process.communicate(timeout=PATIENCE_S)
             self.assertEqual(process.returncode, 0)
+            self.assertIn("4 x 6 sensels" if "sensels" in options else "2 x 3 pillars", output)
             self.assertEqual(errors.count("--layout"), words is not None, errors)
             self.assertIn(words or "", errors)
 

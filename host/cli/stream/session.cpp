@@ -304,9 +304,10 @@ void StreamSession::print_summary() const {
     const auto ms = live_.latency_ms(fraction, options_.summary ? stream.lost : 0);
     return ms ? fmt::format("{:.3f} ms", *ms) : "never";
   };
-  fmt::print("Solved {} of {} x {} pillars from {} in {:.1f} s on {}\n",
+  fmt::print("Solved {} of {} x {} {} from {} in {:.1f} s on {}\n",
              counted(last_health_.solved, "frame"), skin_.element_rows(), skin_.element_cols(),
-             printable(options_.source), seconds_of(Clock::now() - start_), device_);
+             name_of(skin_.layout), printable(options_.source), seconds_of(Clock::now() - start_),
+             device_);
   if (last_health_.solved > 0) {
     fmt::print("  latency    median {}, 99 % {}, 99.9 % {}, worst {:.3f} ms\n", latency(0.5),
                latency(0.99), latency(0.999), live_.worst_latency_ms());
