@@ -25,8 +25,8 @@ struct PlanOptions {
   PlanSettings settings;
 };
 
-/// The options of opening the frames: `read`, and the constants that the others and the calibration
-/// give. Throws Error where the calibration cannot be read.
+/// The options of opening the frames: `read`, and the constants that the others, the calibration
+/// and the scene give. Throws Error where one of these cannot be read.
 [[nodiscard]] ReadOptions frame_options(const PlanOptions& options);
 
 /// build_plan() with the files of the options; a `source` that is a scene is applied too. Throws

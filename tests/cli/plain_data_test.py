@@ -294,6 +294,9 @@ class PlainData(CommandTest):
         said = run("solve", array, "--rate", 50, "--calibration", self.path("tare.h5"), "-o", self.path("f.h5")).stderr
         self.assertIn("no counts_per_newton", said)
         self.assertNotIn("no threshold_counts", said)  # The calibration has one.
+        self.path("scene.toml").write_text("[skin]\npillars = [3, 4]\n")
+        said = run("solve", array, "--rate", 50, "--scene", self.path("scene.toml"), "-o", self.path("f.h5")).stderr
+        self.assertNotIn("assumed", said)
         self.assert_fails("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"),
                           names=["--rate"])
         run("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"), "--rate", 50)

@@ -107,15 +107,25 @@ void add_contacts(CLI::App* command, ContactOptions& options) {
 
 ReadOptions frame_options(const PlanOptions& options) {
   ReadOptions read = options.read;
-  read.counts_per_newton = options.settings.counts_per_newton;
-  read.threshold_counts = options.settings.threshold_counts;
-  read.full_scale_counts = options.settings.full_scale_counts;
-  if (options.calibration.empty()) return read;
-  const SkinCalibration known = read_calibration_file(options.calibration, options.read);
-  if (!read.counts_per_newton) read.counts_per_newton = known.counts_per_newton;
-  if (!read.threshold_counts && read.tare_frames == 0) {
-    read.threshold_counts = known.threshold_counts;
+  const auto take = [](std::optional<double>& constant, const std::optional<double>& known) {
+    if (!constant) constant = known;
+  };
+  take(read.counts_per_newton, options.settings.counts_per_newton);
+  take(read.threshold_counts, options.settings.threshold_counts);
+  take(read.full_scale_counts, options.settings.full_scale_counts);
+  std::optional<double> threshold;
+  if (!options.calibration.empty()) {
+    const auto calibration = read_calibration_file(options.calibration, options.read);
+    take(read.counts_per_newton, calibration.counts_per_newton);
+    threshold = calibration.threshold_counts;
   }
+  if (!options.scene.empty()) {
+    const Skin skin = load_scene(options.scene).skin;
+    take(read.sensel_pitch_mm, skin.sensel_pitch_mm);
+    take(read.counts_per_newton, skin.counts_per_newton);
+    take(threshold, skin.threshold_counts);
+  }
+  if (read.tare_frames == 0) take(read.threshold_counts, threshold);
   return read;
 }
 
