@@ -97,6 +97,7 @@ class Live(unittest.TestCase):
         readings[4:8, 6:12] = 40, 50, 60, 50, 40, 60
         with pf.Processor(plan, contacts=True) as processor, pf.sink(name, plan, contacts=True) as sink, \
                 pf.live_forces(name) as source:
+            self.assertIsInstance(source, pf.LiveForces)
             self.assertIsNone(source.receive(0))
             for _ in range(5):
                 processor.submit(readings)

@@ -50,29 +50,28 @@ State state_from(std::uint32_t value, State last) {
 
 PillarfieldContact ring_contact(const ContactQuantities& of) {
   const auto of_pillars = [&](double value) { return of.has_shear ? value : kNotKnown; };
-  PillarfieldContact contact = {
-      .pillars = of.pillars,
-      .ambiguous = of.ambiguous,
-      .resolved = of.resolved,
-      .slip = static_cast<std::uint32_t>(of.slip),
-      .friction_source = static_cast<std::uint32_t>(of.friction_source),
-      .shear_x_n = of_pillars(of.shear_x_n),
-      .shear_y_n = of_pillars(of.shear_y_n),
-      .normal_n = of.normal_n,
-      .torque_nmm = of_pillars(of.torque_nmm),
-      .centre_x_mm = of.centre_of_pressure.x_mm,
-      .centre_y_mm = of.centre_of_pressure.y_mm,
-      .middle_x_mm = of.centre.x_mm,
-      .middle_y_mm = of.centre.y_mm,
-      .area_mm2 = of.area_mm2,
-      .peak_n = of.peak_n,
-      .peak_x_mm = of.peak.x_mm,
-      .peak_y_mm = of.peak.y_mm,
-      .friction = of.friction.value_or(kNotKnown),
-      .friction_deviation = of.friction_deviation.value_or(kNotKnown),
-      .slip_margin = of.slip_margin.value_or(kNotKnown),
-      .slipping_share = of.slipping_share.value_or(kNotKnown),
-  };
+  PillarfieldContact contact = {};
+  contact.pillars = of.pillars;
+  contact.ambiguous = of.ambiguous;
+  contact.resolved = of.resolved;
+  contact.slip = static_cast<std::uint32_t>(of.slip);
+  contact.friction_source = static_cast<std::uint32_t>(of.friction_source);
+  contact.shear_x_n = of_pillars(of.shear_x_n);
+  contact.shear_y_n = of_pillars(of.shear_y_n);
+  contact.normal_n = of.normal_n;
+  contact.torque_nmm = of_pillars(of.torque_nmm);
+  contact.centre_x_mm = of.centre_of_pressure.x_mm;
+  contact.centre_y_mm = of.centre_of_pressure.y_mm;
+  contact.middle_x_mm = of.centre.x_mm;
+  contact.middle_y_mm = of.centre.y_mm;
+  contact.area_mm2 = of.area_mm2;
+  contact.peak_n = of.peak_n;
+  contact.peak_x_mm = of.peak.x_mm;
+  contact.peak_y_mm = of.peak.y_mm;
+  contact.friction = of.friction.value_or(kNotKnown);
+  contact.friction_deviation = of.friction_deviation.value_or(kNotKnown);
+  contact.slip_margin = of.slip_margin.value_or(kNotKnown);
+  contact.slipping_share = of.slipping_share.value_or(kNotKnown);
   set_forecast(contact, of.slip_forecast);
   return contact;
 }

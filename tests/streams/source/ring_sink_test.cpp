@@ -159,7 +159,8 @@ TEST(ResultStream, GivesWhatWasWritten) {
   info.skin.sensel_pitch_mm = 0.7;
   const auto sink = create_live_sink("shm:" + results_name(), info);
   FrameContacts contacts;
-  contacts.contacts = {told_contact(), TrackedContact{.track_id = 4, .label = 1}};
+  contacts.contacts = {told_contact(), {}};
+  contacts.contacts[1].track_id = 4;
   contacts.total.area_mm2 = 20;
   contacts.total.normal_n = 30;
   Solved solved(8);
@@ -274,11 +275,11 @@ TEST(ResultStream, IsNoneOfFramesNorOfAnEarlierVersion) {
   EXPECT_EQ(open_result_stream(source, [&] { return ++asked == 2; }), nullptr);
   const auto sink = create_live_sink(source, info_of_skin(6, 10));
   std::fstream segment("/dev/shm/" + results_name(), std::ios::in | std::ios::out);
-  for (const char kind : {2, 3}) {
+  for (const char kind : {'\2', '\3'}) {
     segment.seekp(offsetof(PillarfieldRing, kind)).put(kind).flush();
     EXPECT_NE(message().find("results in the layout of an earlier version"), std::string::npos);
   }
-  segment.seekp(offsetof(PillarfieldRing, kind)).put(7).flush();
+  segment.seekp(offsetof(PillarfieldRing, kind)).put('\7').flush();
   EXPECT_NE(message().find("is not a ring of frames or results"), std::string::npos);
   EXPECT_NE(core_test::message_of([] { (void)open_result_stream("udp:1", {}); }).find("shm:NAME"),
             std::string::npos);
