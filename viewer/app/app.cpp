@@ -28,7 +28,7 @@ void prepare_devices() {
 
 Application::Application(const Options& options)
     : options_(options),
-      choices_{user_.recent(), scenes_at_hand()},
+      choices_{user_.recent(), scenes_at_hand(), {}},
       window_("Pillarfield", options.width, options.height),
       instance_(Window::extensions(), options.validate),
       surface_(window_.make_surface(instance_)),
@@ -114,10 +114,43 @@ void Application::route(const InputEvent& event) {
 }
 
 void Application::route_to_start_page(const InputEvent& event) {
-  gui_input_.take(event);
   const auto* const key = std::get_if<KeyEvent>(&event);
-  const bool quits = key != nullptr && key->pressed && key->key == GLFW_KEY_Q;
-  if (quits && !ImGui::GetIO().WantTextInput) pending_.quit = true;
+  const bool pressed = key != nullptr && key->pressed && !key->unusable;
+  if (pressed && key->key == GLFW_KEY_ESCAPE && loading_ == nullptr) leave_page();
+  if (files_ != nullptr && loading_ == nullptr) {
+    if (const auto file = files_->take(event)) act({.open = file->string()});
+    if (!pressed) gui_input_.take(event);
+    return;
+  }
+  gui_input_.take(event);
+  if (!pressed || ImGui::GetIO().WantTextInput) return;
+  if (key->key == GLFW_KEY_O && key->modifiers.control && loading_ == nullptr) show_files();
+  if (key->key == GLFW_KEY_Q) pending_.quit = true;
+}
+
+/// Covers the source, which goes on, by the start page.
+void Application::show_start_page() {
+  at_start_ = true;
+  choices_.recent = user_.recent();
+  state_.notice.clear();
+}
+
+void Application::show_files() { files_ = std::make_unique<FileList>(user_.folder); }
+
+/// From the list of files to the start page, from there to the source.
+void Application::leave_page() {
+  if (files_ != nullptr) {
+    user_.folder = files_->folder();
+    files_.reset();
+  } else if (state_.player != nullptr) {
+    at_start_ = false;
+  }
+}
+
+void Application::act(const StartAction& action) {
+  if (action.files) show_files();
+  if (action.back) leave_page();
+  if (!action.open.empty()) pending_.open = action.open;
 }
 
 void Application::route_key(const KeyEvent& key) {

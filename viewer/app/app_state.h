@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/app/named_boxes.h"
 #include "viewer/app/panels/time_window.h"
 #include "viewer/app/trails.h"
 #include "viewer/app/window/panel_layout.h"
@@ -20,13 +21,6 @@ namespace pillarfield::viewer {
 struct Pin {
   PillarIndex pillar;
   int number = 0;  ///< 1..kMostPins, see number_pins(); 0: not yet numbered
-};
-
-/// Sums of a rectangle in one frame.
-struct CachedSums {
-  std::uint64_t frame;
-  PillarRect rect;
-  SelectionSums sums;
 };
 
 /// A dragged rectangle.
@@ -63,6 +57,8 @@ struct AppState {
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
   std::optional<Selection> selection;
+  std::vector<NamedBox> boxes;  ///< at most NamedBoxes::kMost
+  bool names_box = false;       ///< the name of the last box takes the keyboard next
   DrawStatistics draw;
   bool show_help = false;
   Viewport help_place;  ///< in the window, pixels

@@ -43,7 +43,7 @@ class Application {
   }
   [[nodiscard]] Command command() { return {state_, place_, pending_}; }
   [[nodiscard]] bool shows_source() const {
-    return state_.player != nullptr && loading_ == nullptr;
+    return state_.player != nullptr && loading_ == nullptr && !at_start_;
   }
 
   void open(const std::string& source);
@@ -58,6 +58,11 @@ class Application {
   void route(const InputEvent& event);
   void route_to_start_page(const InputEvent& event);
   void route_key(const KeyEvent& key);
+  void show_start_page();
+  void show_files();
+  void leave_page();
+  void act(const StartAction& action);
+  void keep_boxes();
   [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();
   void take_beside();
@@ -89,7 +94,9 @@ class Application {
 
   Options options_;  ///< of the open source
   UserSettings user_;
-  const StartChoices choices_;
+  StartChoices choices_;
+  bool at_start_ = false;            ///< the start page covers the source
+  std::unique_ptr<FileList> files_;  ///< shown instead of the start page; null: not
   Window window_;
   std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
   std::atomic<bool> news_ = false;      ///< a thread has progressed

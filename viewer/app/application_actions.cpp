@@ -14,6 +14,8 @@ void Application::serve() {
   serve_open();
   const PendingActions asked = std::exchange(pending_, PendingActions{});
   pending_.quit = asked.quit;
+  keep_boxes();
+  if (asked.start) show_start_page();
   if (!state_.field || !shows_source()) return;
   try {
     if (asked.picture) write_picture();
@@ -41,7 +43,19 @@ void Application::serve_open() {
   options_.beside.clear();
   options_.truth = false;
   options_.first_frame = 0;
+  if (files_ != nullptr) leave_page();
+  at_start_ = false;
   open(std::exchange(pending_.open, {}));
+}
+
+/// Remembers the named boxes once they have changed.
+void Application::keep_boxes() {
+  if (state_.player == nullptr) return;
+  const Skin& skin = state_.player->info().skin;
+  if (user_.boxes.on(skin) == state_.boxes) return;
+  user_.boxes.set(skin, state_.boxes);
+  user_.panels = state_.panels;
+  user_.save();
 }
 
 void Application::toggle_recording() {

@@ -58,6 +58,7 @@ void Application::show(LoadedSource loaded) {
   next.has_truth = static_cast<bool>(loaded_.open_truth);
   next.settings = loaded_.settings;
   if (source_was_shown_) next.settings.theme = state_.settings.theme;
+  next.boxes = user_.boxes.on(source.skin);
   next.panels = std::move(state_.panels);
   next.show_panels = state_.show_panels;
   next.show_counters = state_.show_counters;
@@ -166,11 +167,12 @@ void Application::take_beside() {
   redraws_.field();
 }
 
-/// Passes pins, selection and the state of the play head to the survey.
+/// Passes pins, boxes, selection and the state of the play head to the survey.
 void Application::attend_survey() {
   std::vector<PillarRect> rects;
   for (const Pin& pin : state_.pins) rects.push_back(rect_of(pin));
   if (state_.selection && controls_.is_dragging()) return;
+  for (const NamedBox& box : state_.boxes) rects.push_back(box.rect);
   if (state_.selection) rects.push_back(state_.selection->rect);
   if (rects != measured_) {
     loaded_.curves->set_rects(rects);

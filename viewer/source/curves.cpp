@@ -114,6 +114,7 @@ void Curves::set_rects(std::span<const PillarRect> rects) {
   const std::scoped_lock lock(mutex_);
   std::vector<Curve> next;
   for (const PillarRect& rect : rects) {
+    if (std::ranges::find(next, rect, &Curve::rect) != next.end()) continue;
     const auto old =
         std::ranges::find_if(curves_, [&](const Curve& curve) { return curve.rect == rect; });
     next.push_back(old == curves_.end() ? Curve{rect, {}} : std::move(*old));

@@ -36,6 +36,7 @@ class Curves {
   explicit Curves(double pillar_pitch_mm, std::size_t most_points = kMostPoints);
 
   /// Sets the further rectangles; those that exist keep their curves, new ones are empty.
+  /// Equal rectangles have one curve.
   void set_rects(std::span<const PillarRect> rects);
 
   /// Appends a frame to each curve whose last frame is earlier.

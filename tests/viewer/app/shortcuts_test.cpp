@@ -23,8 +23,8 @@ auto state_of(const FakeAppState& fake) {
   return std::tuple(state.settings, state.pins.size(), state.selection.has_value(), state.show_help,
                     state.show_panels, player.frame, player.playing, player.loops, player.follows,
                     player.speed, pending.quit, pending.picture, pending.sequence, pending.video,
-                    pending.table, pending.stop, pending.record, pending.truth, state.notice,
-                    state.show_trails, state.show_counters);
+                    pending.table, pending.stop, pending.record, pending.truth, pending.start,
+                    state.notice, state.show_trails, state.show_counters);
 }
 
 /// A state that every shortcut changes.

@@ -162,6 +162,23 @@ void clear_marks(AppState& state) {
   state.selection.reset();
 }
 
+void keep_selection(AppState& state) {
+  if (!state.selection) {
+    state.notice = "select a part first; drag over the field";
+    return;
+  }
+  if (state.boxes.size() == NamedBoxes::kMost) {
+    state.notice = fmt::format("{} boxes at most; remove one", NamedBoxes::kMost);
+    return;
+  }
+  int number = 1;
+  while (std::ranges::find(state.boxes, number, &NamedBox::number) != state.boxes.end()) ++number;
+  state.boxes.push_back({fmt::format("box {}", number), state.selection->rect, number});
+  state.selection.reset();
+  place_of(state.panels, PanelId::boxes).open = true;
+  state.names_box = state.show_panels;
+}
+
 void change_speed(AppState& state, int steps) {
   const double speed = state.player->state().speed;
   constexpr double kTolerance = 1e-9;

@@ -33,19 +33,27 @@ constexpr std::array kImGuiKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
                                 std::pair{ImGuiKey_V, GLFW_KEY_V},
                                 std::pair{ImGuiKey_X, GLFW_KEY_X}};
 
-void take_key(ImGuiIO& io, const KeyEvent& event) {
+}  // namespace
+
+void GuiInput::take_key(const KeyEvent& event) {
+  ImGuiIO& io = ImGui::GetIO();
   if (event.key < 0 || event.key >= IM_ARRAYSIZE(io.KeysDown)) return;
-  io.KeysDown[event.key] = event.pressed;
   io.KeyCtrl = event.modifiers.control;
   io.KeyShift = event.modifiers.shift;
+  if (event.pressed) {
+    pressed_.push_back(event.key);
+    io.KeysDown[event.key] = true;
+  } else if (std::ranges::find(pressed_, event.key) != pressed_.end()) {
+    released_.push_back(event.key);
+  } else {
+    io.KeysDown[event.key] = false;
+  }
 }
-
-}  // namespace
 
 void GuiInput::take(const InputEvent& event) {
   ImGuiIO& io = ImGui::GetIO();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
-    take_key(io, *key);
+    take_key(*key);
   } else if (const auto* text = std::get_if<TextEvent>(&event)) {
     io.AddInputCharacter(text->character);
   } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
@@ -78,6 +86,9 @@ void GuiInput::close_lists() {
 void GuiInput::begin_frame(double seconds_since_last) {
   ImGuiIO& io = ImGui::GetIO();
   for (const auto& [name, key] : kImGuiKeys) io.KeyMap[name] = key;
+  for (const int key : ending_) io.KeysDown[key] = false;
+  ending_ = std::exchange(released_, {});
+  pressed_.clear();
   io.DeltaTime = static_cast<float>(std::clamp(seconds_since_last, 1e-4, 0.1));
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     io.MouseDown[i] = buttons_[i].held || buttons_[i].went_down;

@@ -2,13 +2,14 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "viewer/app/input/input.h"
 
 namespace pillarfield::viewer {
 
-/// Passes input events to Dear ImGui. Holds a button pressed and released between two frames for
-/// one frame, so that no click is lost.
+/// Passes input events to Dear ImGui. Holds a button or key pressed and released between two frames
+/// for one frame, so that no click and no key is lost.
 class GuiInput {
  public:
   void take(const InputEvent& event);
@@ -25,7 +26,12 @@ class GuiInput {
     bool held = false;
     bool went_down = false;
   };
+  void take_key(const KeyEvent& event);
+
   std::array<Button, 3> buttons_;
+  std::vector<int> pressed_;   ///< keys, since the last frame
+  std::vector<int> released_;  ///< of these
+  std::vector<int> ending_;    ///< released in the frame after the next
 };
 
 }  // namespace pillarfield::viewer

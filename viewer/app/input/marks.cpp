@@ -35,6 +35,31 @@ class Marker {
     draw_outline(list_, points, colour, 1.4f * unit_);
   }
 
+  /// A named box: its name stands below its lower left corner, where no label of a contact is.
+  void box(const NamedBox& box) const {
+    const ImU32 colour = packed(pin_colour(box.number, Theme::dark));
+    outline(box.rect, colour);
+    std::optional<Vec2> corner;
+    for (const SeenPoint& point : ground_.outline(box.rect)) {
+      if (point.hidden) continue;
+      if (!corner) corner = point;
+      corner = Vec2{std::min(corner->x, point.x), std::max(corner->y, point.y)};
+    }
+    if (!corner) return;
+    const ImVec2 size = ImGui::CalcTextSize(box.name.c_str());
+    const float margin = std::round(4 * unit_);
+    const Viewport plot = place_.plot(settings_);
+    const auto inside = [](double at, double begin, double length, float most) {
+      const double end = begin + length - static_cast<double>(most);
+      return static_cast<float>(std::round(std::clamp(at, begin, std::max(begin, end))));
+    };
+    const ImVec2 low(inside(corner->x, plot.x, plot.width, size.x + 2 * margin),
+                     inside(corner->y + static_cast<double>(margin), plot.y, plot.height, size.y));
+    list_.AddRectFilled(low, ImVec2(low.x + size.x + 2 * margin, low.y + size.y),
+                        IM_COL32(8, 10, 14, 190), 3 * unit_);
+    list_.AddText(ImVec2(low.x + margin, low.y), colour, box.name.c_str());
+  }
+
   void pin(const Pin& pin, bool inspected) const {
     const auto middle = middle_of(pin.pillar);
     if (!middle) return;
@@ -140,6 +165,7 @@ void draw_marks(const AppState& state, const FieldPlace& place) {
   const Marker marker(state, place);
   marker.clip();
   if (state.show_trails) draw_trails(state, marker);
+  for (const NamedBox& box : state.boxes) marker.box(box);
   if (state.selection) marker.outline(state.selection->rect, palette_of(Theme::dark).accent);
   if (state.hovered) marker.outline(only(*state.hovered), IM_COL32(255, 255, 255, 230));
   for (std::size_t i = 0; i < state.pins.size(); ++i) {

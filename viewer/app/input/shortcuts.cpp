@@ -184,6 +184,8 @@ constexpr std::array kShortcuts{
         Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
         [](const Command& command) { command.state.show_panels = !command.state.show_panels; }},
 
+    Shortcut{Group::mark, plain(GLFW_KEY_O), "O", "keep the selection as a named box",
+             [](const Command& command) { keep_selection(command.state); }},
     Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and selection", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
@@ -197,6 +199,8 @@ constexpr std::array kShortcuts{
     Shortcut{Group::play, plain(GLFW_KEY_Z), "Z", "tare of a sensor", take_tare},
     Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write the visible forces (CSV)",
              ask<&PendingActions::table>},
+    Shortcut{Group::write, with(kControl, GLFW_KEY_O), "Ctrl+O", "open another source",
+             ask<&PendingActions::start>},
     Shortcut{Group::write,
              {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
              "?, H, F1",

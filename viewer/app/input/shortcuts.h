@@ -20,6 +20,7 @@ struct PendingActions {
   bool stop = false;      ///< stop writing
   bool record = false;    ///< start or stop recording a sensor
   bool truth = false;     ///< show or hide the truth beside
+  bool start = false;     ///< show the start page
   std::string open;       ///< a source to open; empty: none
 };
 

@@ -7,8 +7,10 @@
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
+#include "viewer/app/source/file_list.h"
 #include "viewer/app/source/user_settings.h"
 #include "viewer/app/window/panel_layout.h"
+#include "viewer/render/gui_context.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
 
@@ -30,12 +32,15 @@ void pillar_panel(AppState& state);
 /// regions, of sensels the pressure.
 void selection_panel(AppState& state);
 
+/// The named boxes: force, shear and mean pressure of each; names can be edited, boxes removed.
+void boxes_panel(AppState& state);
+
 /// The contacts of the field on display, heaviest first, and their total. A click selects the
 /// extent of a contact.
 void contacts_panel(AppState& state, const FieldPlace& place);
 
-/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins
-/// and selection. The wheel zooms, a drag pans, a click seeks.
+/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins,
+/// named boxes and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
 
 /// Marks the panels that have something to show.
@@ -74,12 +79,29 @@ void status_row(const AppState& state, const std::string& gpu);
 struct StartChoices {
   std::vector<std::string> recent;
   ScenesAtHand scenes;
+  std::vector<TexturePlace> pictures;  ///< of embedded_pictures(), in the texture of the font
 };
 
-/// The page of a window without a source: recent sources, scenes, a line for the name of another.
-/// Returns the source that was chosen; empty: none.
-[[nodiscard]] std::string start_page(const StartChoices& choices, const Viewport& area,
+/// What a user chose on the start page or in its list of files.
+struct StartAction {
+  std::string open;    ///< a source; empty: none
+  bool files = false;  ///< show the list of files
+  bool back = false;
+};
+
+/// The page of a window without a source: pictures of scenes, a line for the name of a source,
+/// recent sources, scenes.
+[[nodiscard]] StartAction start_page(const StartChoices& choices, const Viewport& area,
                                      const std::string& notice, double scale);
+
+/// The list of files of the start page; a click opens a line.
+[[nodiscard]] StartAction file_page(FileList& files, const Viewport& area, double scale);
+
+/// Begins a page that fills the window; ImGui::End() ends it.
+void begin_page(const char* name, const Viewport& area, double scale);
+
+/// A line that cannot be overlooked.
+void warning_words(const std::string& words);
 
 /// What the window waits for while a source is opened.
 void loading_page(const std::string& source, const std::string& message, const Viewport& area);
@@ -91,5 +113,9 @@ void transport(const Command& command);
 /// Sums over the selection in the field on display; both must exist. Cached per frame and
 /// rectangle, since a square metre takes milliseconds.
 [[nodiscard]] const SelectionSums& selection_sums(AppState& state);
+
+/// The same over a rectangle, which `cached` is of; the field must exist.
+[[nodiscard]] const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
+                                           std::optional<CachedSums>& cached);
 
 }  // namespace pillarfield::viewer

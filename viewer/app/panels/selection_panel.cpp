@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "viewer/app/input/actions.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
@@ -148,6 +149,8 @@ void selection_panel(AppState& state) {
   leave_gap(style, 2);
   draw_tables(style, sums, skin, state.settings.pressure_unit);
   leave_gap(style, 4);
+  const bool keeps = ImGui::Button("Keep as a named box", ImVec2(-1, 0));
+  if (keeps) return keep_selection(state);
   const std::string touched = fmt::format("{} of {} in contact", sums.in_contact, sums.pillars);
   if (!skin.has_pillars()) {
     heading(style, touched);
@@ -162,24 +165,18 @@ void selection_panel(AppState& state) {
   faint_text(style, fault_words(sums).c_str());
 }
 
-namespace {
-
-bool is_same(const PillarRect& a, const PillarRect& b) {
-  return a.row_begin == b.row_begin && a.row_end == b.row_end && a.col_begin == b.col_begin &&
-         a.col_end == b.col_end;
+const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
+                             std::optional<CachedSums>& cached) {
+  const std::uint64_t frame = state.field->index;
+  if (!cached || cached->frame != frame || cached->rect != rect) {
+    const double pitch_mm = state.player->info().skin.element_pitch_mm();
+    cached = {frame, rect, sums_over(*state.field, rect, pitch_mm)};
+  }
+  return cached->sums;
 }
 
-}  // namespace
-
 const SelectionSums& selection_sums(AppState& state) {
-  Selection& selection = *state.selection;
-  const std::uint64_t frame = state.field->index;
-  if (!selection.cached || selection.cached->frame != frame ||
-      !is_same(selection.cached->rect, selection.rect)) {
-    const double pitch_mm = state.player->info().skin.element_pitch_mm();
-    selection.cached = {frame, selection.rect, sums_over(*state.field, selection.rect, pitch_mm)};
-  }
-  return selection.cached->sums;
+  return sums_of(state, state.selection->rect, state.selection->cached);
 }
 
 }  // namespace pillarfield::viewer

@@ -2,21 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
+#include "viewer/app/source/start_pictures.h"
 #include "viewer/app/window/docks.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-void begin_page(const char* name, const Viewport& area, float padding) {
-  ImGui::SetNextWindowPos(to_imgui({area.x, area.y}));
-  ImGui::SetNextWindowSize(to_imgui({area.width, area.height}));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(padding, padding));
-  ImGui::Begin(name, nullptr, fixed_window_flags());
-  ImGui::PopStyleVar();
-}
+constexpr double kStartPageWidth = 860;  ///< nominal pixels
 
 void caption(const char* words) {
   ImGui::Spacing();
@@ -43,57 +40,118 @@ std::string recent_list(const std::vector<std::string>& recent) {
   return source_list("recent", recent, recent, 1);
 }
 
+/// A list of scenes, without those that have a picture.
 std::string scene_list(const char* title, const std::vector<std::filesystem::path>& scenes) {
-  if (scenes.empty()) return {};
-  caption(title);
   std::vector<std::string> paths;
   std::vector<std::string> names;
   for (const auto& scene : scenes) {
+    const std::string name = scene.stem().string();
+    if (std::ranges::find(embedded_pictures(), name, &EmbeddedPicture::scene) !=
+        embedded_pictures().end()) {
+      continue;
+    }
     paths.push_back(scene.string());
-    names.push_back(scene.stem().string());
+    names.push_back(name);
   }
-  return source_list(title, paths, names, 3);
+  if (paths.empty()) return {};
+  caption(title);
+  return source_list(title, paths, names, 4);
 }
 
-std::string name_line() {
+/// A picture with its title below, in the middle; true if clicked.
+bool picture_button(const char* title, const TexturePlace& place, double scale) {
+  const auto width = static_cast<float>(std::round(kStartPictureWidth * scale));
+  const float height = std::round(width * 2 / 3);
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const bool clicked = ImGui::InvisibleButton(title, ImVec2(width, height + line));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 high(low.x + width, low.y + height);
+  list.AddImage(ImGui::GetIO().Fonts->TexID, low, high, to_imgui(place.low), to_imgui(place.high));
+  const bool hovered = ImGui::IsItemHovered();
+  list.AddRect(low, high, ImGui::GetColorU32(hovered ? ImGuiCol_CheckMark : ImGuiCol_Border), 0, 0,
+               hovered ? 2.0f : 1.0f);
+  draw_text(list, {static_cast<double>(low.x + width / 2), static_cast<double>(high.y + 2)},
+            ImGui::GetColorU32(ImGuiCol_Text), title, Align::middle);
+  return clicked;
+}
+
+std::string picture_row(const StartChoices& choices, double scale) {
+  std::string chosen;
+  const float gap = static_cast<float>((kStartPageWidth - 4 * kStartPictureWidth) / 3 * scale);
+  bool first = true;
+  for (std::size_t i = 0; i < choices.pictures.size(); ++i) {
+    const std::string name(embedded_pictures()[i].scene);
+    const auto scene = std::ranges::find_if(
+        choices.scenes.touches,
+        [&](const std::filesystem::path& path) { return path.stem() == name; });
+    if (scene == choices.scenes.touches.end()) continue;
+    if (!std::exchange(first, false)) ImGui::SameLine(0, gap);
+    if (picture_button(name.c_str(), choices.pictures[i], scale)) chosen = scene->string();
+  }
+  return chosen;
+}
+
+/// Returns what is entered or asked for.
+StartAction name_line() {
   static std::array<char, 4096> name{};
+  StartAction action;
   caption("A file, or a sensor: udp:ADDRESS:PORT, shm:NAME, serial:DEVICE");
-  ImGui::SetNextItemWidth(-100);
+  const float button = 6 * ImGui::GetFontSize();
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetNextItemWidth(-2 * (button + gap));
   const bool entered = ImGui::InputTextWithHint("##name", "udp:127.0.0.1:9870", name.data(),
                                                 name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
-  const bool pressed = ImGui::Button("Open", ImVec2(-1, 0));
-  return entered || pressed ? std::string(name.data()) : std::string();
+  const bool pressed = ImGui::Button("Open", ImVec2(button, 0));
+  ImGui::SameLine();
+  action.files = ImGui::Button("Files…", ImVec2(button, 0));
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Ctrl+O");
+  if (entered || pressed) action.open = name.data();
+  return action;
 }
 
 }  // namespace
 
-std::string start_page(const StartChoices& choices, const Viewport& area, const std::string& notice,
+void begin_page(const char* name, const Viewport& area, double scale) {
+  const double side = std::max(0.5 * (area.width - kStartPageWidth * scale), 24 * scale);
+  ImGui::SetNextWindowPos(to_imgui({area.x, area.y}));
+  ImGui::SetNextWindowSize(to_imgui({area.width, area.height}));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, to_imgui({side, 24 * scale}));
+  ImGui::Begin(name, nullptr, fixed_window_flags());
+  ImGui::PopStyleVar();
+}
+
+void warning_words(const std::string& words) {
+  ImGui::Spacing();
+  ImGui::PushStyleColor(ImGuiCol_Text, packed(colour_from(0xe69f00)));
+  ImGui::TextWrapped("%s", words.c_str());
+  ImGui::PopStyleColor();
+}
+
+StartAction start_page(const StartChoices& choices, const Viewport& area, const std::string& notice,
                        double scale) {
-  const auto room = static_cast<float>(std::max(0.5 * (area.width - 860 * scale), 24 * scale));
-  begin_page("start", area, room);
-  ImGui::SetCursorPosY(static_cast<float>(48 * scale));
+  begin_page("start", area, scale);
   ImGui::TextUnformatted("Pillarfield");
   ImGui::TextDisabled("Choose a source, or drop a file onto the window.");
-  if (!notice.empty()) {
-    ImGui::Spacing();
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(colour_from(0xe69f00)));
-    ImGui::TextWrapped("%s", notice.c_str());
-    ImGui::PopStyleColor();
-  }
-  std::string chosen = name_line();
+  if (!notice.empty()) warning_words(notice);
+  ImGui::Spacing();
+  const std::string pictured = picture_row(choices, scale);
+  StartAction action = name_line();
   for (const std::string& other :
-       {recent_list(choices.recent),
+       {pictured, recent_list(choices.recent),
         scene_list("Scenes, simulated as they are opened", choices.scenes.touches),
         scene_list("Recordings for pillarfield calibrate", choices.scenes.calibration)}) {
-    if (chosen.empty()) chosen = other;
+    if (action.open.empty()) action.open = other;
   }
   ImGui::End();
-  return chosen;
+  return action;
 }
 
 void loading_page(const std::string& source, const std::string& message, const Viewport& area) {
-  begin_page("loading", area, 0);
+  ImGui::SetNextWindowPos(to_imgui({area.x, area.y}));
+  ImGui::SetNextWindowSize(to_imgui({area.width, area.height}));
+  ImGui::Begin("loading", nullptr, fixed_window_flags());
   const auto centred = [&](const std::string& words, double line, bool faint) {
     const ImVec2 size = ImGui::CalcTextSize(words.c_str());
     ImGui::SetCursorPos(

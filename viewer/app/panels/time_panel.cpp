@@ -77,18 +77,44 @@ void add_total(std::vector<Chart>& charts, const Points& points, const Colours& 
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
-void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time, bool pillars) {
-  if (state.pins.empty()) return;
-  Chart normal{"Pins, normal", "N", {}};
-  Chart shear{"Pins, |shear|", "N", {}};
-  for (const Pin& pin : state.pins) {
-    const Points points = state.curves->of(rect_of(pin), time.from, time.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
-    normal.curves.push_back({std::to_string(pin.number), points, normal_of, colour});
-    shear.curves.push_back({std::to_string(pin.number), points, shear_of, colour});
+/// Forces on marked parts of the skin.
+class MarkCharts {
+ public:
+  MarkCharts(const AppState& state, const Span& time, const std::string& title)
+      : state_(state),
+        time_(time),
+        normal_{title + ", normal", "N", {}},
+        shear_{title + ", |shear|", "N", {}} {}
+
+  void add(const std::string& name, const PillarRect& rect, int number) {
+    const Points points = state_.curves->of(rect, time_.from, time_.to, kMostShownPoints);
+    const ImU32 colour = packed(pin_colour(number, state_.settings.theme));
+    normal_.curves.push_back({name, points, normal_of, colour});
+    shear_.curves.push_back({name, points, shear_of, colour});
   }
-  charts.push_back(std::move(normal));
-  if (pillars) charts.push_back(std::move(shear));
+
+  void move_to(std::vector<Chart>& charts) {
+    if (normal_.curves.empty()) return;
+    charts.push_back(std::move(normal_));
+    if (state_.player->info().skin.has_pillars()) charts.push_back(std::move(shear_));
+  }
+
+ private:
+  const AppState& state_;
+  Span time_;
+  Chart normal_;
+  Chart shear_;
+};
+
+void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
+  MarkCharts boxes(state, time, "Boxes");
+  for (const NamedBox& box : state.boxes) boxes.add(box.name, box.rect, box.number);
+  boxes.move_to(charts);
+  MarkCharts pins(state, time, "Pins");
+  for (const Pin& pin : state.pins) {
+    pins.add(std::to_string(pin.number), rect_of(pin), pin.number);
+  }
+  pins.move_to(charts);
 }
 
 void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
@@ -120,7 +146,7 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   const bool pillars = state.player->info().skin.has_pillars();
   std::vector<Chart> charts;
   add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours, pillars);
-  add_pins(charts, state, time, pillars);
+  add_marks(charts, state, time);
   add_selection(charts, state, time, colours, pillars);
   set_rounding(charts, state.player->info());
   return charts;
@@ -158,6 +184,7 @@ struct ChartFrame {
   double lasts_s = 0;
   double label_width = 0;
   std::vector<Span> gaps;  ///< of time without frames
+  int title_lines = 1;     ///< of titles and names
 };
 
 /// Stretches of time in which a sensor sent nothing, the last of them up to now.
@@ -233,23 +260,42 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
   }
 }
 
+std::string chart_title(const Chart& chart) {
+  return fmt::format("{}, {}", chart.title, chart.unit);
+}
+
+Legend chart_legend(const Chart& chart, double width, const PanelStyle& style) {
+  constexpr int kMostLines = 2;
+  std::vector<double> names;
+  for (const Curve& curve : chart.curves) names.push_back(width_of(curve.name));
+  return legend_of(names, {.title = width_of(chart_title(chart)) + 2 * style.unit,
+                           .width = width,
+                           .gap = 10 * style.unit,
+                           .rest = width_of("+ 99"),
+                           .most_lines = kMostLines});
+}
+
 /// Title, unit and the names of the curves in their colours.
 void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
                 const PanelStyle& style) {
-  const std::string words = fmt::format("{}, {}", chart.title, chart.unit);
-  draw_text(list, {outer.x, outer.y}, style.faint, words);
-  double x = outer.x + width_of(words) + 12 * style.unit;
-  for (const Curve& curve : chart.curves) {
-    draw_text(list, {x, outer.y}, curve.colour, curve.name);
-    x += width_of(curve.name) + 10 * style.unit;
+  draw_text(list, {outer.x, outer.y}, style.faint, chart_title(chart));
+  const Legend legend = chart_legend(chart, outer.width, style);
+  const auto place = [&](const Legend::Place& at) {
+    return Vec2{outer.x + at.x, outer.y + at.line * style.line};
+  };
+  for (std::size_t i = 0; i < legend.names.size(); ++i) {
+    draw_text(list, place(legend.names[i]), chart.curves[i].colour, chart.curves[i].name);
   }
+  if (!legend.rest) return;
+  const std::size_t others = chart.curves.size() - legend.names.size();
+  draw_text(list, place(*legend.rest), style.faint, fmt::format("+ {}", others));
 }
 
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   // The axes begin half a line lower.
-  const double title = 0.9 * style.line;
+  const double title = (frame.title_lines - 0.1) * style.line;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
   const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
   draw_title(list, chart, outer, style);
@@ -282,8 +328,7 @@ double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
 }
 
 /// Charts in rows, as many per row as fit; the rows fill the height that is left.
-void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
-                 const PanelStyle& style) {
+void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const PanelStyle& style) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
@@ -291,9 +336,12 @@ void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
   const std::size_t beside = std::min(fitting, charts.size());
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
+  for (const Chart& chart : charts) {
+    frame.title_lines = std::max(frame.title_lines, chart_legend(chart, width, style).lines);
+  }
   const double height =
       std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 4 * style.unit,
-               kChartHeight * style.unit);
+               kChartHeight * style.unit + (frame.title_lines - 1) * style.line);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
     const ImVec2 corner = ImGui::GetCursorScreenPos();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/app/named_boxes.h"
 #include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
@@ -18,6 +19,8 @@ class UserSettings {
   void save() const noexcept;
 
   PanelLayout panels;
+  NamedBoxes boxes;
+  std::filesystem::path folder;  ///< of the file list; empty: the working folder
 
   /// Sources opened last, newest first; files that are gone are left out.
   [[nodiscard]] const std::vector<std::string>& recent() const { return recent_; }

@@ -35,6 +35,8 @@ void draw_panel(PanelId id, const Command& command) {
       return pillar_panel(state);
     case PanelId::selection:
       return selection_panel(state);
+    case PanelId::boxes:
+      return boxes_panel(state);
     case PanelId::curves:
       break;
   }
@@ -281,6 +283,8 @@ int fixed_window_flags() {
 }
 
 void mark_used(AppState& state) {
+  constexpr double kLineOfNames = 16;
+  state.panels.bottom_more = state.boxes.empty() ? 0 : kLineOfNames;
   const bool live = state.player->live() != nullptr;
   for (PanelPlace& place : state.panels.places) {
     switch (place.id) {
@@ -289,6 +293,9 @@ void mark_used(AppState& state) {
         break;
       case PanelId::selection:
         place.used = state.selection.has_value();
+        break;
+      case PanelId::boxes:
+        place.used = !state.boxes.empty();
         break;
       case PanelId::contacts:
         place.used = state.settings.contacts;

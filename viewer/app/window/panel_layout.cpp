@@ -9,10 +9,11 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr std::array<const char*, kPanels> kPanelTitles{
-    "Sensor", "View", "Selection", "Contacts", "Under the cursor", "Pillar", "Write", "Over time"};
-constexpr std::array<const char*, kPanels> kPanelNames{"sensor", "view",   "selection", "contacts",
-                                                       "cursor", "pillar", "write",     "curves"};
+constexpr std::array<const char*, kPanels> kPanelTitles{"Sensor", "View",     "Selection",
+                                                        "Boxes",  "Contacts", "Under the cursor",
+                                                        "Pillar", "Write",    "Over time"};
+constexpr std::array<const char*, kPanels> kPanelNames{
+    "sensor", "view", "selection", "boxes", "contacts", "cursor", "pillar", "write", "curves"};
 constexpr std::array<const char*, kDocks> kDockTitles{"Left", "Right", "Bottom", "Window"};
 constexpr std::array<const char*, kDocks> kDockNames{"left", "right", "bottom", "floating"};
 
@@ -140,7 +141,8 @@ bool has_open_panels(const PanelLayout& layout, Dock dock) {
 double row_height(const PanelLayout& layout, double above, double scale) {
   if (!has_panels(layout, Dock::bottom)) return 0;
   if (!has_open_panels(layout, Dock::bottom)) return kFoldedRow * scale;
-  return layout.bottom_height > 0 ? layout.bottom_height * scale : kShareOfRow * above;
+  if (layout.bottom_height > 0) return layout.bottom_height * scale;
+  return kShareOfRow * above + layout.bottom_more * scale;
 }
 
 }  // namespace

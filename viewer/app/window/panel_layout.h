@@ -16,13 +16,14 @@ enum class PanelId : std::uint8_t {
   sensor,
   view,
   selection,
+  boxes,
   contacts,
   cursor,
   pillar,
   write,
   curves
 };
-inline constexpr std::size_t kPanels = 8;
+inline constexpr std::size_t kPanels = 9;
 [[nodiscard]] const char* title_of(PanelId id, SkinLayout layout);
 
 /// Where a panel is: in a column, in the row below the field, or a window of its own.
@@ -44,6 +45,7 @@ struct PanelLayout {
   double left_width = 300;
   double right_width = 284;
   double bottom_height = 0;             ///< 0: by the window
+  double bottom_more = 0;               ///< added to that by the window, for names of curves
   std::optional<PanelId> dragged = {};  ///< its heading is being dragged
 };
 

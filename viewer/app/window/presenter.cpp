@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "viewer/app/source/start_pictures.h"
+
 namespace pillarfield::viewer {
 namespace {
 
@@ -43,7 +45,7 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
       device_(&device),
       chain_(device, surface),
       render_pass_(make_gui_pass(device, chain_.format())),
-      gui_(std::make_unique<GuiContext>(instance, device, *render_pass_, scale)),
+      gui_(make_gui(scale)),
       pool_(device.handle(),
             {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
       buffers_(device.handle(),
@@ -71,9 +73,14 @@ bool Presenter::resize(vk::Extent2D window, const std::vector<Place>& places, do
     part.renderer->resize(size, scale);
   }
   if (scale != gui_->scale()) {
-    gui_ = std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale);
+    gui_ = make_gui(scale);
   }
   return true;
+}
+
+std::unique_ptr<GuiContext> Presenter::make_gui(double scale) const {
+  return std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale,
+                                      start_pictures(scale));
 }
 
 void Presenter::make_framebuffers() {

@@ -70,6 +70,7 @@ class Presenter {
   void draw_gui(std::uint32_t index) const;
   void submit(std::uint32_t index);
   void make_framebuffers();
+  [[nodiscard]] std::unique_ptr<GuiContext> make_gui(double scale) const;
 
   const gpu::Instance* instance_;
   const gpu::Device* device_;

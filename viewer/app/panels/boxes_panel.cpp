@@ -1,0 +1,113 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/app/input/marks.h"
+#include "viewer/app/panels/format_value.h"
+#include "viewer/app/panels/panel_style.h"
+#include "viewer/app/panels/panels.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// A number, flush right.
+void number_cell(double value) {
+  ImGui::TableNextColumn();
+  const std::string words = three_digits(value);
+  const float left_over = ImGui::GetContentRegionAvail().x - static_cast<float>(width_of(words));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(words.c_str());
+}
+
+/// The name, which can be edited. A name that a box may not have is not taken.
+void name_cell(const PanelStyle& style, NamedBox& box, Theme theme, bool focused) {
+  ImGui::TableNextColumn();
+  ImGui::AlignTextToFramePadding();
+  swatch(style, packed(pin_colour(box.number, theme)));
+  std::array<char, NamedBox::kMostNameBytes + 1> name{};
+  std::ranges::copy(box.name, name.begin());
+  if (focused) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  const bool edited =
+      ImGui::InputText("##name", name.data(), name.size(), ImGuiInputTextFlags_AutoSelectAll);
+  if (edited && is_box_name(name.data())) box.name = name.data();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", box.name.c_str());
+}
+
+/// Returns true where the box is to be removed.
+bool write_box(const PanelStyle& style, AppState& state, NamedBox& box, bool focused) {
+  const Skin& skin = state.player->info().skin;
+  const SelectionSums& sums = sums_of(state, box.rect, box.cached);
+  ImGui::TableNextRow();
+  name_cell(style, box, state.settings.theme, focused);
+  number_cell(sums.normal);
+  if (skin.has_pillars()) number_cell(std::hypot(sums.shear_x, sums.shear_y));
+  const double kpa = static_cast<double>(kpa_per_newton(skin)) * sums.mean_normal;
+  number_cell(kpa / state.settings.pressure_unit.kpa);
+  ImGui::TableNextColumn();
+  const bool removed = ImGui::Button("×");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("remove this box");
+  return removed;
+}
+
+struct BoxColumn {
+  std::string head;
+  const char* help;
+  float width;  ///< 0: what is left
+};
+
+std::vector<BoxColumn> box_columns(const AppState& state) {
+  const auto number = static_cast<float>(std::ceil(width_of("0.00000")));
+  const auto button = static_cast<float>(std::ceil(width_of("×")));
+  std::vector<BoxColumn> columns{{"name", "click to rename", 0}, {"N", "normal force", number}};
+  if (state.player->info().skin.has_pillars()) {
+    columns.push_back({"shear N", "length of the total shear", number});
+  }
+  columns.push_back({std::string(state.settings.pressure_unit.name),
+                     "mean pressure on what is in contact", number});
+  columns.push_back({"", "", button + 2 * ImGui::GetStyle().FramePadding.x});
+  return columns;
+}
+
+void write_box_heads(const std::vector<BoxColumn>& columns) {
+  for (const auto& [head, help, width] : columns) {
+    ImGui::TableSetupColumn(
+        head.c_str(),
+        width > 0 ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch, width);
+  }
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const auto& [head, help, width] : columns) {
+    ImGui::TableNextColumn();
+    ImGui::TableHeader(head.c_str());
+    if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+  }
+}
+
+}  // namespace
+
+void boxes_panel(AppState& state) {
+  const PanelStyle style = panel_style(state.settings.scale);
+  if (state.boxes.empty() || !state.field) return faint_text(style, "No part has a name.");
+  const std::vector<BoxColumn> columns = box_columns(state);
+  constexpr int kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_NoPadOuterX;
+  if (!ImGui::BeginTable("boxes", static_cast<int>(columns.size()), kFlags)) return;
+  write_box_heads(columns);
+  std::optional<std::size_t> removed;
+  for (std::size_t i = 0; i < state.boxes.size(); ++i) {
+    const bool focused = state.names_box && i + 1 == state.boxes.size();
+    ImGui::PushID(state.boxes[i].number);
+    if (write_box(style, state, state.boxes[i], focused)) removed = i;
+    ImGui::PopID();
+  }
+  ImGui::EndTable();
+  state.names_box = false;
+  if (removed) state.boxes.erase(state.boxes.begin() + static_cast<std::ptrdiff_t>(*removed));
+}
+
+}  // namespace pillarfield::viewer
