@@ -51,6 +51,7 @@ void Application::run() {
     if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
     serve();
   }
+  if (files_ != nullptr) leave_page();
   user_.panels = state_.panels;
   user_.save();
   if (options_.statistics) print_statistics();
@@ -118,7 +119,7 @@ void Application::route_to_start_page(const InputEvent& event) {
   const bool pressed = key != nullptr && key->pressed && !key->unusable;
   if (pressed && key->key == GLFW_KEY_ESCAPE && loading_ == nullptr) leave_page();
   if (files_ != nullptr && loading_ == nullptr) {
-    if (const auto file = files_->take(event)) act({.open = file->string()});
+    if (const auto file = files_->take(event)) pending_.open = file->string();
     if (!pressed) gui_input_.take(event);
     return;
   }

@@ -70,6 +70,7 @@ std::string words_of_panels(FakeAppState& fake) {
     hover_panel(fake.state);
     pillar_panel(fake.state);
     selection_panel(fake.state);
+    boxes_panel(fake.state);
     status_row(fake.state, "gpu");
     ImGui::TextUnformatted(title_of(PanelId::pillar, fake.place.source->skin.layout));
     words = context->LogBuffer.c_str();
@@ -95,6 +96,7 @@ void fill_panels(FakeAppState& fake) {
   toggle_pin(fake.state, {3, 4});
   select_pillars(fake.state, {1, 8, 2, 9});
   fake.state.hovered = PillarIndex{5, 6};
+  fake.state.boxes = {{"heel", {1, 8, 2, 9}, 1}};
 }
 
 TEST(PanelsOfSensels, HaveNoWordOfPillars) {

@@ -5,6 +5,7 @@ that --headless writes. Screenshots stay in the folder that PILLARFIELD_PICTURES
 import json
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import struct
@@ -106,10 +107,13 @@ class Window:
 
 
 class WindowTest(unittest.TestCase):
+    SIZE = (WIDTH, HEIGHT)
+
     @classmethod
     def setUpClass(cls):
         cls.server_folder = tempfile.TemporaryDirectory()
-        cls.screen = Display(pathlib.Path(cls.server_folder.name), WIDTH + 160, HEIGHT + 120)
+        (width, height) = cls.SIZE
+        cls.screen = Display(pathlib.Path(cls.server_folder.name), width + 160, height + 120)
 
     @classmethod
     def tearDownClass(cls):
@@ -120,7 +124,8 @@ class WindowTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        self.screen.xdotool("mousemove", WIDTH + 150, HEIGHT + 110)
+        (width, height) = self.SIZE
+        self.screen.xdotool("mousemove", width + 150, height + 110)
 
     def open(self, *arguments):
         window = Window(self.screen, self.folder, *arguments)
@@ -208,7 +213,7 @@ class KeyTest(WindowTest):
     def test_every_key_changes_what_is_seen(self):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20)
         before = self.shoot("opened")
-        keys = ["2", "3", "4", "5", "6", "7", "8", "9", "0", "y", "1", "a", "a", "x", "x", "k", "k", "v",
+        keys = ["o", "2", "3", "4", "5", "6", "7", "8", "9", "0", "y", "1", "a", "a", "x", "x", "k", "k", "v",
                 "b", "b", "u", "r", "v", "e", "1", "i", "i", "w", "w", "t", "t", "g", "Tab", "Tab", "Right", "Left", "shift+Right",
                 "shift+Left", "Home", "End", "plus", "minus", "l", "l", "question", "Escape"]
         for (index, key) in enumerate(keys):
@@ -347,12 +352,29 @@ class SourceTest(WindowTest):
     def test_start_page_opens_a_scene_and_remembers_it(self):
         window = self.open("--paused")
         before = self.shoot("start")
-        window.click(230, 191)  # The first scene.
+        window.click(312, 150)  # The first picture.
         self.shoot_field("start_opened")
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
         window = self.open()
         self.shoot_changed("start_recent", before)
         self.assert_quiet(window)
+
+    def test_the_list_of_files_opens_one_by_the_keyboard(self):
+        (self.folder / "inner").mkdir()
+        shutil.copy(SCENES / "spin.toml", self.folder / "inner")
+        window = self.open("--paused")
+        before = [self.shoot("files_start")]
+        for (name, key) in (("opened", "ctrl+o"), ("config", "Down"), ("marked", "i"), ("entered", "Return"),
+                            ("scene", "s")):
+            before.append(self.act("files_" + name, lambda key=key: window.key(key), *before[-1:]))
+        window.key("Return")
+        self.shoot_field("files_scene_opened")
+        self.act("files_covers", lambda: window.key("ctrl+o"), self.shoot("files_before"))
+        window.key("Escape")
+        self.shoot_field("files_left")
+        self.assert_quiet(window)
+        settings = (self.folder / "config/pillarfield/viewer.conf").read_text(encoding="utf-8")
+        self.assertIn(f"folder {self.folder.resolve()}/inner", settings)
 
     def test_a_missing_file_is_an_error(self):
         ended = subprocess.run([VIEWER, self.folder / "none.h5"], env=self.screen.environment(),
@@ -401,6 +423,51 @@ class SourceTest(WindowTest):
         printed = subprocess.run([PROGRAM, "info", recordings[0]], check=True, capture_output=True,
                               text=True).stdout
         self.assertIn("32", printed)
+
+
+class BoxTest(WindowTest):
+    """Named boxes, in the top view and in relief."""
+
+    def test_boxes_stay(self):
+        (width, height) = self.SIZE
+        size = ["--size", f"{width}x{height}"]
+        settings = self.folder / "config/pillarfield/viewer.conf"
+        arguments = [SCENES / "demo.toml", "--paused", "--frame", 31, *size]
+        window = self.open(*arguments)
+        name = f"boxes_{height}"
+        shots = [self.shoot(name + "_none")]
+
+        def do(step, action):
+            shots.append(self.act(f"{name}_{step}", action, *shots[-1:]))
+
+        for (box, word) in (((0.16, 0.07, 0.28, 0.3), "ball"), ((0.36, 0.05, 0.48, 0.28), "slides"),
+                            ((0.3, 0.35, 0.42, 0.6), "twist")):
+            (left, top, right, bottom) = box
+            do(word + "_selected", lambda: window.drag((left * width, top * height), (right * width, bottom * height)))
+            do(word + "_kept", lambda: window.key("o"))
+            self.screen.xdotool("type", "--window", window.id, word)
+            window.key("Return")
+            self.wait_for(lambda: word in settings.read_text(encoding="utf-8"), "the name is not kept")
+        self.shoot(name)
+        do("orbit", lambda: window.key("v"))
+        do("relief", lambda: window.key("b"))
+        self.assert_quiet(window)
+        kept = [line for line in settings.read_text(encoding="utf-8").splitlines() if line.startswith("box ")]
+        self.assertEqual([line.split()[-1] for line in kept], ["ball", "slides", "twist"])
+        self.assertTrue(all(line.startswith("box 79 79 pillars ") for line in kept), kept)
+        window = self.open(*arguments)
+        self.shoot_changed(name + "_again", shots[0])
+        self.assert_quiet(window)
+
+
+class LargeBoxTest(BoxTest):
+    SIZE = (1920, 1080)
+
+    def test_start_page(self):
+        window = self.open("--size", "1920x1080")
+        before = self.shoot("start_1080")
+        self.act("files_1080", lambda: window.key("ctrl+o"), before)
+        self.assert_quiet(window)
 
 
 class WholeWindowTest(WindowTest):

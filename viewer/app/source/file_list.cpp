@@ -7,6 +7,7 @@
 #include <cctype>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "io/file_kind.h"
@@ -28,7 +29,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-std::optional<FileList::Entry> entry_of(const fs::directory_entry& file, bool all) {
+std::optional<FileList::Entry> listed_entry(const fs::directory_entry& file, bool all) {
   FileList::Entry entry{file.path().filename().string()};
   if (entry.name.starts_with('.')) return std::nullopt;
   std::error_code error;
@@ -45,12 +46,12 @@ std::optional<FileList::Entry> entry_of(const fs::directory_entry& file, bool al
 std::vector<FileList::Entry> entries_in(const fs::path& folder, bool all) {
   std::vector<FileList::Entry> entries;
   for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-    if (auto entry = entry_of(file, all)) entries.push_back(std::move(*entry));
+    if (auto entry = listed_entry(file, all)) entries.push_back(std::move(*entry));
   }
   std::ranges::sort(entries, {}, [](const FileList::Entry& entry) {
     return std::tuple(!entry.is_folder, in_lower_case(entry.name), entry.name);
   });
-  if (folder.has_relative_path()) entries.insert(entries.begin(), {"..", true});
+  if (folder.has_relative_path()) entries.insert(entries.begin(), FileList::Entry{"..", true});
   return entries;
 }
 
