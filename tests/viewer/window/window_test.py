@@ -177,6 +177,11 @@ class WindowTest(unittest.TestCase):
             return [pixels] if bright.sum() > 20 else None
         return self.wait_for(field, "no field is shown")[0]
 
+    def shoot_page(self, name):
+        """Waits for a page with words."""
+        self.wait_for(lambda: (self.screen.pixels().min(axis=2) > 180).any(), "no page is shown")
+        return self.shoot(name)
+
     def assert_quiet(self, window):
         """Closes the window; expects no validation messages."""
         statistics = window.quit()
@@ -351,7 +356,7 @@ class Sensor(threading.Thread):
 class SourceTest(WindowTest):
     def test_start_page_opens_a_scene_and_remembers_it(self):
         window = self.open("--paused")
-        before = self.shoot("start")
+        before = self.shoot_page("start")
         window.click(312, 150)  # The first picture.
         self.shoot_field("start_opened")
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
@@ -363,7 +368,7 @@ class SourceTest(WindowTest):
         (self.folder / "inner").mkdir()
         shutil.copy(SCENES / "spin.toml", self.folder / "inner")
         window = self.open("--paused")
-        before = [self.shoot("files_start")]
+        before = [self.shoot_page("files_start")]
         for (name, key) in (("opened", "ctrl+o"), ("config", "Down"), ("marked", "i"), ("entered", "Return"),
                             ("scene", "s")):
             before.append(self.act("files_" + name, lambda key=key: window.key(key), *before[-1:]))
@@ -440,10 +445,15 @@ class BoxTest(WindowTest):
         def do(step, action):
             shots.append(self.act(f"{name}_{step}", action, *shots[-1:]))
 
-        for (box, word) in (((0.16, 0.07, 0.28, 0.3), "ball"), ((0.36, 0.05, 0.48, 0.28), "slides"),
-                            ((0.3, 0.35, 0.42, 0.6), "twist")):
-            (left, top, right, bottom) = box
-            do(word + "_selected", lambda: window.drag((left * width, top * height), (right * width, bottom * height)))
+        middle = (width - 284) / 2  # of the field, left of the panels; the skin fills its height
+
+        def place(x, y):
+            return (middle + x * height, y * height)
+
+        for (begin, end, word) in ((place(-0.33, 0.06), place(-0.13, 0.27), "ball"),
+                                   (place(0.04, 0.05), place(0.22, 0.26), "slides"),
+                                   (place(-0.05, 0.29), place(0.15, 0.5), "twist")):
+            do(word + "_selected", lambda begin=begin, end=end: window.drag(begin, end))
             do(word + "_kept", lambda: window.key("o"))
             self.screen.xdotool("type", "--window", window.id, word)
             window.key("Return")
@@ -465,7 +475,7 @@ class LargeBoxTest(BoxTest):
 
     def test_start_page(self):
         window = self.open("--size", "1920x1080")
-        before = self.shoot("start_1080")
+        before = self.shoot_page("start_1080")
         self.act("files_1080", lambda: window.key("ctrl+o"), before)
         self.assert_quiet(window)
 

@@ -35,15 +35,15 @@ class Marker {
     draw_outline(list_, points, colour, 1.4f * unit_);
   }
 
-  /// A named box: its name stands below its lower left corner, where no label of a contact is.
+  /// A named box: its name stands below its lowest point, where no label of a contact is.
   void box(const NamedBox& box) const {
     const ImU32 colour = packed(pin_colour(box.number, Theme::dark));
     outline(box.rect, colour);
     std::optional<Vec2> corner;
     for (const SeenPoint& point : ground_.outline(box.rect)) {
-      if (point.hidden) continue;
-      if (!corner) corner = point;
-      corner = Vec2{std::min(corner->x, point.x), std::max(corner->y, point.y)};
+      const bool lower =
+          !corner || point.y > corner->y || (point.y == corner->y && point.x < corner->x);
+      if (lower && !point.hidden) corner = point;
     }
     if (!corner) return;
     const ImVec2 size = ImGui::CalcTextSize(box.name.c_str());

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -15,37 +16,44 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// A number, flush right.
+constexpr const char* kWidestNumber = "0.0000";
+
+/// A number, flush right, as wide as kWidestNumber at most.
 void number_cell(double value) {
   ImGui::TableNextColumn();
-  const std::string words = three_digits(value);
+  const std::string words =
+      std::abs(value) < 0.1 ? fmt::format("{:.4f}", value) : three_digits(value);
   const float left_over = ImGui::GetContentRegionAvail().x - static_cast<float>(width_of(words));
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(words.c_str());
 }
 
-/// The name, which can be edited. A name that a box may not have is not taken.
-void name_cell(const PanelStyle& style, NamedBox& box, Theme theme, bool focused) {
+/// The name in the colour of the box, which can be edited. A name that no box may have is not
+/// taken.
+void name_cell(NamedBox& box, Theme theme, bool focused) {
   ImGui::TableNextColumn();
-  ImGui::AlignTextToFramePadding();
-  swatch(style, packed(pin_colour(box.number, theme)));
   std::array<char, NamedBox::kMostNameBytes + 1> name{};
   std::ranges::copy(box.name, name.begin());
   if (focused) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
+  const ImVec2 padding = ImGui::GetStyle().FramePadding;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(padding.y, padding.y));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed(pin_colour(box.number, theme)));
   const bool edited =
       ImGui::InputText("##name", name.data(), name.size(), ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
   if (edited && is_box_name(name.data())) box.name = name.data();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", box.name.c_str());
 }
 
 /// Returns true where the box is to be removed.
-bool write_box(const PanelStyle& style, AppState& state, NamedBox& box, bool focused) {
+bool write_box(const AppState& state, NamedBox& box, bool focused) {
   const Skin& skin = state.player->info().skin;
   const SelectionSums& sums = sums_of(state, box.rect, box.cached);
   ImGui::TableNextRow();
-  name_cell(style, box, state.settings.theme, focused);
+  name_cell(box, state.settings.theme, focused);
   number_cell(sums.normal);
   if (skin.has_pillars()) number_cell(std::hypot(sums.shear_x, sums.shear_y));
   const double kpa = static_cast<double>(kpa_per_newton(skin)) * sums.mean_normal;
@@ -63,11 +71,11 @@ struct BoxColumn {
 };
 
 std::vector<BoxColumn> box_columns(const AppState& state) {
-  const auto number = static_cast<float>(std::ceil(width_of("0.00000")));
+  const auto number = static_cast<float>(std::ceil(width_of(kWidestNumber)));
   const auto button = static_cast<float>(std::ceil(width_of("×")));
-  std::vector<BoxColumn> columns{{"name", "click to rename", 0}, {"N", "normal force", number}};
+  std::vector<BoxColumn> columns{{"name", "click to rename", 0}, {"N", "normal force, N", number}};
   if (state.player->info().skin.has_pillars()) {
-    columns.push_back({"shear N", "length of the total shear", number});
+    columns.push_back({"shear", "length of the total shear, N", number});
   }
   columns.push_back({std::string(state.settings.pressure_unit.name),
                      "mean pressure on what is in contact", number});
@@ -92,8 +100,9 @@ void write_box_heads(const std::vector<BoxColumn>& columns) {
 }  // namespace
 
 void boxes_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  if (state.boxes.empty() || !state.field) return faint_text(style, "No part has a name.");
+  if (state.boxes.empty() || !state.field) {
+    return faint_text(panel_style(state.settings.scale), "No part has a name.");
+  }
   const std::vector<BoxColumn> columns = box_columns(state);
   constexpr int kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_NoPadOuterX;
   if (!ImGui::BeginTable("boxes", static_cast<int>(columns.size()), kFlags)) return;
@@ -102,7 +111,7 @@ void boxes_panel(AppState& state) {
   for (std::size_t i = 0; i < state.boxes.size(); ++i) {
     const bool focused = state.names_box && i + 1 == state.boxes.size();
     ImGui::PushID(state.boxes[i].number);
-    if (write_box(style, state, state.boxes[i], focused)) removed = i;
+    if (write_box(state, state.boxes[i], focused)) removed = i;
     ImGui::PopID();
   }
   ImGui::EndTable();

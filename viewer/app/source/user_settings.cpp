@@ -82,7 +82,8 @@ void UserSettings::save() const noexcept {
     part += "." + std::to_string(getpid());
     std::ofstream file(part, std::ios::trunc);
     file << text_of(panels) << boxes.text();
-    if (folder.string().find('\n') == std::string::npos) file << kFolder << folder.string() << '\n';
+    if (!folder.empty() && folder.string().find('\n') == std::string::npos)
+      file << kFolder << folder.string() << '\n';
     for (const std::string& source : recent_) file << kRecent << source << '\n';
     file.close();
     if (file) {
