@@ -351,6 +351,13 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
 #endif
     solution.deviations =
         force_deviations(pillar, diagonals, sum, noise, PF_VALUE(Real, segment_point), scale);
+    solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale,
+                                           shear_weights(stages));
+    if (any_lane(any_saturated(pillar))) {
+      const Open open = open_components(pillar, diagonals, sum);
+      solution.deviations = open_deviations(solution.deviations, open, scale);
+      solution.interval = open_interval(solution.interval, open);
+    }
 #ifdef PF_SHEAR_COEFFICIENT
     if (PF_NAMED(shear_coefficient)) {
       solution.deviations = per_coefficient(solution.deviations, stages);
@@ -361,8 +368,6 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
       solution.deviations = with_common_residual(solution.deviations, solution.force, stages);
     }
 #endif
-    solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale,
-                                           shear_weights(stages));
   }
 #endif
   return solution;

@@ -253,13 +253,16 @@ PF_INLINE DirectionInterval ambiguous_interval(ScaledPillar e, Mask inactive, Di
   return interval;
 }
 
-/* The interval of a pillar without missing and saturated sensels (U4 to U8).
+/* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
+ * pillar without missing and saturated sensels (U4 to U8). Both ends are the estimate where the
+ * force is determined. `sum` comes from `parity_sum`, `estimate` is the direction of
+ * `direct_force`.
  *
  * The general interval costs more than the rest of the solve; cheaper formulas give the same bits
  * where no lane needs it. */
-PF_INLINE DirectionInterval interval_of_readings(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                                 Direction estimate, ForceScale scale,
-                                                 ShearWeights weights) {
+PF_INLINE DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                               Direction estimate, ForceScale scale,
+                                               ShearWeights weights) {
   const Mask determined = is_determined(pillar, sum);
   const DirectionInterval point = point_interval(estimate);
   if (!any_lane(!determined)) return point;
@@ -286,16 +289,4 @@ PF_INLINE DirectionInterval open_interval(DirectionInterval interval, Open open)
   const Mask is_open =
       open.shear_x || open.shear_y || open.normal || open.difference > PF_REAL(0.0);
   return either_interval(is_open, any, interval);
-}
-
-/* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
- * pillar without missing sensels (U4 to U8, U12). Both ends are the estimate where the force is
- * determined. `sum` comes from `parity_sum`, `estimate` is the direction of `direct_force`. */
-PF_INLINE DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                               Direction estimate, ForceScale scale,
-                                               ShearWeights weights) {
-  const DirectionInterval interval =
-      interval_of_readings(pillar, diagonals, sum, estimate, scale, weights);
-  if (!any_lane(any_saturated(pillar))) return interval;
-  return open_interval(interval, open_components(pillar, diagonals, sum));
 }

@@ -56,10 +56,14 @@ PF_INLINE Open open_components(Pillar pillar, Diagonals diagonals, ParitySum sum
 PF_INLINE Force open_deviations(Force deviations, Open open, ForceScale scale) {
   const Real hidden = scale.shear * (PF_REAL(0.57735026918962576451) * open.difference);
   const Mask is_hidden = hidden > PF_REAL(0.0);
-  const Real shear_x = is_hidden ? plain_length_2(deviations.shear_x, hidden) : deviations.shear_x;
-  const Real shear_y = is_hidden ? plain_length_2(deviations.shear_y, hidden) : deviations.shear_y;
-  deviations.shear_x = open.shear_x ? PF_INFINITY : shear_x;
-  deviations.shear_y = open.shear_y ? PF_INFINITY : shear_y;
+  if (any_lane(is_hidden)) { /* rare: two roots */
+    const Real shear_x = plain_length_2(deviations.shear_x, hidden);
+    const Real shear_y = plain_length_2(deviations.shear_y, hidden);
+    deviations.shear_x = is_hidden ? shear_x : deviations.shear_x;
+    deviations.shear_y = is_hidden ? shear_y : deviations.shear_y;
+  }
+  deviations.shear_x = open.shear_x ? PF_INFINITY : deviations.shear_x;
+  deviations.shear_y = open.shear_y ? PF_INFINITY : deviations.shear_y;
   deviations.normal = open.normal ? PF_INFINITY : deviations.normal;
   return deviations;
 }
@@ -138,10 +142,10 @@ PF_INLINE Force roots_of(Force variances, Real to_x, Real to_y, Real ambiguity, 
   return deviations;
 }
 
-/* Standard deviations of the components of the force of readings, N (U3, U9); exact in regions 1
- * and 2. */
-PF_INLINE Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
-                                   Real segment_point, ForceScale scale) {
+/* Standard deviations of the components of `direct_force`, N (U3, U9), but for what saturated
+ * sensels leave open; exact in regions 1 and 2. */
+PF_INLINE Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
+                                 Real segment_point, ForceScale scale) {
   const ParityWeights weights = parity_weights(diagonals, segment_point);
   const DifferenceWeights rising = difference_weights(diagonals.rising);
   const DifferenceWeights falling = difference_weights(diagonals.falling);
@@ -176,13 +180,4 @@ PF_INLINE Force reading_deviations(Pillar pillar, Diagonals diagonals, ParitySum
   deviations.shear_y = deviations.shear_y * scaling.up;
   deviations.normal = deviations.normal * scaling.up;
   return deviations;
-}
-
-/* Standard deviations of the components of `direct_force`, N: those of its readings, infinite where
- * a saturated sensel leaves a component open. */
-PF_INLINE Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
-                                 Real segment_point, ForceScale scale) {
-  const Force deviations = reading_deviations(pillar, diagonals, sum, noise, segment_point, scale);
-  if (!any_lane(any_saturated(pillar))) return deviations;
-  return open_deviations(deviations, open_components(pillar, diagonals, sum), scale);
 }

@@ -175,8 +175,10 @@ struct Ends {
   explicit Ends(const PillarOf<Precision>& pillar)
       : slack(64 * std::numeric_limits<RealOf<Precision>>::epsilon()) {
     const auto solved = solve<Precision>(pillar, kCountsOfOneNewton);
-    interval = direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
-                                  solved.scale, {1, 1, true});
+    interval =
+        open_interval(direction_interval(pillar, solved.diagonals, solved.sum,
+                                         direction_of(solved.force), solved.scale, {1, 1, true}),
+                      open_components(pillar, solved.diagonals, solved.sum));
   }
 
   /// Counter-clockwise angles of phi and of phi_high from phi_low.
@@ -339,9 +341,10 @@ TYPED_TEST(DirectionIntervals, AndDeviationsOfSaturatedPillarsHoldTheTruth) {
     if (!has_saturated(states)) continue;
     const auto pillar = pillar_in<TypeParam>(states, read);
     const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
-    const auto stated =
-        components(force_deviations(pillar, solved.diagonals, solved.sum, {0, 0, 0, 0},
-                                    static_cast<Real>(kSegmentPoint), solved.scale));
+    const auto stated = components(
+        open_deviations(force_deviations(pillar, solved.diagonals, solved.sum, {0, 0, 0, 0},
+                                         static_cast<Real>(kSegmentPoint), solved.scale),
+                        open_components(pillar, solved.diagonals, solved.sum), solved.scale));
     const auto found = components(solved.force);
     const double per_shear = 1 / (2 * std::numbers::sqrt2 * kCountsOfOneNewton);
     const Components force = {(truth.rising - truth.falling) * per_shear,
@@ -378,13 +381,16 @@ TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
       for (auto& reading : readings) reading = odd[random.below(odd.size())];
       const auto pillar = pillar_in<TypeParam>(states, readings);
       const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
+      const auto open = open_components(pillar, solved.diagonals, solved.sum);
       const auto interval =
-          direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
-                             solved.scale, {1, 1, true});
+          open_interval(direction_interval(pillar, solved.diagonals, solved.sum,
+                                           direction_of(solved.force), solved.scale, {1, 1, true}),
+                        open);
       const Real most = static_cast<Real>(1e6);
-      const auto deviations =
+      const auto deviations = open_deviations(
           force_deviations(pillar, solved.diagonals, solved.sum, {most, most, most, most},
-                           static_cast<Real>(kSegmentPoint), solved.scale);
+                           static_cast<Real>(kSegmentPoint), solved.scale),
+          open, solved.scale);
       for (const Real value : {interval.theta_low, interval.theta_high, interval.phi_low,
                                interval.phi_high, interval.magnitude_low, interval.magnitude_high,
                                deviations.shear_x, deviations.shear_y, deviations.normal}) {
