@@ -12,6 +12,7 @@
 #include "device/lane_slot.h"
 #include "lanes/lane_plan.h"
 #include "skin/quads.h"
+#include "solve/whole_numbers.h"
 
 namespace pillarfield {
 namespace {
@@ -19,9 +20,10 @@ namespace {
 constexpr int kLanesOfCpu = 16;
 constexpr std::string_view kHost = "host";
 constexpr std::string_view kAnyOpenCl = "opencl";
-/// Blocks of 2 x 2 sensels up to which the host's lanes solve every plan sooner than an OpenCL
-/// device on the same processor is started (docs/performance_decisions.md).
+/// Blocks of 2 x 2 sensels up to which the host's lanes solve a plan sooner than an OpenCL device
+/// on the same processor: any, or one in whole numbers (docs/decisions/host_lanes.md).
 constexpr std::size_t kMostQuadsOnHost = 16384;
+constexpr std::size_t kMostWholeQuadsOnHost = 65536;
 constexpr const char* kPoclPlatform = "Portable Computing Language";
 
 const char* type_name(cl_device_type type) {
@@ -252,7 +254,8 @@ const DeviceInfo& Device::info() const { return state().info; }
 
 Device Device::for_plan(const SolverPlan& plan) const {
   if (best_ == nullptr) return *this;
-  const bool is_small = quads(plan.skin) <= kMostQuadsOnHost && host_solves(plan.skin);
+  const std::size_t most = is_whole(plan) ? kMostWholeQuadsOnHost : kMostQuadsOnHost;
+  const bool is_small = quads(plan.skin) <= most && host_solves(plan.skin);
   return Device(is_small ? std::make_shared<State>() : best_->opened());
 }
 

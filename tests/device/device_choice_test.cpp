@@ -27,15 +27,18 @@ TEST(DeviceChoice, ASuitableDeviceIsOpenedByDefault) {
 }
 
 TEST(DeviceChoice, SmallSkinsAreTheHostsUnlessADeviceIsNamed) {
-  const auto solver = [](const Device& device, std::uint32_t rows, std::uint32_t cols) {
-    return device.for_plan(bare_plan(rows, cols, SenselType::u8)).info().type;
+  const auto solver = [](const Device& device, std::uint32_t rows, std::uint32_t cols,
+                         SenselType type = SenselType::u8) {
+    return device.for_plan(bare_plan(rows, cols, type)).info().type;
   };
   EXPECT_EQ(solver(open_device(), 13, 6), "host");
-  EXPECT_EQ(solver(open_device(), 256, 256), "host");
-  EXPECT_NE(solver(open_device(), 256, 258), "host");
+  EXPECT_EQ(solver(open_device(), 512, 512), "host");
+  EXPECT_NE(solver(open_device(), 512, 514), "host");
+  EXPECT_EQ(solver(open_device(), 256, 256, SenselType::f32), "host");
+  EXPECT_NE(solver(open_device(), 256, 258, SenselType::f32), "host") << "not in whole numbers";
   EXPECT_NE(solver(open_device(), 256, 2), "host") << "it has a single column of pillars";
   EXPECT_NE(solver(open_device("opencl"), 13, 6), "host");
-  EXPECT_EQ(solver(open_device("host"), 256, 258), "host");
+  EXPECT_EQ(solver(open_device("host"), 512, 514), "host");
 }
 
 TEST(DeviceChoice, GpusComeBeforeCpus) {

@@ -18,7 +18,7 @@ namespace {
 TEST(Lanes, AreTheDeviceOfSkinsWithoutOpenCl) {
   EXPECT_TRUE(list_devices().empty());
   EXPECT_EQ(open_device().info().type, "host");
-  for (const std::uint32_t side : {4U, 400U}) {
+  for (const std::uint32_t side : {4U, 600U}) {
     const SolverPlan plan = bare_plan(side, side, SenselType::u8);
     EXPECT_EQ(open_device().for_plan(plan).info().name, open_device("host").info().name);
   }

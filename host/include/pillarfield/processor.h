@@ -56,9 +56,10 @@ class Device {
   [[nodiscard]] const DeviceInfo& info() const;
 
   /// The device that solves the frames of a plan: this one, if it was named. Else the host for a
-  /// skin of up to 16,384 pillars (or 2 x 2 sensels) and two columns or more, without opening
-  /// OpenCL, and the best OpenCL device for others; the host if there is no such device. Throws
-  /// Error in the cases of list_devices().
+  /// skin of up to 16,384 pillars (or 2 x 2 sensels; 65,536 if it solves forces alone from 8-bit
+  /// readings without any correction) and two columns or more, without opening OpenCL, and the best
+  /// OpenCL device for others; the host if there is no such device. Throws Error in the cases of
+  /// list_devices().
   [[nodiscard]] Device for_plan(const SolverPlan& plan) const;
 
   /// @cond internal
@@ -171,8 +172,8 @@ class Processor {
 
   /// The contacts of the frame received last, with their friction as the estimator `contact` found
   /// it; pass them to ContactTracker::update(), which then need not find them again. They stay
-  /// valid until the next receive(). Empty (`labels` is null) with other estimators and before the
-  /// first receive().
+  /// valid until the next receive(). With other estimators `labels` is null; then the tracker skips
+  /// what the solve found idle, as long as the frame's results are valid.
   [[nodiscard]] FoundContacts contacts() const;
 
   /// The tare after all frames submitted so far, [sensel rows, cols], counts; waits for them. It
