@@ -6,7 +6,7 @@ The sensor is simulated: the load grows, and the next frame follows from it and 
 import pillarfield as pf
 
 RATE_HZ = 30
-SECONDS = 7
+SECONDS = 9
 FRICTION = 0.9  # the loop does not know it
 GROWTH_N_PER_S = 1.5  # nor this
 

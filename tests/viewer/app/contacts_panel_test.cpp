@@ -29,7 +29,7 @@ TEST(FormatContact, FollowTheHeads) {
     return viewer::format_contact(name, of, SkinLayout::pillars, kPressureUnits.front());
   };
   EXPECT_EQ(format_contact("7", contact),
-            (Words{"7", "50.1", "5.00", "–", "unknown", "–", "0 %", "157", "285", "320", "0.457"}));
+            (Words{"7", "50.1", "5.00", "–", "–", "–", "0 %", "157", "285", "320", "0.457"}));
   contact.ambiguous = 50;
   contact.friction = 0.6;
   contact.slip = SlipState::partial;
@@ -46,12 +46,15 @@ TEST(FormatContact, TellsWhenItSlips) {
   const auto slips_in = [&] {
     return format_contact("7", contact, SkinLayout::pillars, kPressureUnits.front())[5];
   };
-  EXPECT_EQ(format_slip_forecast(contact), "");
+  EXPECT_EQ(format_slip_details(contact), "");
+  contact.friction_deviation = 0.04;
+  EXPECT_EQ(format_slip_details(contact), "standard deviation of µ  0.04");
   contact.slip_forecast = {0.423, 0.31, std::nullopt, {0.004, 0.2, 0.97}};
   EXPECT_EQ(slips_in(), "0.42 s");
-  EXPECT_EQ(format_slip_forecast(contact),
-            "slips in 0.31 s … never (95 %)\nslips within 0.1 s  0 %\n"
-            "slips within 0.3 s  20 %\nslips within 1 s  97 %");
+  EXPECT_EQ(
+      format_slip_details(contact),
+      "standard deviation of µ  0.04\nslips in 0.31 s … never (95 %)\nslips within 0.1 s  0 %\n"
+      "slips within 0.3 s  20 %\nslips within 1 s  97 %");
   contact.slip_forecast->time_s = 12.6;
   EXPECT_EQ(slips_in(), "13 s");
   contact.slip_forecast->time_s = 1e9;

@@ -60,7 +60,7 @@ void write_right(const std::string& words) {
   ImGui::TextUnformatted(words.c_str());
 }
 
-/// All values of a row, also those that do not fit, and how likely the contact slips.
+/// All values of a row, also those that do not fit, and how sure they are.
 void show_all(const std::vector<std::string>& words, const ContactQuantities& contact,
               SkinLayout layout) {
   const std::vector<ContactColumn>& columns = contact_columns(layout);
@@ -68,8 +68,8 @@ void show_all(const std::vector<std::string>& words, const ContactQuantities& co
   for (std::size_t i = 0; i < words.size(); ++i) {
     lines += fmt::format("{}{}  {}", i == 0 ? "" : "\n", columns[i].head, words[i]);
   }
-  if (const std::string forecast = format_slip_forecast(contact); !forecast.empty()) {
-    lines += "\n" + forecast;
+  if (const std::string details = format_slip_details(contact); !details.empty()) {
+    lines += "\n" + details;
   }
   ImGui::SetTooltip("%s", lines.c_str());
 }

@@ -213,9 +213,11 @@ std::string format_ambiguous(const ContactQuantities& contact) {
 }
 
 std::string format_friction(const ContactQuantities& contact) {
-  if (!contact.friction) return "–";
-  if (!contact.friction_deviation) return fmt::format("{:.2f}", *contact.friction);
-  return fmt::format("{:.2f} ± {:.2f}", *contact.friction, *contact.friction_deviation);
+  return contact.friction ? fmt::format("{:.2f}", *contact.friction) : "–";
+}
+
+std::string format_slip(const ContactQuantities& contact) {
+  return contact.slip == SlipState::unknown ? "–" : name_of(contact.slip);
 }
 
 /// "0.42 s"; "–" if it is not foretold, or will not slide.
@@ -233,10 +235,9 @@ std::vector<ContactColumn> shear_columns() {
            [](const ContactQuantities& contact) {
              return three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n));
            }},
-          {"µ", "friction and its standard deviation, if observed", "0.00 ± 0.00", format_friction},
-          {"slip", "sticking, partial, sliding or unknown", "unknown",
-           [](const ContactQuantities& contact) -> std::string { return name_of(contact.slip); }},
-          {"slips in", "seconds until the whole contact slides at the present rates", "> 60 s",
+          {"µ", "friction", "0.00", format_friction},
+          {"slip", "sticking, partial or sliding", "sticking", format_slip},
+          {"slips in", "seconds until the whole contact slides at the present rates", "00.0 s",
            format_time_to_slip},
           {"ambiguous", "fraction of pillars / fraction of these resolved from the contact",
            "00 % / 00 %", format_ambiguous}};
@@ -273,14 +274,18 @@ const std::vector<ContactColumn>& contact_columns(SkinLayout layout) {
   return layout == SkinLayout::pillars ? of_pillars : of_sensels;
 }
 
-std::string format_slip_forecast(const ContactQuantities& contact) {
+std::string format_slip_details(const ContactQuantities& contact) {
+  std::string words;
+  if (contact.friction_deviation) {
+    words = fmt::format("standard deviation of µ  {:.2f}", *contact.friction_deviation);
+  }
   const auto& forecast = contact.slip_forecast;
-  if (!forecast) return {};
+  if (!forecast) return words;
   const auto end = [](const std::optional<double>& time_s) {
     return time_s ? fmt::format("{:.2f} s", *time_s) : "never";
   };
-  std::string words =
-      fmt::format("slips in {} … {} (95 %)", end(forecast->low_s), end(forecast->high_s));
+  if (!words.empty()) words += "\n";
+  words += fmt::format("slips in {} … {} (95 %)", end(forecast->low_s), end(forecast->high_s));
   for (std::size_t i = 0; i < forecast->probability.size(); ++i) {
     words += fmt::format("\nslips within {} s  {:.0f} %", SlipForecast::kWithinS[i],
                          100 * forecast->probability[i]);

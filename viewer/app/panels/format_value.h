@@ -82,8 +82,9 @@ struct ContactColumn {
 };
 [[nodiscard]] const std::vector<ContactColumn>& contact_columns(SkinLayout layout);
 
-/// The interval of the time to slip, and probabilities; empty if it is not foretold.
-[[nodiscard]] std::string format_slip_forecast(const ContactQuantities& contact);
+/// Lines with the deviation of friction, the interval of the time to slip and probabilities, as far
+/// as they are known.
+[[nodiscard]] std::string format_slip_details(const ContactQuantities& contact);
 
 /// A row of the table: `name`, then contact_columns(), pressures in `unit`, numbers with three
 /// digits; "–" for missing values.
