@@ -100,9 +100,9 @@ def patches(readings, threshold):
 def training(seed, number):
     """Histories of other bodies: an ellipsoid each, pressed, tilted or dragged, which slides, and spins in part."""
     rng = np.random.default_rng(seed)
-    x, y = cells(22, 22, 4)
+    x, y = cells(28, 28, generate.PER_PILLAR)
     for index in range(number):
-        friction, angle, size, shape = rng.uniform((0.7, 0, 1.5, 0.8), (4.5, 2 * np.pi, 8, 1.25))
+        friction, angle, size, shape = rng.uniform((0.7, 0, 1.5, 0.8), (4.5, 2 * np.pi, 12, 1.25))
         away, spin = rng.uniform(0.1, 0.5) * np.array([np.cos(angle), np.sin(angle)]), rng.choice([0, 0, 0.1, -0.2])
 
         def ball(part, x=x, y=y, radii=(size * shape, size / shape)):
@@ -112,7 +112,7 @@ def training(seed, number):
         if index % 3 == 0:
             frames = [sliding(x, y, frames[0][0], friction * share, away) for share in (0.3, 0.6, 0.9)]
         frames += [sliding(x, y, ball(1, x - t * away[0], y - t * away[1]), friction, away, spin) for t in (1, 2)]
-        yield generate.history(frames, friction, 4, (seed, index))[:2]
+        yield generate.history(frames, friction, (seed, index))[:2]
 
 
 def lifted(features, weights):
@@ -124,7 +124,7 @@ def lifted(features, weights):
 def trained(hidden=600, ridge=3.0):
     """Weights of the random features, and of the ridge regression from them to the place on the segment, 0 to 1."""
     inputs, targets = [], []
-    for readings, forces in training(1000, 60):
+    for readings, forces in training(1000, 40):
         places, features = patches(readings, generate.THRESHOLD)
         inputs.append(features)
         targets.append(2 * generate.K * forces[:, 2][places] / lengths(sensels(readings), generate.THRESHOLD)[places])

@@ -1,6 +1,6 @@
 """generate.py FOLDER: writes the twelve histories of the open benchmark (docs/histories.md), the same bytes each time.
 
-A history is a list of frames (p, qx, qy) on cells, 4 or 8 to the edge of a pillar (half_space.py), and its friction."""
+A history is a list of frames (p, qx, qy) on cells, PER_PILLAR to the edge of a pillar (half_space.py), and its friction."""
 
 import sys
 from pathlib import Path
@@ -8,17 +8,17 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from half_space import along, boundary_elements, cells, dragged, hertz, line, punch, rolling, sliding, turned
+from half_space import along, cells, dragged, hertz, line, punch, rolling, sliding, turned
 
 SKIN = {"sensel_pitch_mm": 0.632455532, "counts_per_newton": 320.0, "threshold_counts": 2.0, "full_scale_counts": 255.0}
 K, THRESHOLD, PEAK, NOISE = 320, 2, 150, 0.5  # counts per newton; counts
-RATE_HZ = 30
+RATE_HZ, PER_PILLAR = 30, 8
 DRAG = (0, 0.2, 0.4, 0.6, 0.75, 0.9, 0.97)  # shares of the friction, before a body slides
 
 
 def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), shares=DRAG, slides=((0, 1), (0, 1), (0, 1))):
     """An ellipsoid is dragged until it slides, a third of a pillar a frame; slides: its turn, degrees, and its size."""
-    x, y = cells(*grid, 8)
+    x, y = cells(*grid, PER_PILLAR)
     angle = np.radians(degrees)
     frames = [dragged(lambda part: hertz(x - at[0], y - at[1], size * part, radii), 3, friction, angle, share)
               for share in shares]
@@ -35,63 +35,65 @@ def two_balls():
 
 
 def drag_back(friction):
-    x, y = cells(24, 24, 8)
+    x, y = cells(24, 24, PER_PILLAR)
     shares = [(share, None) for share in (0, 0.4, 0.7, 0.9)] + [(share, 0.9) for share in (0.6, 0.2, -0.2, -0.5, -0.7, -0.85)]
     return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), *share) for share in shares]
 
 
 def pressed_askew():
     """A force that grows in one direction: the ball sticks, at one ratio of shear to pressure."""
-    x, y = cells(14, 14, 8)
+    x, y = cells(14, 14, PER_PILLAR)
     return [along(p, 1.9 * p, np.radians(4)) for p in
             (hertz(x - 0.3, y - 0.1, 2.46 * scale) for scale in (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1, 0.95))]
 
 
 def slide_and_spin(friction):
-    x, y = cells(24, 26, 8)
+    x, y = cells(24, 26, PER_PILLAR)
     return [sliding(x, y, hertz(x - a, y - 0.2, 8), friction, (1, 0.2), 0.08 * t, (a, 0.2))
             for t, a in enumerate(np.linspace(-1.4, 1.3, 10))]
 
 
 def twisted(friction):
-    angles = (0, 0, 0.03, 0.08, 0.13, 0.19, 0.29, 0.24, 0.16, 0.08)
-    return boundary_elements(*cells(20, 20, 4), lambda x, y: (x**2 + y**2) / 200, friction,
-                             [((0.2, -0.1), angle, 0.45 if t else 0.3) for t, angle in enumerate(angles)])
+    """A ball is pressed, and twisted to and fro, each time so fast that it slips everywhere within a frame."""
+    x, y = cells(20, 20, PER_PILLAR)
+    p = hertz(x - 0.2, y + 0.1, 6.5)
+    return [(p, 0 * p, 0 * p)] * 2 + [sliding(x, y, p, friction, (0, 0), spin, (0.2 + t / 2, -0.1 - t / 4))
+                                      for t, spin in enumerate((1, 1, 1, 1, -1, -1, -1))]
 
 
 def roller(friction, share, degrees):
     """A long cylinder rolls half a pillar a frame, driven (share above zero) or braked."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return [rolling(*cells(24, 24, 8), 4, 12, friction, share, np.radians(degrees), (c * way, s * way))
+    return [rolling(*cells(24, 24, PER_PILLAR), 4, 12, friction, share, np.radians(degrees), (c * way, s * way))
             for way in np.arange(10) / 2 - 2.2]
 
 
 def punch_pushed():
     """A flat punch sticks all over until it slides all over."""
-    x, y = cells(20, 20, 8)
+    x, y = cells(20, 20, PER_PILLAR)
     return [along(p, ratio * p, np.radians(-85)) for ratio, p in
             ((ratio, punch(x, y - 0.4 + 0.3 * max(0, t - 7), 6))
              for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)))]
 
 
-ROUGH_X, ROUGH_Y = cells(24, 28, 4)
-ROUGH_FRICTION = 3 * (1 + 0.1 * np.cos(0.5 * ROUGH_X + 0.3 * ROUGH_Y))
-
-
-def rough_ball(friction):
+def rough_ball():
+    """A ball on the contacts of its hills. Each has Mindlin's share of shear for the way of the ball, slides from the way
+    size**2 on, and does not feel the others."""
+    x, y = cells(24, 28, PER_PILLAR)
     rng = np.random.default_rng(11)
-    waves = np.transpose([rng.uniform(0, np.pi, 12), rng.uniform(0.5, 1.8, 12), rng.uniform(0, 2 * np.pi, 12)])
+    places = 2.6 * np.mgrid[-2:3, -2:3].reshape(2, 25).T + rng.uniform(-0.2, 0.2, (25, 2))
+    hills = [(rng.uniform(0.6, 1.1), *place) for place in places if np.hypot(*place) < 7]
 
-    def shape(x, y):
-        hills = sum(np.cos(k * turned(x, y, a)[0] + phase) / k for a, k, phase in waves) / 12
-        return (x**2 + y**2) / 200 + 0.3 * hills
+    def frame(way):
+        return np.sum([dragged(lambda part, at=at, size=size: hertz(x - at[0], y - at[1], size * part), 3, 3.0, 0.15,
+                               1 - max(0, 1 - way / size**2)**1.5) for size, *at in hills], axis=0)
 
-    return boundary_elements(ROUGH_X, ROUGH_Y, shape, friction, [((way, 0.15 * way), 0, 0.4) for way in np.arange(8) * 0.3])
+    return [frame(way) for way in (0, 0.15, 0.3, 0.45, 0.6, 0.8, 1, 1.3)]
 
 
 def edge(friction):
     """The edge of a plate, 0.8 of a pillar wide, dragged across itself at an angle to the pillars."""
-    ahead, side = turned(*cells(18, 18, 8), np.radians(12), (0.1, 0.2))
+    ahead, side = turned(*cells(18, 18, PER_PILLAR), np.radians(12), (0.1, 0.2))
     return [dragged(lambda part: line(ahead, side, 0.4 * part, 10), 2, friction, np.radians(12), share)
             for share in (*DRAG, 1, 1)]
 
@@ -107,7 +109,7 @@ HISTORIES = {  # name: frames, friction
     "roller driven": (lambda: roller(2.2, 0.8, 0), 2.2),
     "roller braked": (lambda: roller(0.8, -0.9, 60), 0.8),
     "flat punch": (punch_pushed, 2.6),
-    "rough ball": (lambda: rough_ball(ROUGH_FRICTION), ROUGH_FRICTION),
+    "rough ball": (rough_ball, 3.0),
     "edge": (lambda: edge(2.0), 2.0),
     "swinging load": (lambda: drag_and_slide((30, 32), 10, 4.5, 8, at=(-1.3, 0.2), shares=(0, 0.3, 0.6, 0.9), slides=[
         (0, scale) for scale in (1, 1.1, 1.2, 1, 0.8, 0.9, 1.1, 1.2)]), 4.5)}
@@ -122,23 +124,20 @@ def model(forces):
     return v
 
 
-def history(frames, friction, per_pillar, seed):
-    """Readings [T, R, C], uint8; forces [T, 3, P, Q], N, scaled to the peak; share of the load that slips [T]."""
-    p, qx, qy = np.moveaxis(np.array(list(frames)), 1, 0)
+def history(frames, friction, seed):
+    """Readings [T, R, C], uint8; forces [T, 3, P, Q], N, scaled to the peak; share of the load that slips [T]; friction."""
+    p, qx, qy = np.moveaxis(np.array(frames), 1, 0)
     slips = np.hypot(qx, qy) >= 0.999 * friction * p
-    slip_share = (p * slips).sum((1, 2)) / p.sum((1, 2))
-    rows, cols = np.array(p.shape[1:]) // per_pillar
-    forces = np.stack([qx, qy, p], 1).reshape(len(p), 3, rows, per_pillar, cols, per_pillar).sum((3, 5))
+    rows, cols = np.array(p.shape[1:]) // PER_PILLAR
+    forces = np.stack([qx, qy, p], 1).reshape(len(p), 3, rows, PER_PILLAR, cols, PER_PILLAR).sum((3, 5))
     forces *= PEAK / model(forces).max()
     noisy = model(forces) + np.random.default_rng(seed).normal(0, NOISE, (len(p), 2 * rows, 2 * cols))
-    return np.clip(np.rint(noisy), 0, 255).astype(np.uint8), forces, slip_share
+    return (np.clip(np.rint(noisy), 0, 255).astype(np.uint8), forces, (p * slips).sum((1, 2)) / p.sum((1, 2)), friction)
 
 
 def make(name):
-    """Readings, forces, share that slips, and mean friction of a history."""
     frames, friction = HISTORIES[name]
-    return *history(frames(), friction, 4 if name in ("ball twisted", "rough ball") else 8,
-                    list(HISTORIES).index(name)), np.mean(friction)
+    return history(frames(), friction, list(HISTORIES).index(name))
 
 
 def write(path, readings, forces, slip_share, friction):

@@ -1,7 +1,7 @@
-"""Rigid bodies on an elastic half-space of Poisson's ratio 1/2: pressure p and shear qx, qy on the skin, on square cells.
+"""Closed forms of contacts on an elastic half-space: pressure p and shear qx, qy on the skin, on square cells.
 
-Arrays are [rows, columns] of cells, row 0 at +y; lengths in pillars, tractions over pi E*. Closed forms: K. L. Johnson,
-Contact Mechanics (1985), chapters 4, 7, 8. Boundary elements: docs/derivations/half_space.md, with no code shared."""
+Arrays are [rows, columns] of cells, row 0 at +y; lengths in pillars, tractions in any unit. K. L. Johnson, Contact
+Mechanics (1985), chapters 4, 7 and 8."""
 
 import numpy as np
 
@@ -63,62 +63,3 @@ def rolling(x, y, half, length, friction, share, angle, at):
     stick = half * np.sqrt(1 - abs(share))
     p = line(ahead, side, half, length)
     return along(p, np.sign(share) * friction * (p - line(ahead - half + stick, side, stick, length)), angle)
-
-
-def convolution(kernel, x, odd=False):
-    """Transform of the displacements that a loaded cell causes; kernel: twice its integral, (H4)."""
-    size = x[0, 1] - x[0, 0]
-    steps = [np.fft.fftfreq(2 * n, 1 / (2 * n)) for n in x.shape]
-    a, b = np.meshgrid(*(abs(step) * size for step in steps[::-1]))
-    values = sum(s * t * kernel(a + s * size / 2, b + t * size / 2) for s in (-1, 1) for t in (-1, 1))
-    return np.fft.rfft2(values * np.outer(*map(np.sign, steps)) if odd else values)
-
-
-def minimise(product, b, project, start, steepest, tolerance):
-    """Least q.Aq / 2 - q.b where `project` allows, product(q) = A q, which stretches by at most `steepest`: accelerated
-    projected gradients that start anew when they turn back. Ends when a step moves A q by less than `tolerance`."""
-    now, ahead, weight = start, start, 1.0
-    for _ in range(5000):
-        new = project(ahead - (product(ahead) - b) / steepest)
-        if steepest * abs(new - ahead).max() < tolerance:
-            return new
-        if ((ahead - new) * (new - now)).sum() > 0:
-            weight = 1.0
-        grown = (1 + np.sqrt(1 + 4 * weight**2)) / 2
-        now, ahead, weight = new, new + (weight - 1) / grown * (new - now), grown
-    raise ArithmeticError("boundary elements: no convergence in 5000 steps; take a shorter step of the path")
-
-
-def boundary_elements(x, y, shape, friction, poses):
-    """(p, qx, qy) of each pose (place, rotation, rad, depth) of a body of the height shape(x, y) above its lowest point."""
-    def first(a, b):
-        return b * np.log(a + np.hypot(a, b))
-
-    normal = convolution(lambda a, b: first(a, b) + first(b, a), x)
-    xx = convolution(lambda a, b: 2 * first(a, b) + first(b, a), x)
-    yy = convolution(lambda a, b: first(a, b) + 2 * first(b, a), x)
-    xy = convolution(np.hypot, x, odd=True)  # the kernel is -hypot, and y points against the rows
-
-    def applied(q, *matrix):
-        q = np.fft.rfft2(q, [2 * n for n in x.shape])
-        moved = np.fft.irfft2(np.array([sum(a * b for a, b in zip(row, q)) for row in matrix]))
-        return moved[:, :x.shape[0], :x.shape[1]]
-
-    def pressed(p):
-        return applied(p, [normal])
-
-    def sheared(q):
-        return applied(q, [xx, xy], [xy, yy])
-
-    p, q, before = np.zeros((1, *x.shape)), np.zeros((2, *x.shape)), poses[0]
-    for place, angle, depth in poses:
-        p = minimise(pressed, depth - shape(*turned(x, y, angle, place)), lambda p: np.maximum(p, 0), p,
-                     abs(normal).max(), 1e-4 * depth)
-        middle, turn = np.add(place, before[0]) / 2, angle - before[1]
-        moved = np.array([place[0] - before[0][0] - turn * (y - middle[1]),
-                          place[1] - before[0][1] + turn * (x - middle[0])])
-        limit = friction * p[0]
-        q = minimise(sheared, moved + sheared(q), lambda q: q * (limit / np.maximum(np.hypot(*q), limit + 1e-30)), q,
-                     (abs(xx) + abs(xy)).max(), 1e-3 * abs(moved).max() + 1e-12)
-        before = place, angle, depth
-        yield p[0], *q

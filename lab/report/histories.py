@@ -1,4 +1,4 @@
-"""histories.py DOCS SCORED: writes DOCS/histories.md from the output of lab/benchmark/score.py --json."""
+"""histories.py DOCS HISTORIES ENTRY...: scores the entries on the histories and writes DOCS/histories.md."""
 
 import sys
 from pathlib import Path
@@ -9,20 +9,10 @@ import page
 import processors
 import score
 
-
-def history_rows(found):
-    """Errors in region 3 by history, counts, of all entries."""
-    for name in next(iter(found.values()))["histories"]:
-        yield [name, *(page.text(one["histories"][name]["region_3"]) for one in found.values())]
-
-
-def main(docs, scored):
-    found = page.load(scored)
-    first = next(iter(found.values()))
-    page.write(docs, "histories", entry_rows=score.rows(found), history_rows=history_rows(found),
-               entries=" | ".join(f"`{name}`" for name in found), ruler="--:|" * len(found),
-               histories=len(first["histories"]), processor=processors.name())
-
-
 if __name__ == "__main__":
-    page.run(main)
+    histories, found = score.run(*sys.argv[2:3], sys.argv[3:])
+    by_history = [[history.name, *(f"{scores[index]['region_3']:.2f}" for _, scores, _ in found)]
+                  for index, history in enumerate(histories)]
+    page.write(sys.argv[1], "histories", entry_rows=list(score.table(found))[1:], history_rows=by_history,
+               entries=" | ".join(f"`{name}`" for name, _, _ in found), ruler="--:|" * len(found),
+               processor=processors.name())
