@@ -7,31 +7,20 @@ import functools
 import numpy as np
 
 import generate
-from half_space import cells, dragged, hertz, sliding
 from score import regions, sensels
 
-# --- Estimators of this project ---
-
-
-def product(estimator, readings, k, threshold, **options):
+def product(estimator, readings, k, threshold, contacts=False):
     import pillarfield
-    found = pillarfield.solve(readings, rate_hz=generate.RATE_HZ, estimator=estimator, noise_counts=generate.NOISE,
-                              skin=pillarfield.Skin(*readings.shape[1:], counts_per_newton=k, threshold_counts=threshold,
-                                                    full_scale_counts=255), **options)
-    return np.stack([found.shear_x, found.shear_y, found.normal], 1), found
+    skin = pillarfield.Skin(*readings.shape[1:], counts_per_newton=k, threshold_counts=threshold, full_scale_counts=255)
+    found = pillarfield.solve(readings, skin=skin, rate_hz=generate.RATE_HZ, noise_counts=generate.NOISE,
+                              estimator=estimator, contacts=contacts)
+    return (np.stack([found.shear_x, found.shear_y, found.normal], 1),
+            [slip_of(found[t].contacts) for t in range(len(found))] if contacts else None)
 
 
-def direct(*given):
-    return product("direct", *given)[0], None
-
-
-def paper(*given):
-    return product("paper", *given)[0], None
-
-
-def contact(*given):
-    forces, found = product("contact", *given, contacts=True)
-    return forces, [slip_of(found[t].contacts) for t in range(len(found))]
+direct = functools.partial(product, "direct")
+paper = functools.partial(product, "paper")
+contact = functools.partial(product, "contact", contacts=True)
 
 
 def slip_of(contacts):
@@ -41,9 +30,6 @@ def slip_of(contacts):
     if not states or "unknown" in states:
         return -1
     return ("sticking", "partial", "sliding").index(states.pop()) if len(states) == 1 else 1
-
-
-# --- The model of a pillar ---
 
 
 def lengths(v, threshold):
@@ -81,9 +67,6 @@ def penalty(readings, k, threshold, friction=2.0, weight=0.3, steps=100):
     return forces_of(v, k, threshold, diagonal), None
 
 
-# --- A learnt baseline ---
-
-
 def patches(readings, threshold):
     """Places of the pillars of region 3, and for each the readings of 5 x 5 pillars in this frame and the one before, over
     the sum of its own, turned so that the usable sensels point to +x."""
@@ -98,21 +81,13 @@ def patches(readings, threshold):
 
 
 def training(seed, number):
-    """Histories of other bodies: an ellipsoid each, pressed, tilted or dragged, which slides, and spins in part."""
+    """Histories of other bodies: ellipsoids that are dragged until they slide, and on round corners."""
     rng = np.random.default_rng(seed)
-    x, y = cells(28, 28, generate.PER_PILLAR)
     for index in range(number):
-        friction, angle, size, shape = rng.uniform((0.7, 0, 1.5, 0.8), (4.5, 2 * np.pi, 12, 1.25))
-        away, spin = rng.uniform(0.1, 0.5) * np.array([np.cos(angle), np.sin(angle)]), rng.choice([0, 0, 0.1, -0.2])
-
-        def ball(part, x=x, y=y, radii=(size * shape, size / shape)):
-            return hertz(x, y, part, radii)
-
-        frames = [dragged(ball, 3, friction, angle, share) for share in (0, 0.3, 0.6, 0.9)]
-        if index % 3 == 0:
-            frames = [sliding(x, y, frames[0][0], friction * share, away) for share in (0.3, 0.6, 0.9)]
-        frames += [sliding(x, y, ball(1, x - t * away[0], y - t * away[1]), friction, away, spin) for t in (1, 2)]
-        yield generate.history(frames, friction, (seed, index))[:2]
+        friction, degrees, size, shape = rng.uniform((0.7, 0, 1.5, 0.8), (4.5, 360, 12, 1.25))
+        frames = generate.drag_and_slide((28, 28), size, friction, degrees, (shape, 1 / shape), rng.uniform(-0.5, 0.5, 2),
+                                         (0, 0.3, 0.6, 0.9), [(turn, 1) for turn in (0, *rng.uniform(-90, 90, 2))])
+        yield generate.history(frames, friction, (seed, index))
 
 
 def lifted(features, weights):
@@ -124,7 +99,7 @@ def lifted(features, weights):
 def trained(hidden=600, ridge=3.0):
     """Weights of the random features, and of the ridge regression from them to the place on the segment, 0 to 1."""
     inputs, targets = [], []
-    for readings, forces in training(1000, 40):
+    for readings, forces, *_ in training(1000, 40):
         places, features = patches(readings, generate.THRESHOLD)
         inputs.append(features)
         targets.append(2 * generate.K * forces[:, 2][places] / lengths(sensels(readings), generate.THRESHOLD)[places])

@@ -1,6 +1,7 @@
 """generate.py FOLDER: writes the twelve histories of the open benchmark (docs/histories.md), the same bytes each time.
 
-A history is a list of frames (p, qx, qy) on cells, PER_PILLAR to the edge of a pillar (half_space.py), and its friction."""
+A history is a list of frames (p, qx, qy), pressure and shear on the skin in any unit, on square cells: arrays [rows,
+columns], row 0 at +y. Lengths are in pillars. Closed forms: K. L. Johnson, Contact Mechanics (1985), chapters 4, 7, 8."""
 
 import sys
 from pathlib import Path
@@ -8,17 +9,67 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from half_space import along, cells, dragged, hertz, line, punch, rolling, sliding, turned
-
 SKIN = {"sensel_pitch_mm": 0.632455532, "counts_per_newton": 320.0, "threshold_counts": 2.0, "full_scale_counts": 255.0}
 K, THRESHOLD, PEAK, NOISE = 320, 2, 150, 0.5  # counts per newton; counts
 RATE_HZ, PER_PILLAR = 30, 8
 DRAG = (0, 0.2, 0.4, 0.6, 0.75, 0.9, 0.97)  # shares of the friction, before a body slides
 
 
+def cells(rows, cols):
+    """x and y of the centres of the cells of rows x cols pillars, from the middle of the skin."""
+    x, y = ((np.arange(n * PER_PILLAR) + 0.5) / PER_PILLAR - n / 2 for n in (cols, rows))
+    return np.meshgrid(x, -y)
+
+
+def turned(x, y, angle, at=(0, 0)):
+    """Coordinates along and across a direction, rad, from a point."""
+    x, y, c, s = x - at[0], y - at[1], np.cos(angle), np.sin(angle)
+    return c * x + s * y, c * y - s * x
+
+
+def hertz(x, y, size, radii=(1, 1)):
+    """Hertz's pressure of an ellipsoid whose contact has the semi-axes size * radii."""
+    return np.sqrt(np.maximum(size**2 - (x / radii[0])**2 - (y / radii[1])**2, 0))
+
+
+def line(ahead, side, half, length):
+    """Pressure of a cylinder whose contact is 2 half wide, cut off at its ends."""
+    return np.where(abs(side) < length / 2, hertz(ahead, 0, half), 0)
+
+
+def along(p, q, angle):
+    return p, q * np.cos(angle), q * np.sin(angle)
+
+
+def dragged(pressure, order, friction, angle, share, before=None):
+    """Cattaneo's and Mindlin's partial slip: shear of `share` (-1 to 1) of the friction at a constant load, from zero, or
+    from a drag to the share `before` that turned back. pressure(s): of the contact scaled by s, whose load grows with
+    s**order (3 of a point, 2 of a line)."""
+    p = pressure(1)
+    q = p - pressure((1 - (share if before is None else before))**(1 / order))
+    if before is not None:
+        q = q - 2 * (p - pressure((1 - (before - share) / 2)**(1 / order)))
+    return along(p, friction * q, angle)
+
+
+def sliding(x, y, p, friction, velocity, spin=0, at=(0, 0)):
+    """Shear under a body that slides with a velocity and spins about a point."""
+    vx, vy = velocity[0] - spin * (y - at[1]), velocity[1] + spin * (x - at[0])
+    scale = friction * p / np.maximum(np.hypot(vx, vy), 1e-9)
+    return p, scale * vx, scale * vy
+
+
+def rolling(x, y, half, length, friction, share, angle, at):
+    """Carter's cylinder, which rolls along `angle` and sticks at its leading edge; shear of `share` of the friction."""
+    ahead, side = turned(x, y, angle, at)
+    stick = half * np.sqrt(1 - abs(share))
+    p = line(ahead, side, half, length)
+    return along(p, np.sign(share) * friction * (p - line(ahead - half + stick, side, stick, length)), angle)
+
+
 def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), shares=DRAG, slides=((0, 1), (0, 1), (0, 1))):
     """An ellipsoid is dragged until it slides, a third of a pillar a frame; slides: its turn, degrees, and its size."""
-    x, y = cells(*grid, PER_PILLAR)
+    x, y = cells(*grid)
     angle = np.radians(degrees)
     frames = [dragged(lambda part: hertz(x - at[0], y - at[1], size * part, radii), 3, friction, angle, share)
               for share in shares]
@@ -29,57 +80,55 @@ def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), share
     return frames
 
 
-def two_balls():
-    return [np.add(*both) for both in zip(drag_and_slide((26, 30), 5, 1.2, 30, at=(-7, 4)),
-                                          drag_and_slide((26, 30), 4, 1.2, 215, at=(6, -5)))]
-
-
 def drag_back(friction):
-    x, y = cells(24, 24, PER_PILLAR)
+    x, y = cells(24, 24)
     shares = [(share, None) for share in (0, 0.4, 0.7, 0.9)] + [(share, 0.9) for share in (0.6, 0.2, -0.2, -0.5, -0.7, -0.85)]
     return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), *share) for share in shares]
 
 
 def pressed_askew():
     """A force that grows in one direction: the ball sticks, at one ratio of shear to pressure."""
-    x, y = cells(14, 14, PER_PILLAR)
+    x, y = cells(14, 14)
     return [along(p, 1.9 * p, np.radians(4)) for p in
             (hertz(x - 0.3, y - 0.1, 2.46 * scale) for scale in (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1, 0.95))]
 
 
 def slide_and_spin(friction):
-    x, y = cells(24, 26, PER_PILLAR)
+    x, y = cells(24, 26)
     return [sliding(x, y, hertz(x - a, y - 0.2, 8), friction, (1, 0.2), 0.08 * t, (a, 0.2))
             for t, a in enumerate(np.linspace(-1.4, 1.3, 10))]
 
 
 def twisted(friction):
     """A ball is pressed, and twisted to and fro, each time so fast that it slips everywhere within a frame."""
-    x, y = cells(20, 20, PER_PILLAR)
+    x, y = cells(20, 20)
     p = hertz(x - 0.2, y + 0.1, 6.5)
     return [(p, 0 * p, 0 * p)] * 2 + [sliding(x, y, p, friction, (0, 0), spin, (0.2 + t / 2, -0.1 - t / 4))
                                       for t, spin in enumerate((1, 1, 1, 1, -1, -1, -1))]
 
 
 def roller(friction, share, degrees):
-    """A long cylinder rolls half a pillar a frame, driven (share above zero) or braked."""
+    """A long cylinder rolls half a pillar a frame; driven, it pushes the skin back (share below zero)."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return [rolling(*cells(24, 24, PER_PILLAR), 4, 12, friction, share, np.radians(degrees), (c * way, s * way))
+    return [rolling(*cells(24, 24), 4, 12, friction, share, np.radians(degrees), (c * way, s * way))
             for way in np.arange(10) / 2 - 2.2]
 
 
 def punch_pushed():
-    """A flat punch sticks all over until it slides all over."""
-    x, y = cells(20, 20, PER_PILLAR)
-    return [along(p, ratio * p, np.radians(-85)) for ratio, p in
-            ((ratio, punch(x, y - 0.4 + 0.3 * max(0, t - 7), 6))
-             for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)))]
+    """A flat punch sticks all over until it slides all over; the singular pressure of its rim is cut off."""
+    x, y = cells(20, 20)
+    frames = []
+    for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)):
+        r2 = (x**2 + (y - 0.4 + 0.3 * max(0, t - 7))**2) / 36
+        p = np.where(r2 < 1, 1 / np.sqrt(np.maximum(1 - r2, 0.02)), 0)
+        frames.append(along(p, ratio * p, np.radians(-85)))
+    return frames
 
 
 def rough_ball():
     """A ball on the contacts of its hills. Each has Mindlin's share of shear for the way of the ball, slides from the way
     size**2 on, and does not feel the others."""
-    x, y = cells(24, 28, PER_PILLAR)
+    x, y = cells(24, 28)
     rng = np.random.default_rng(11)
     places = 2.6 * np.mgrid[-2:3, -2:3].reshape(2, 25).T + rng.uniform(-0.2, 0.2, (25, 2))
     hills = [(rng.uniform(0.6, 1.1), *place) for place in places if np.hypot(*place) < 7]
@@ -93,21 +142,22 @@ def rough_ball():
 
 def edge(friction):
     """The edge of a plate, 0.8 of a pillar wide, dragged across itself at an angle to the pillars."""
-    ahead, side = turned(*cells(18, 18, PER_PILLAR), np.radians(12), (0.1, 0.2))
+    ahead, side = turned(*cells(18, 18), np.radians(12), (0.1, 0.2))
     return [dragged(lambda part: line(ahead, side, 0.4 * part, 10), 2, friction, np.radians(12), share)
             for share in (*DRAG, 1, 1)]
 
 
 HISTORIES = {  # name: frames, friction
-    "two balls": (two_balls, 1.2),
+    "two balls": (lambda: np.add(drag_and_slide((26, 30), 5, 1.2, 30, at=(-7, 4)),
+                                 drag_and_slide((26, 30), 4, 1.2, 215, at=(6, -5))), 1.2),
     "ball dragged back": (lambda: drag_back(2.2), 2.2),
     "ball of 19 pillars": (pressed_askew, 3.0),
     "fingertip": (lambda: drag_and_slide((26, 30), 9, 1.6, 15, (1.15, 0.8), slides=(
         (0, 1), (0, 1), (20, 1), (40, 1), (60, 1), (80, 1))), 1.6),
     "ball slides and spins": (lambda: slide_and_spin(1.8), 1.8),
     "ball twisted": (lambda: twisted(1.6), 1.6),
-    "roller driven": (lambda: roller(2.2, 0.8, 0), 2.2),
-    "roller braked": (lambda: roller(0.8, -0.9, 60), 0.8),
+    "roller driven": (lambda: roller(2.2, -0.8, 0), 2.2),
+    "roller braked": (lambda: roller(0.8, 0.9, 60), 0.8),
     "flat punch": (punch_pushed, 2.6),
     "rough ball": (rough_ball, 3.0),
     "edge": (lambda: edge(2.0), 2.0),
@@ -151,11 +201,9 @@ def write(path, readings, forces, slip_share, friction):
         file["truth"].attrs["friction"] = friction
 
 
-def main(folder):
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    for name in HISTORIES:
-        write(Path(folder, name.replace(" ", "_") + ".h5"), *make(name))
-
-
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]) if len(sys.argv) == 2 else __doc__)
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    Path(sys.argv[1]).mkdir(parents=True, exist_ok=True)
+    for each in HISTORIES:
+        write(Path(sys.argv[1], each.replace(" ", "_") + ".h5"), *make(each))

@@ -14,10 +14,6 @@ STICKING, SLIDING = 0.1, 0.9  # shares of the load that slips, up to which and f
 SECONDS = 0.5  # about the time of a history many times over, by which an entry is timed
 
 
-class Failure(Exception):
-    """One line for the user: place, failure and remedy."""
-
-
 def planes(file, group):
     """Forces [T, 3, P, Q] of a group."""
     return np.stack([np.asarray(file[f"{group}/{name}"], float) for name in ("shear_x", "shear_y", "normal")], 1)
@@ -51,7 +47,7 @@ def score(history, forces, slip=None):
     """Errors of an entry on a history; slip: a state a frame, -1 if unknown."""
     slip = np.full(len(forces), -1) if slip is None else np.asarray(slip)
     if forces.shape != history.truth.shape or slip.shape != forces.shape[:1] or not np.isfinite(forces).all():
-        raise Failure(f"{history.name}: forces {forces.shape} and slip {slip.shape}; give {history.truth.shape} "
+        raise ValueError(f"{history.name}: forces {forces.shape} and slip {slip.shape}; give {history.truth.shape} "
                       f"finite forces and {history.truth.shape[:1]} states")
     squares = history.skin[0]**2 * ((forces - history.truth)**2).sum(1)
     region = regions(sensels(history.readings) > history.skin[1])
@@ -64,11 +60,6 @@ def score(history, forces, slip=None):
     return {"region_3": rms(region == 3), "regions_1_2": rms((region == 1) | (region == 2)), "all": rms(region > 0),
             "resultant_%": 100 * np.sqrt(((off / total)**2).mean()),
             "slip_right_%": 100 * right.mean(), "slip_wrong_%": 100 * (~right & (slip >= 0)).mean()}
-
-
-def read(folder, history):
-    with h5py.File(Path(folder, f"{history.name}.h5")) as file:
-        return planes(file, "force"), file["slip"][:] if "slip" in file else None
 
 
 def seconds_a_frame(solve, histories):
@@ -90,7 +81,11 @@ def seconds_a_frame(solve, histories):
 def evaluate(entry, histories):
     """Name of an entry, its scores on each history, and its seconds a frame if it is run."""
     if ":" not in entry:
-        return Path(entry).name, [score(each, *read(entry, each)) for each in histories], None
+        scores = []
+        for each in histories:
+            with h5py.File(Path(entry, f"{each.name}.h5")) as file:
+                scores.append(score(each, planes(file, "force"), file["slip"][:] if "slip" in file else None))
+        return Path(entry).name, scores, None
     module, name = entry.split(":")
     solve = getattr(importlib.import_module(module), name)
     scores = [score(each, *solve(each.readings, *each.skin)) for each in histories]
@@ -104,7 +99,7 @@ def table(found):
     for name, scores, seconds in found:
         means = [np.nanmean([one[key] for one in scores]) for key in scores[0]]
         yield [name, *(f"{mean:.{2 if index < 3 else 1}f}" for index, mean in enumerate(means)),
-               f"{seconds / reference:.1f}" if seconds and reference else "–"]
+               f"{seconds / reference:.1f}" if seconds and reference else "-"]
 
 
 def run(folder, entries):
@@ -112,7 +107,7 @@ def run(folder, entries):
     sys.path.append(".")
     histories = [History(path) for path in sorted(Path(folder).glob("*.h5"))]
     if not histories:
-        raise Failure(f"{folder}: there are no histories; write them with generate.py")
+        raise ValueError(f"{folder}: there are no histories; write them with generate.py")
     return histories, [evaluate(entry, histories) for entry in entries]
 
 
@@ -122,5 +117,5 @@ if __name__ == "__main__":
     try:
         for line in table(run(sys.argv[1], sys.argv[2:])[1]):
             print("".join(cell.ljust(15) for cell in line))
-    except (Failure, OSError, KeyError, ImportError, AttributeError) as failure:
+    except (ValueError, OSError, KeyError, ImportError, AttributeError) as failure:
         sys.exit(f"score.py: {failure}")
