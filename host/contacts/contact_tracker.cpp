@@ -18,6 +18,7 @@
 #include "pillarfield/force_field.h"
 #include "pillarfield/surface.h"
 #include "skin/vectors.h"
+#include "solve/idle_blocks.h"
 
 namespace pillarfield {
 namespace {
@@ -328,7 +329,8 @@ const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double
     state_->labels = *found.labels;
     return state_->track(forces, time_s, found.friction);
   }
-  state_->labels.find(forces.status, forces.rows, forces.cols);
+  const IdleBlocks idle = found.idle != nullptr ? *found.idle : IdleBlocks{};
+  state_->labels.find(forces.status, forces.rows, forces.cols, idle);
   return state_->track(forces, time_s, {});
 }
 

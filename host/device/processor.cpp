@@ -214,7 +214,7 @@ struct Processor::State {
   std::optional<SolverPlan> retared;         ///< of a plan with a tare: what set_tare() needs of it
   std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
   SlotScheduler scheduler;
-  bool received = false;  ///< a frame has been received
+  const Slot* last = nullptr;  ///< of the frame received last
 };
 
 struct Processor::PinnedResult::State {
@@ -367,7 +367,7 @@ ForceFieldView Processor::receive() {
     if (state_->contacts) slot.resolve(*state_->contacts);
   });
   state_->scheduler.receive();
-  state_->received = true;
+  state_->last = &slot;
   return slot.results();
 }
 
@@ -416,8 +416,8 @@ Processor::PinnedResult Processor::pin() {
 }
 
 FoundContacts Processor::contacts() const {
-  if (!state_ || !state_->contacts || !state_->received) return {};
-  return state_->contacts->contacts();
+  if (!state_ || state_->last == nullptr) return {};
+  return state_->contacts ? state_->contacts->contacts() : state_->last->contacts();
 }
 
 Curvature Processor::curvature() const {

@@ -1,5 +1,3 @@
-#include <cstring>
-
 #include "device/slot_memory.h"
 
 namespace pillarfield {
@@ -13,8 +11,7 @@ class SharedMemory final : public SlotMemory {
         bytes_(layout.all_bytes()),
         memory_(allocate_large_pages(bytes_)) {
     pages_ = memory_.get();
-    has_flags_ = true;
-    std::memset(pages_ + layout.bytes, 0, layout.idle_flags);
+    hold_flags();
     results_ = {context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_};
   }
 

@@ -101,4 +101,9 @@ ForceFieldView Slot::results() const {
   return forces;
 }
 
+FoundContacts Slot::contacts() const {
+  const IdleBlocks& idle = memory().idle_blocks();
+  return {nullptr, {}, has_pillars_ && !idle.flags.empty() ? &idle : nullptr};
+}
+
 }  // namespace pillarfield

@@ -94,15 +94,22 @@ class Slot {
   /// Results of the frame, after wait().
   [[nodiscard]] ForceFieldView results() const;
 
+  /// Where a frame with pillars has no contacts, after wait(), if the host sees that.
+  [[nodiscard]] FoundContacts contacts() const;
+
  protected:
   Slot(const Skin& skin, FrameOrder& order)
-      : rows_(skin.element_rows()), cols_(skin.element_cols()), order_(&order) {}
+      : rows_(skin.element_rows()),
+        cols_(skin.element_cols()),
+        has_pillars_(skin.has_pillars()),
+        order_(&order) {}
 
   [[nodiscard]] FrameOrder& order() const { return *order_; }
 
  private:
   std::uint32_t rows_;  ///< pillars, or sensels without pillars
   std::uint32_t cols_;
+  bool has_pillars_;
   FrameOrder* order_;
 };
 

@@ -21,17 +21,16 @@ ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
   idle_flags = quad_rows(plan.skin) * flag_stride;
 }
 
-IdleBlocks ResultMemory::idle_blocks() const {
-  if (!has_flags_) return {};
+void ResultMemory::hold_flags() {
+  std::memset(pages_ + layout_.bytes, 0, layout_.idle_flags);
   const auto* const flags = reinterpret_cast<const std::uint8_t*>(pages_ + layout_.bytes);
-  return {{flags, layout_.idle_flags}, layout_.flag_stride, layout_.lanes};
+  idle_ = {{flags, layout_.idle_flags}, layout_.flag_stride, layout_.lanes};
 }
 
 HostMemory::HostMemory(const ResultLayout& layout)
     : ResultMemory(layout), memory_(allocate_large_pages(layout.all_bytes())) {
   pages_ = memory_.get();
-  has_flags_ = true;
-  std::memset(pages_ + layout.bytes, 0, layout.idle_flags);
+  hold_flags();
 }
 
 }  // namespace pillarfield

@@ -75,14 +75,17 @@ class ResultMemory {
   /// The block of whole pages that holds all planes; it does not move.
   [[nodiscard]] std::span<const std::byte> pages() const { return {pages_, layout_.bytes}; }
   /// The flags of idle blocks; none if they stay on the device.
-  [[nodiscard]] IdleBlocks idle_blocks() const;
+  [[nodiscard]] const IdleBlocks& idle_blocks() const { return idle_; }
 
  protected:
   explicit ResultMemory(const ResultLayout& layout) : layout_(layout) {}
 
+  /// Clears the flags of idle blocks, which follow the pages.
+  void hold_flags();
+
   ResultLayout layout_;
   std::byte* pages_ = nullptr;
-  bool has_flags_ = false;  ///< the flags follow the pages
+  IdleBlocks idle_;
 };
 
 /// Results that the host itself writes.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "contacts/estimator/contact_estimator.h"
+#include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
@@ -188,6 +189,29 @@ TEST_P(EveryPath, ReturnsTheContactsOfTheFrame) {
     EXPECT_GT(found.contacts(), 2U);
     expect_same_runs(solver.contacts().labels->runs(), found.runs());
     EXPECT_EQ(solver.contacts().friction.size(), found.contacts());
+  }
+}
+
+TEST_P(EveryPath, ATrackerFindsTheContactsOfADirectSolveBesideIdleBlocks) {
+  const Simulator simulator(parse_scene(kScene, "scene"));
+  SolverPlan plan = plan_of(simulator);
+  plan.estimator = Estimator::direct;
+  Processor solver = processor(plan);
+  EXPECT_EQ(solver.contacts().idle, nullptr);
+  ContactTracker tracker(plan.skin.element_pitch_mm());
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  for (std::uint64_t index = 0; index < simulator.scene().frames; ++index) {
+    simulator.render(index, raw, truth);
+    solver.submit(raw.view());
+    const ForceFieldView forces = solver.receive();
+    ContactLabels found;
+    found.find(forces.status, forces.rows, forces.cols);
+    ASSERT_EQ(solver.contacts().labels, nullptr);
+    EXPECT_TRUE(GetParam().memory == Memory::staged || solver.contacts().idle != nullptr);
+    tracker.update(forces, static_cast<double>(index), solver.contacts());
+    EXPECT_GT(found.contacts(), 2U);
+    expect_same_runs(tracker.labels().runs(), found.runs());
   }
 }
 

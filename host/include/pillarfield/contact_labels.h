@@ -68,6 +68,9 @@ class ContactLabels {
 struct FoundContacts {
   const ContactLabels* labels = nullptr;      ///< null: the plan finds no contacts
   std::span<const ContactFriction> friction;  ///< by label; empty if it was not estimated
+  /// @cond internal Blocks without a loaded pillar; null: unknown.
+  const IdleBlocks* idle = nullptr;
+  /// @endcond
 };
 
 }  // namespace pillarfield
