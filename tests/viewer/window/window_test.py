@@ -358,7 +358,8 @@ class SourceTest(WindowTest):
         window = self.open("--paused")
         before = self.shoot_page("start")
         window.click(312, 150)  # The first picture.
-        self.shoot_field("start_opened")
+        window.wait_for_source()
+        self.shoot("start_opened")
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
         window = self.open()
         self.shoot_changed("start_recent", before)
@@ -369,14 +370,16 @@ class SourceTest(WindowTest):
         shutil.copy(SCENES / "spin.toml", self.folder / "inner")
         window = self.open("--paused")
         before = [self.shoot_page("files_start")]
-        for (name, key) in (("opened", "ctrl+o"), ("config", "Down"), ("marked", "i"), ("entered", "Return"),
-                            ("scene", "s")):
-            before.append(self.act("files_" + name, lambda key=key: window.key(key), *before[-1:]))
+        for (name, key) in (("opened", "ctrl+o"), ("down", "Down"), ("letter", "s"), ("up", "Up"),
+                            ("entered", "Return"), ("scene", "s")):
+            window.key(key)
+            before.append(self.shoot_changed("files_" + name, *before[-1:]))
         window.key("Return")
-        self.shoot_field("files_scene_opened")
-        self.act("files_covers", lambda: window.key("ctrl+o"), self.shoot("files_before"))
-        window.key("Escape")
-        self.shoot_field("files_left")
+        window.wait_for_source()
+        before.append(self.shoot("files_scene"))
+        for (name, key) in (("covered", "ctrl+o"), ("uncovered", "Escape")):
+            window.key(key)
+            before.append(self.shoot_changed("files_" + name, *before[-1:]))
         self.assert_quiet(window)
         settings = (self.folder / "config/pillarfield/viewer.conf").read_text(encoding="utf-8")
         self.assertIn(f"folder {self.folder.resolve()}/inner", settings)
@@ -433,6 +436,9 @@ class SourceTest(WindowTest):
 class BoxTest(WindowTest):
     """Named boxes, in the top view and in relief."""
 
+    def has_selected_text(self):
+        return (abs(self.screen.pixels().astype(int) - [64, 92, 101]).max(axis=2) < 4).sum() > 100
+
     def test_boxes_stay(self):
         (width, height) = self.SIZE
         size = ["--size", f"{width}x{height}"]
@@ -454,7 +460,8 @@ class BoxTest(WindowTest):
                                    (place(0.04, 0.05), place(0.22, 0.26), "slides"),
                                    (place(-0.05, 0.29), place(0.15, 0.5), "twist")):
             do(word + "_selected", lambda begin=begin, end=end: window.drag(begin, end))
-            do(word + "_kept", lambda: window.key("o"))
+            window.key("o")
+            self.wait_for(self.has_selected_text, "the name has no focus")
             self.screen.xdotool("type", "--window", window.id, word)
             window.key("Return")
             self.wait_for(lambda: word in settings.read_text(encoding="utf-8"), "the name is not kept")

@@ -18,15 +18,17 @@ namespace {
 
 constexpr const char* kWidestNumber = "0.0000";
 
-/// A number, flush right, as wide as kWidestNumber at most.
-void number_cell(double value) {
-  ImGui::TableNextColumn();
-  const std::string words =
-      std::abs(value) < 0.1 ? fmt::format("{:.4f}", value) : three_digits(value);
+void flush_right(const std::string& words) {
   const float left_over = ImGui::GetContentRegionAvail().x - static_cast<float>(width_of(words));
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
-  ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(words.c_str());
+}
+
+/// A number, as wide as kWidestNumber at most.
+void number_cell(double value) {
+  ImGui::TableNextColumn();
+  ImGui::AlignTextToFramePadding();
+  flush_right(std::abs(value) < 0.1 ? fmt::format("{:.4f}", value) : three_digits(value));
 }
 
 /// The name in the colour of the box, which can be edited. A name that no box may have is not
@@ -92,7 +94,11 @@ void write_box_heads(const std::vector<BoxColumn>& columns) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const auto& [head, help, width] : columns) {
     ImGui::TableNextColumn();
-    ImGui::TableHeader(head.c_str());
+    if (width > 0) {
+      flush_right(head);
+    } else {
+      ImGui::TextUnformatted(head.c_str());
+    }
     if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
   }
 }

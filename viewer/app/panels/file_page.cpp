@@ -74,9 +74,6 @@ StartAction file_page(FileList& files, const Viewport& area, double scale) {
   StartAction action;
   if (ImGui::Button("Back")) action.back = true;
   ImGui::SameLine();
-  bool all = files.shows_all();
-  if (ImGui::Checkbox("all files", &all)) files.show_all(all);
-  ImGui::SameLine();
   ImGui::TextDisabled(
       "↑ ↓ or a letter choose, Enter opens, Backspace: the folder above, Esc: back");
   ImGui::TextWrapped("%s", printable(files.folder().string()).c_str());

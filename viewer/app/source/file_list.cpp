@@ -29,24 +29,24 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-std::optional<FileList::Entry> listed_entry(const fs::directory_entry& file, bool all) {
+std::optional<FileList::Entry> listed_entry(const fs::directory_entry& file) {
   FileList::Entry entry{file.path().filename().string()};
   if (entry.name.starts_with('.')) return std::nullopt;
   std::error_code error;
   entry.is_folder = file.is_directory(error);
   if (entry.is_folder) return entry;
   const bool known = std::ranges::find(kExtensions, extension_of(file.path())) != kExtensions.end();
-  if (!file.is_regular_file(error) || !(all || known)) return std::nullopt;
+  if (!file.is_regular_file(error) || !known) return std::nullopt;
   entry.bytes = file.file_size(error);
   if (error) entry.bytes = 0;
   return entry;
 }
 
 /// Throws std::filesystem::filesystem_error.
-std::vector<FileList::Entry> entries_in(const fs::path& folder, bool all) {
+std::vector<FileList::Entry> entries_in(const fs::path& folder) {
   std::vector<FileList::Entry> entries;
   for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-    if (auto entry = listed_entry(file, all)) entries.push_back(std::move(*entry));
+    if (auto entry = listed_entry(file)) entries.push_back(std::move(*entry));
   }
   std::ranges::sort(entries, {}, [](const FileList::Entry& entry) {
     return std::tuple(!entry.is_folder, in_lower_case(entry.name), entry.name);
@@ -67,7 +67,7 @@ FileList::FileList(const fs::path& folder) {
 void FileList::enter(const fs::path& folder, const std::string& mark) {
   try {
     const fs::path whole = fs::canonical(folder);
-    entries_ = entries_in(whole, shows_all_);
+    entries_ = entries_in(whole);
     folder_ = whole;
     failure_.clear();
   } catch (const fs::filesystem_error& error) {
@@ -77,11 +77,6 @@ void FileList::enter(const fs::path& folder, const std::string& mark) {
   const auto found = std::ranges::find(entries_, mark, &Entry::name);
   marked_ = found == entries_.end() ? 0 : static_cast<std::size_t>(found - entries_.begin());
   moved_ = true;
-}
-
-void FileList::show_all(bool all) {
-  shows_all_ = all;
-  enter(folder_, entries_.empty() ? "" : std::string(entries_[marked_].name));
 }
 
 std::optional<fs::path> FileList::open(std::size_t entry) {

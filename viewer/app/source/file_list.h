@@ -29,10 +29,6 @@ class FileList {
   [[nodiscard]] std::size_t marked() const { return marked_; }
   [[nodiscard]] const std::string& failure() const { return failure_; }  ///< of the last folder
 
-  /// Lists files with other extensions too.
-  [[nodiscard]] bool shows_all() const { return shows_all_; }
-  void show_all(bool all);
-
   /// Lists a folder, or says in failure() why it cannot be read. Marks the entry `mark`.
   void enter(const std::filesystem::path& folder, const std::string& mark = {});
 
@@ -56,7 +52,6 @@ class FileList {
   std::vector<Entry> entries_;
   std::size_t marked_ = 0;
   std::string failure_;
-  bool shows_all_ = false;
   bool moved_ = true;
 };
 
