@@ -19,9 +19,9 @@ PF_INLINE Real outer_part(Real outer, Real inner) {
 PF_INLINE Real size_of(Real x) { return x < PF_REAL(0.0) ? -x : x; }
 
 /* The lean towards `after` of a pillar with the normal force `own`, N; the pillars in its line are
- * far_before, before, own, after, far_after. The complete odd cubic in four ratios, exact to first
- * order in a pressure that varies linearly; its other coefficients are least squares over bodies on
- * an elastic half-space (lab/lean), and the deviation is what they leave. */
+ * far_before, before, own, after, far_after. An odd polynomial in four ratios, exact in a pressure
+ * that varies linearly, to third order; its coefficients are least squares over wide and narrow
+ * bodies on an elastic half-space (lab/lean), and the deviation is what they leave. */
 PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
@@ -35,18 +35,18 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   const Real e = far_high - far_low;
   const Real s = high + low - one;
   const Real t = far_high + far_low - one;
-  const Real by_d = PF_REAL(0.16666666666666666667) + s * (PF_REAL(-0.152) + PF_REAL(0.390) * s) +
-                    t * (PF_REAL(-0.486) + PF_REAL(1.187) * s - PF_REAL(1.173) * t) +
-                    d * (PF_REAL(0.789) * d - PF_REAL(1.210) * e) + PF_REAL(0.264) * (e * e);
-  const Real by_e = s * (PF_REAL(0.798) - PF_REAL(1.144) * s + PF_REAL(1.029) * t) +
-                    t * (PF_REAL(0.032) + PF_REAL(0.090) * t) + PF_REAL(0.015) * (e * e);
+  const Real d2 = d * d;
+  const Real s2 = s * s;
+  const Real st = s * t;
+  const Real by_d = PF_REAL(0.16666666666666666667) +
+                    s * s2 * (PF_REAL(1.013) + PF_REAL(2.264) * s) +
+                    d2 * (PF_REAL(0.334) * d2 + PF_REAL(1.269) * st) + PF_REAL(0.048) * (e * e * t);
+  const Real by_e = s * st * (PF_REAL(1.875) + PF_REAL(1.224) * s);
   const Real part = d * by_d + e * by_e;
   const Real bounded =
       part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
-  const Real steep = size_of(d);
-  const Real deviation = PF_REAL(0.004) + PF_REAL(0.093) * (steep * steep * steep) +
-                         PF_REAL(0.009) * size_of(s) + PF_REAL(0.076) * (s * s) +
-                         PF_REAL(0.011) * size_of(e - d);
+  const Real deviation = PF_REAL(0.0015) + s2 * (PF_REAL(0.145) + PF_REAL(0.723) * d2) +
+                         PF_REAL(0.041) * size_of(e - d) + PF_REAL(0.01) * (t * t);
   Lean lean;
   lean.moment = loaded ? own * bounded : zero;
   lean.deviation = loaded ? own * deviation : zero;
@@ -150,7 +150,7 @@ PF_INLINE ShearRatio mean_ratio(ShearRatio own, RatioSum around) {
   const Real narrower = own.variance / (one + own.variance * around.weight);
   const Real shift = narrower * around.difference;
   const Real square = around.square - shift * around.difference;
-  const Real disagreement = PF_REAL(2.0) * (square < zero ? zero : square);
+  const Real disagreement = PF_REAL(0.5) * (square < zero ? zero : square);
   const Real wider = narrower * (one + disagreement);
   ShearRatio mean;
   mean.value = own.value + shift;

@@ -1,119 +1,174 @@
-"""fit_lean.py PROGRAM FOLDER: prints the coefficients of kernels/pillar/lean.h.
+"""fit_lean.py: prints the coefficients of kernels/pillar/lean.h.
 
-Least squares over random indenters on random paths, which PROGRAM, pillarfield, simulates in FOLDER.
-Equations: docs/derivations/sensor_effects.md, E7."""
+Least squares of the moments under random rigid bodies that are pressed on an elastic half-space, half
+of them narrower than a few pillars. Lengths in pillars. Equations: docs/derivations/sensor_effects.md, E7."""
 
-import itertools
-import random
-import subprocess
-import sys
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
+import os
 
-import h5py
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import numpy
 
-BODIES = 96
-K = 320  # counts per newton
-NOISE_COUNTS = 0.5
-LEAST_COUNTS = 8
-PITCH_OVER_ARM = 2 * 0.632455532 / 0.224
-LEANING = "pillar_arm_mm = 0.224"
-# With little shear every loaded sensel reads, and the readings hold the whole moment.
-UNCLIPPED = f"{LEANING}\nshear_coefficient = 0.1"
+BODIES = 2000
+SEED = 100000
+PILLARS, POINTS = 24, 5  # of the patch, and of a pillar, each way
+PEAK_COUNTS, NOISE_COUNTS, THRESHOLD_COUNTS = 150, 0.25, 2  # of a pillar's normal force
+SIDE = PILLARS * POINTS
+PLACES = (numpy.arange(SIDE) + 0.5) / POINTS - PILLARS / 2
+X, Y = numpy.meshgrid(PLACES, PLACES)
+NOWHERE = 99.0  # height where a body does not reach
 
 
-# --- Scenes ---
+# --- Elastic half-space ---
 
-def shape(kind, choose):
-    """Lines of [[indenter]] and a load, N."""
-    if kind == "sphere":
-        radius = 10 ** choose(0.75, 1.8)
-        return f'shape = "sphere"\nradius_mm = {radius:.2f}', 0.8 * radius**0.9 + 1
-    if kind == "rough":
-        radius = 10 ** choose(1, 1.6)
-        return (f'shape = "sphere"\nradius_mm = {radius:.2f}\nroughness_um = {choose(10, 50):.1f}',
-                radius)
-    if kind == "ellipsoid":
-        return (f'shape = "ellipsoid"\nradii_mm = [{choose(5, 15):.2f}, {choose(5, 22):.2f}, '
-                f"{choose(5, 15):.2f}]", choose(6, 16))
-    if kind == "punch":
-        radius = choose(3.5, 11)
-        return (f'shape = "punch"\nradius_mm = {radius:.2f}\n'
-                f"edge_radius_mm = {choose(0.2, 2.5):.2f}", 2.5 * radius)
-    return (f'shape = "cylinder"\nradius_mm = {choose(4, 18):.2f}\n'
-            f"length_mm = {choose(6, 18):.2f}\nedge_radius_mm = {choose(0.3, 2.5):.2f}",
-            choose(10, 20))
+def response():
+    """Transform of the displacement by a unit pressure on one point's square."""
+    at = numpy.arange(-SIDE, SIDE) / POINTS
+    x, y = numpy.meshgrid(at, at)
+
+    def corner(a, b):
+        return b * numpy.log(a + numpy.hypot(a, b)) + a * numpy.log(b + numpy.hypot(a, b))
+
+    h = 0.5 / POINTS
+    return numpy.fft.rfft2(numpy.fft.ifftshift(corner(x + h, y + h) - corner(x - h, y + h)
+                                               - corner(x + h, y - h) + corner(x - h, y - h)))
 
 
-def shapes():
-    choose = random.Random(5).uniform
-    kinds = ("sphere", "ellipsoid", "punch", "cylinder", "rough", "punch", "cylinder", "rough")
-    return [shape(kinds[i % len(kinds)], choose) for i in range(BODIES)]
+RESPONSE = response()
 
 
-def scene(indenter, sensor, stiffness, seed):
-    """An indenter that presses, is dragged and turned, half unloaded, and dragged further."""
-    lines, load_n = indenter
-    choose = random.Random(seed).uniform
-    x, y, angle = choose(-4, 2), choose(-2, 2), choose(-90, 90)
-    friction = choose(0.6, 2)
-    right, up, turn = choose(-1, 1), choose(-1, 1), choose(-30, 30)
-    path = ((0, 0, 0, 0.2), (0.2, 0, 0, 1), (0.4, 0.02, 0, 1), (0.6, 0.3, 0.1, 1),
-            (0.8, 0.3, 0.1, 0.5), (1.15, 4, 1, 0.8))
-    keys = ",\n".join(
-        f"{{ time_s = {time}, position_mm = [{x + part * right:.4f}, {y + part * up:.4f}], "
-        f"angle_deg = {angle + turned * turn:.3f}, load_n = {load * load_n * stiffness:g} }}"
-        for time, part, turned, load in path)
-    return (f"[skin]\npillars = [36, 36]\nthreshold_counts = {4 * NOISE_COUNTS}\n"
-            f"modulus_kpa = {400 * stiffness}\ncounts_per_newton = {K}\n[sensor]\n{sensor}\n"
-            f"[time]\nrate_hz = 10\nframes = 12\nseed = 7\n[[indenter]]\n{lines}\n"
-            f"friction = {friction:.3f}\npath = [\n{keys}\n]\n")
+def displacement(pressure):
+    whole = (2 * SIDE, 2 * SIDE)
+    return numpy.fft.irfft2(RESPONSE * numpy.fft.rfft2(pressure, whole), whole)[:SIDE, :SIDE]
 
 
-class Simulation:
-    """Recordings and forces of one indenter."""
+def press(height, depth, tolerance=1e-3):
+    """Pressure under a rigid body, by conjugate gradients with bounds (Polonsky and Keer)."""
+    gap = height - depth
+    pressure = numpy.maximum(-gap, 0)
+    step, last, conjugate = numpy.zeros_like(gap), 1.0, 0.0
+    for _ in range(250):
+        residual = displacement(pressure) + gap
+        touching = pressure > 0
+        square = (residual[touching] ** 2).sum()
+        step = numpy.where(touching, residual + conjugate * square / last * step, 0)
+        last, moved = square, displacement(step)
+        factor = (residual * step).sum() / max((moved * step).sum(), 1e-300)
+        pressure = numpy.maximum(pressure - factor * step, 0)
+        entering = (pressure == 0) & (residual < 0) & ~touching
+        pressure = numpy.where(entering, -factor * residual, pressure)
+        conjugate = 0.0 if entering.any() else 1.0
+        if conjugate and (square / max(touching.sum(), 1)) ** 0.5 < tolerance * -gap.min():
+            break
+    return pressure
 
-    def __init__(self, program, folder, number, indenter):
-        self.program, self.folder, self.number, self.indenter = program, Path(folder), number, indenter
 
-    def run(self, *words):
-        subprocess.run([self.program, *map(str, words), "-q", "--overwrite"], check=True)
+# --- Bodies: heights over their lowest point ---
 
-    def record(self, name, sensor, stiffness):
-        """The path of a recording without noise."""
-        text, path = (self.folder / f"{self.number}_{name}.{end}" for end in ("toml", "h5"))
-        text.write_text(scene(self.indenter, sensor, stiffness, self.number), encoding="utf-8")
-        self.run("simulate", text, "-o", path)
-        return path
+def face(outside, radius):
+    """A flat face with a rounded edge, from the distance outside it."""
+    beyond = numpy.maximum(outside + radius, 0)
+    arc = radius - numpy.sqrt(numpy.maximum(radius**2 - beyond**2, 0))
+    return numpy.where(beyond < radius, arc, radius + 40 * (beyond - radius))
 
-    def samples(self):
-        """Normal forces [frame, row, col], moments over the pitch [axis, ...] and their mask."""
-        with h5py.File(self.record("peak", "", 1)) as file:
-            peak = numpy.percentile(file["frames/raw"][:], 99.97)
-        stiffness = 150 * random.Random(self.number).uniform(0.4, 1.3) / float(peak)
-        leaning = self.record("leaning", LEANING, stiffness)
-        noise = numpy.random.default_rng(self.number + 10)
-        with h5py.File(leaning, "r+") as file:
-            raw = file["frames/raw"]
-            raw[...] = raw[:] + noise.normal(0, NOISE_COUNTS, raw.shape)
-            truth = [file[f"truth/{name}"][:].astype(float)
-                     for name in ("shear_x", "shear_y", "normal")]
-        forces = self.folder / f"{self.number}_forces.h5"
-        # The recording's own calibration has the arm; the normal force does not depend on it.
-        self.run("solve", leaning, "-o", forces)
-        with h5py.File(forces) as file:
-            normal, status = file["force/normal"][:].astype(float), file["force/status"][:]
-        with h5py.File(self.record("unclipped", UNCLIPPED, stiffness)) as file:
-            raw = file["frames/raw"][:].astype(float)
-        left, right = raw[:, :, 0::2], raw[:, :, 1::2]
-        x = (right - left)[:, 0::2] + (right - left)[:, 1::2]
-        y = (right + left)[:, 0::2] - (right + left)[:, 1::2]
-        shears = numpy.stack([x, y]) / (4 * K * 0.1 * 0.5**0.5)
-        largest = truth[2] + (abs(truth[0]) + abs(truth[1])) * 0.5**0.5
-        usable = sum((status >> bit) & 1 for bit in range(4))
-        return (normal, (shears - truth[:2]) / PITCH_OVER_ARM,
-                (usable >= 3) & (truth[2] > 0) & (K * largest > LEAST_COUNTS))
+
+def dome(distance, radius):
+    """A ball or a cylinder."""
+    arc = radius - numpy.sqrt(numpy.maximum(radius**2 - distance**2, 0))
+    return numpy.where(abs(distance) < radius, arc, NOWHERE)
+
+
+def to_line(x, y, start, end):
+    """Distance from a line between two points."""
+    (ax, ay), (bx, by) = start, end
+    along = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
+    along = numpy.clip(along, 0, 1)
+    return numpy.hypot(x - ax - along * (bx - ax), y - ay - along * (by - ay))
+
+
+def roughness(random, deviation):
+    waves = numpy.hypot(*numpy.meshgrid(*2 * [numpy.fft.fftfreq(SIDE, 1 / POINTS)]))
+    spectrum = numpy.where((waves <= 1) & (waves > 0), numpy.maximum(waves, 1 / 8) ** -1.8, 0)
+    height = numpy.fft.ifft2(spectrum * numpy.fft.fft2(random.normal(size=X.shape))).real
+    return height * deviation / height.std()
+
+
+def body(kind, random):
+    """Height and depth."""
+    uniform = random.uniform
+
+    def spread(low, high):
+        return numpy.exp(uniform(numpy.log(low), numpy.log(high)))
+
+    def profile(distance, width, part):
+        """A flat stroke of this width, in this part of the cases, or a round one."""
+        if uniform() < part:
+            return face(distance - width / 2, min(spread(0.05, 0.6), width / 2))
+        return distance**2 / (2 * spread(0.3, 3))
+
+    turn = uniform(0, 2 * numpy.pi)
+    right, up = X - uniform(-1.5, 1.5), Y - uniform(-1.5, 1.5)
+    x = numpy.cos(turn) * right + numpy.sin(turn) * up
+    y = numpy.cos(turn) * up - numpy.sin(turn) * right
+    r, depth = numpy.hypot(x, y), spread(0.05, 0.8)
+    if kind in ("ball", "rough"):
+        radius = spread(3, 45)
+        reach = min(uniform(0.25, 0.7) * radius, spread(1, 9.5))
+        height, depth = dome(r, radius), reach**2 / radius
+        if kind == "rough":
+            height = height + roughness(random, spread(0.006, 0.045))
+    elif kind == "ellipsoid":
+        a, b, c = uniform(3.5, 13), uniform(3.5, 18), uniform(3.5, 13)
+        height = c / 1 * dome(numpy.hypot(x / a, y / b), 1)
+        depth = min(uniform(0.03, 0.25) * c, 60 * c / max(a, b) ** 2)
+    elif kind == "punch":
+        height = face(r - uniform(2.2, 9.5), spread(0.1, 2))
+    elif kind == "square":
+        edge = spread(0.1, 1.5)
+        outside = [numpy.maximum(abs(a) - uniform(1.5, 8) + edge, 0) for a in (x, y)]
+        height = face(numpy.hypot(*outside) - edge, edge)
+    elif kind == "cylinder":
+        radius = uniform(2.5, 15)
+        height = dome(y, radius) + face(abs(x) - uniform(2, 8), spread(0.15, 2))
+        depth = 0.8 * min(uniform(0.15, 0.6) * radius, 8) ** 2 / radius
+    elif kind == "edge":
+        height = profile(abs(y), spread(0.2, 2.2), 0.5)
+        height = height + face(abs(x) - uniform(2, 10), spread(0.05, 1))
+        if uniform() < 0.4:  # as of a coin on its rim
+            height = height + x**2 / uniform(16, 120)
+    elif kind == "ring":
+        height = profile(abs(r - uniform(1.5, 8)), spread(0.25, 2.2), 0.5)
+    elif kind == "letter":
+        joints = random.integers(-1, 2, (4, 2)) * uniform(1.5, 5) + uniform(-0.5, 0.5, (4, 2))
+        strokes = [to_line(x, y, *ends) for ends in zip(joints, joints[1:])]
+        height = profile(numpy.min(strokes, axis=0), spread(0.4, 2), 0.7)
+    else:
+        pins = [numpy.hypot(x - uniform(-6, 6), y - uniform(-6, 6)) for _ in range(
+            random.integers(1, 8))]
+        height = numpy.min([uniform(0, 0.1) + (face(pin - radius, min(radius, 0.2)) if uniform() < 0.5
+                                               else dome(pin, radius))
+                            for pin in pins for radius in [spread(0.3, 2.5)]], axis=0)
+    height = numpy.minimum(height, NOWHERE)
+    if kind in ("punch", "square", "ring", "letter") and uniform() < 0.6:  # not quite flat on the skin
+        height = height + uniform(0, 0.04) * (numpy.cos(turn) * X + numpy.sin(turn) * Y)
+    return height - height.min(), depth
+
+
+KINDS = ("ball", "ellipsoid", "punch", "square", "cylinder", "rough", "edge", "ring", "letter", "pins")
+
+
+def pressed(number):
+    """Normal forces that are read, counts, and moments over the pitch [x or y, row, col]."""
+    random = numpy.random.default_rng(SEED + number)
+    pressure = press(*body(KINDS[number % len(KINDS)], random))
+    parts = pressure.reshape(PILLARS, POINTS, PILLARS, POINTS)
+    offset = (numpy.arange(POINTS) + 0.5) / POINTS - 0.5
+    normal = parts.sum((1, 3))
+    moments = numpy.stack([numpy.einsum("aibj,j->ab", parts, offset),
+                           numpy.einsum("aibj,i->ab", parts, offset)])
+    scale = PEAK_COUNTS * random.uniform(0.4, 1.2) / normal.max()
+    read = scale * normal + random.normal(0, NOISE_COUNTS, normal.shape)
+    return numpy.where(scale * normal > THRESHOLD_COUNTS, read, 0), scale * moments
 
 
 # --- Fit ---
@@ -123,59 +178,48 @@ def part(outer, inner):
     return numpy.where(whole > 0, outer / numpy.where(whole > 0, whole, 1), 0)
 
 
-def ratios(normal, axis):
-    """d, e, s and t of all pillars along x (0) or y (1)."""
-    padded = numpy.pad(normal, ((0, 0), (2, 2), (2, 2)))
-    rows, cols = normal.shape[1:]
-
-    def beside(step):
-        down, right = (0, step) if axis == 0 else (-step, 0)
-        return padded[:, 2 + down:2 + down + rows, 2 + right:2 + right + cols]
-
-    low, high = part(beside(-1), normal), part(beside(1), normal)
-    far_low, far_high = part(beside(-2), beside(-1)), part(beside(2), beside(1))
-    return high - low, far_high - far_low, high + low - 1, far_high + far_low - 1
+def ratios(normal):
+    """d, e, s and t of all pillars along x."""
+    padded = numpy.pad(normal, ((0, 0), (2, 2)))
+    far_low, low, own, high, far_high = (padded[:, i:i + normal.shape[1]] for i in range(5))
+    a, b, far_a, far_b = part(low, own), part(high, own), part(far_low, low), part(far_high, high)
+    return numpy.stack([b - a, far_b - far_a, b + a - 1, far_b + far_a - 1])
 
 
-def terms():
-    """The odd terms of second and third degree in d, e (odd), s and t (even), by index."""
-    return [term for degree in (2, 3)
-            for term in itertools.combinations_with_replacement(range(4), degree)
-            if sum(at < 2 for at in term) % 2]
+TERMS = ("dsss", "dssss", "ddddd", "dddst", "deet", "esst", "essst")
 
 
-def non_negative(matrix, values):
-    """Least squares without the columns whose coefficients would be negative."""
-    kept = list(range(matrix.shape[1]))
-    while True:
-        found = numpy.linalg.lstsq(matrix[:, kept], values, rcond=None)[0]
-        if (found >= 0).all():
-            return [dict(zip(kept, found)).get(i, 0.0) for i in range(matrix.shape[1])]
-        kept.pop(int(numpy.argmin(found)))
+def products(z):
+    return numpy.stack([numpy.prod([z["dest".index(each)] for each in term], axis=0)
+                        for term in TERMS], axis=1)
 
 
-def main(program, folder):
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    simulations = [Simulation(program, folder, i, indenter) for i, indenter in enumerate(shapes())]
-    with ThreadPoolExecutor(2) as threads:
-        found = list(threads.map(Simulation.samples, simulations))
-    z = numpy.concatenate([numpy.stack([r[mask] for r in ratios(normal, axis)], 1)
-                           for normal, _, mask in found for axis in (0, 1)])
-    own = numpy.concatenate([normal[mask] for normal, _, mask in found for _ in (0, 1)])
-    moment = numpy.concatenate([moments[axis][mask] for _, moments, mask in found
-                                for axis in (0, 1)]) / own
-    columns = numpy.stack([z[:, list(term)].prod(axis=1) for term in terms()], 1)
-    odd = numpy.linalg.lstsq(columns * own[:, None], (moment - z[:, 0] / 6) * own, rcond=None)[0]
-    for term, value in zip(terms(), odd):
-        print(f"{' '.join('dest'[at] for at in term):8}{value:8.3f}")
-    left = abs(numpy.clip(z[:, 0] / 6 + columns @ odd, -0.5, 0.5) - moment)
-    d, e, s = abs(z[:, 0]), z[:, 1] - z[:, 0], abs(z[:, 2])
-    sizes = numpy.stack([numpy.ones_like(d), d**3, s, s * s, abs(e)], 1)
-    weight = numpy.minimum(own / numpy.sqrt((own**2).mean()), 3**0.5)[:, None]
+def samples(number):
+    """d, e, s and t, normal forces and moments of a body's pillars along x and y, and weights."""
+    normal, moments = pressed(number)
+    loaded = normal > 2 * THRESHOLD_COUNTS
+    z = [ratios(normal)[:, loaded], ratios(normal.T)[:, loaded.T]]
+    own, moment = ((numpy.concatenate([a[loaded], b.T[loaded.T]]))
+                   for a, b in ((normal, normal), moments))
+    # Between equal weights of pillars and of bodies.
+    return numpy.concatenate(z, axis=1), own, moment, numpy.full(own.size, (moment**2).sum() ** -0.25)
+
+
+def main():
+    found = [samples(number) for number in range(BODIES)]
+    z, own, moment, weight = (numpy.concatenate(each, axis=-1) for each in zip(*found))
+    columns, rest, weight = products(z), moment / own - z[0] / 6, weight * own
+    odd = numpy.linalg.lstsq(columns * weight[:, None], rest * weight, rcond=None)[0]
+    for term, value in zip(TERMS, odd):
+        print(f"{' '.join(term):10}{value:8.3f}")
+    left = abs(numpy.clip(z[0] / 6 + columns @ odd, -0.5, 0.5) - moment / own)
+    d, e, s, _ = z
+    sizes = numpy.stack([s * s, (d * s) ** 2, abs(e - d)], axis=1)
+    weight = numpy.minimum(own / numpy.sqrt((own**2).mean()), 3**0.5)
     # The mean of the absolute value of a normal error is 0.8 deviations.
-    values = non_negative(sizes * weight, 1.25 * left * weight[:, 0])
-    print("deviation of 1, |d|^3, |s|, s^2, |e - d|:", *(f"{value:.3f}" for value in values))
+    values = numpy.linalg.lstsq(sizes * weight[:, None], 1.25 * left * weight, rcond=None)[0]
+    print("deviation of s^2, (d s)^2, |e - d|:", *(f"{value:.3f}" for value in values))
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()
