@@ -47,7 +47,7 @@ Found past_of(double moved, double load, double told_moved) {
     const ForceField field = slips ? pressed_ball(moved, load, true) : pressed_ball(0, 1, false);
     ContactLabels labels;
     labels.find(field.status, kSide, kSide);
-    past.begin(kSide, kSide);
+    past.begin(kSide, kSide, labels.runs_by_row());
     past.update(field.view(), labels.runs(0), {0, slips ? told_moved : 0}, kNoiseN, model,
                 parameters);
   }

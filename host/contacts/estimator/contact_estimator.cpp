@@ -88,45 +88,59 @@ void ContactEstimator::resolve(const FieldPlanes& field, const IdleBlocks& idle)
   const ForceFieldView forces = field.forces();
   labels_.find(forces.status, rows_, cols_, idle);
   friction_.begin(forces, labels_);
-  pool_->run(labels_.contacts(), [&](std::size_t contact, std::size_t member) {
+  const auto update = [&](std::size_t contact, std::size_t member) {
     friction_.update(forces, labels_, static_cast<std::uint32_t>(contact), member);
-  });
-  pool_->run(labels_.contacts(), [&](std::size_t contact, std::size_t) {
+  };
+  const auto estimate_pillars = [&](std::size_t contact, std::size_t) {
     const auto label = static_cast<std::uint32_t>(contact);
     if (friction_.model(label).any_ambiguous) estimate(field, label);
-  });
+  };
+  if (model_.pitch_over_arm == 0) {
+    pool_->run(labels_.contacts(), [&](std::size_t contact, std::size_t member) {
+      update(contact, member);
+      estimate_pillars(contact, member);
+    });
+    return;
+  }
+  // Leans depend on pillars of other contacts.
+  pool_->run(labels_.contacts(), update);
+  pool_->run(labels_.contacts(), estimate_pillars);
 }
 
 namespace {
 
-constexpr std::size_t kBatchPillars = 32;
+constexpr std::size_t kBatchPillars = PressureRegression::kBatch;
 using Values = std::array<float, kBatchPillars>;
+using Doubles = PressureRegression::Values;
 
 /// Mean and mean square of the normal force over equally probable frictions `nodes`; a pillar
 /// sticks with probability `sticks`, else it slips (C8).
 PF_WIDE void average(const Values& fixed, const Values& moving, const Values& high,
-                     const Values& slope, const Values& slope_square, std::span<const float> nodes,
-                     float sticks, Values& mean, Values& square) {
+                     const Values& slope, std::span<const float> nodes, float sticks, Values& mean,
+                     Values& square) {
   mean.fill(0);
   square.fill(0);
-  const float share = 1.0F / static_cast<float>(nodes.size());
   for (const float friction : nodes) {
     for (std::size_t i = 0; i < mean.size(); ++i) {
-      const float total = fixed[i] * fixed[i] + moving[i] * moving[i];
-      const float under =
-          slope_square[i] * moving[i] * moving[i] + (friction * friction - slope_square[i]) * total;
+      const float fixed_square = fixed[i] * fixed[i];
+      const float total = fixed_square + moving[i] * moving[i];
+      const float under = friction * friction * total - slope[i] * slope[i] * fixed_square;
       const float sum_of = slope[i] * moving[i] + std::sqrt(under > 0 ? under : 0.0F);
       const float free = total / sum_of;
       const float slip = ((sum_of > 0) & (free < high[i])) ? free : high[i];
-      const float sum = slip + high[i];
-      mean[i] += share * ((1 - sticks) * slip + sticks * 0.5F * sum);
-      square[i] += share * ((1 - sticks) * slip * slip +
-                            sticks * (slip * sum + high[i] * high[i]) * (1.0F / 3));
+      mean[i] += slip;
+      square[i] += slip * slip;
     }
   }
+  // Sticking, it is uniform between the force at slip and `high`.
+  const float share = 1.0F / static_cast<float>(nodes.size());
+  const float third = sticks * (1.0F / 3);
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    const float slip = share * mean[i];
+    mean[i] = slip + 0.5F * sticks * (high[i] - slip);
+    square[i] = (1 - 2 * third) * share * square[i] + third * high[i] * (slip + high[i]);
+  }
 }
-
-}  // namespace
 
 /// Standard deviation of a slipping pillar's normal force, N, due to one of its shear, N (F8); at
 /// most the segment's length.
@@ -137,22 +151,26 @@ double normal_deviation(const FeasibleSegment& segment, double normal, double sh
   return shear * shear_n < stiffness * segment.high ? shear * shear_n / stiffness : segment.high;
 }
 
-/// Mean reading of the usable sensels as a force, N: that of the free shear without normal force.
-double mean_reading_n(const FeasibleSegment& segment) { return segment.free_shear / segment.slope; }
-
 /// A batch of ambiguous pillars of a contact: segments and estimated normal forces.
-struct ContactEstimator::Batch {
+struct Batch {
   std::array<std::uint32_t, kBatchPillars> index{};
   Values fixed{};  ///< as in FeasibleSegment, N
   Values moving{};
   Values high{};
   Values slope{};
-  Values slope_square{};
   Values lean{};           ///< LeanShear::deviation
   Values mean{};           ///< of the normal force, N
   Values square{};         ///< mean square of the normal force, N²
   Values cautious_mean{};  ///< likewise, by FrictionBelief::cautious
   Values cautious_square{};
+  PressureRegression::Predictions regression;
+  Doubles x{};  ///< place for the regression
+  Doubles y{};
+  Doubles past{};  ///< by PastPressure, N; 0 if unknown
+  Doubles past_variance{};
+  Doubles lean_square{};  ///< variance of the normal force due to the lean, N²
+  Doubles normal{};       ///< results: normal force and its deviation, N
+  Doubles deviation{};
   std::size_t pillars = 0;
 
   [[nodiscard]] FeasibleSegment segment(std::size_t i) const {
@@ -160,92 +178,131 @@ struct ContactEstimator::Batch {
   }
 };
 
+/// What the pillars of a contact share.
+struct BatchModel {
+  const ContactParameters& parameters;
+  const SegmentModel& model;
+  double noise_n;
+};
+
+/// Posterior mean and standard deviation of the normal forces (C9, C9a).
+PF_WIDE void fuse(Batch& batch, const BatchModel& shared) {
+  const ContactParameters& parameters = shared.parameters;
+  const double noise_n = shared.noise_n;
+  const double point = shared.model.point;
+  const double residual_error = shared.model.residual;
+  const double noise = noise_n * noise_n;
+  const double own_square = parameters.ratio_deviation * parameters.ratio_deviation;
+  for (std::size_t i = 0; i < kBatchPillars; ++i) {
+    const double high = batch.high[i];
+    double mean = batch.mean[i];
+    const double spread = batch.square[i] - mean * mean;
+    const double mixture = spread > 0 ? spread : 0;
+    const double residual = residual_error * (batch.moving[i] / batch.slope[i]);  // mean reading
+    double variance = mixture + 0.5 * (noise + residual * residual) + own_square * mean * mean +
+                      batch.lean_square[i];
+    // What the cautious posterior adds (C8a): its mean square distance from the mean.
+    const double apart =
+        batch.cautious_square[i] + mean * (mean - 2 * double{batch.cautious_mean[i]}) - mixture;
+    double added = apart > 0 ? apart : 0;
+
+    const bool predicts = batch.regression.square[i] > 0;
+    const double square = predicts ? batch.regression.square[i] : 1;
+    const NormalEstimate predicted =
+        predicted_normal(square, batch.regression.variance[i], high, noise_n, parameters);
+    double weight = predicts ? variance / (variance + predicted.variance) : 0;
+    mean += weight * (predicted.normal - mean);
+    variance *= 1 - weight;
+    added *= (1 - weight) * (1 - weight);
+
+    // What the past bounds, it bounds for the cautious posterior too.
+    const double stated = variance + added;
+    weight = batch.past[i] > 0 ? stated / (stated + batch.past_variance[i]) : 0;
+    mean += weight * (batch.past[i] - mean);
+    variance *= 1 - weight;
+    added *= 1 - weight;
+
+    // The lean moves the segment, and both forces with it: the variance stays (C9a).
+    const double point_deviation = parameters.point_deviation * high;
+    weight =
+        batch.lean_square[i] > 0 ? variance / (variance + point_deviation * point_deviation) : 0;
+    mean += weight * (point * high - mean);
+    batch.normal[i] = mean < high ? mean : high;
+    batch.deviation[i] = std::sqrt(variance + added);
+  }
+}
+
+/// Writes one pillar.
+void write(const FieldPlanes& field, const BatchModel& shared, const Batch& batch, std::size_t i) {
+  const SegmentModel& model = shared.model;
+  const std::uint32_t index = batch.index[i];
+  const maths::Force point = force_of(field, index);
+  const std::uint8_t status = field.status[index];
+  const bool vertical = shear_y_is_free(status);
+  const double high = batch.high[i];
+  const double mean = batch.normal[i];
+  const double deviation = batch.deviation[i];
+  write_force(field, index, force_on_segment(point, status, model, static_cast<float>(mean)));
+  if (deviation < shared.parameters.resolved_deviation * high) {
+    field.status[index] |= status::kFromNeighbours;
+  }
+  if (!field.has_uncertainty()) return;
+  const double beside = std::hypot(shared.noise_n, double{batch.lean[i]});
+  const auto low_n = static_cast<float>(std::max(mean - kNormal95 * deviation, 0.0));
+  const auto high_n = static_cast<float>(std::min(mean + kNormal95 * deviation, high));
+  write_ends(field, index, {point, status, low_n, high_n}, batch.segment(i), model);
+  field.at(Uncertainty::normal, index) = static_cast<float>(deviation);
+  field.at(vertical ? Uncertainty::shear_y : Uncertainty::shear_x, index) =
+      static_cast<float>(std::hypot(model.slope(vertical) * deviation, beside));
+}
+
+}  // namespace
+
 /// Estimates the ambiguous pillars of a contact in batches.
 void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact) const {
   const ContactModel& model = friction_.model(contact);
   const std::span<const LeanShear> leans = friction_.leans();
+  const BatchModel shared{parameters_, model_, model.noise_n};
   Batch batch;
   const auto finish = [&] {
     for (std::size_t i = batch.pillars; i < kBatchPillars; ++i) {
-      batch.fixed[i] = batch.moving[i] = batch.high[i] = 1;
-      batch.slope[i] = batch.slope_square[i] = 1;
+      batch.fixed[i] = batch.moving[i] = batch.high[i] = batch.slope[i] = 1;
     }
-    average(batch.fixed, batch.moving, batch.high, batch.slope, batch.slope_square, model.frictions,
-            static_cast<float>(parameters_.ambiguous_sticks), batch.mean, batch.square);
-    average(batch.fixed, batch.moving, batch.high, batch.slope, batch.slope_square, model.cautious,
-            static_cast<float>(parameters_.ambiguous_sticks), batch.cautious_mean,
-            batch.cautious_square);
-    for (std::size_t i = 0; i < batch.pillars; ++i) write(field, model, batch, i);
+    const auto sticks = static_cast<float>(parameters_.ambiguous_sticks);
+    average(batch.fixed, batch.moving, batch.high, batch.slope, model.frictions, sticks, batch.mean,
+            batch.square);
+    average(batch.fixed, batch.moving, batch.high, batch.slope, model.cautious, sticks,
+            batch.cautious_mean, batch.cautious_square);
+    if (model.pressure) model.pressure->predict(batch.x, batch.y, batch.regression);
+    for (std::size_t i = 0; !leans.empty() && i < batch.pillars; ++i) {
+      const double deviation =
+          batch.lean[i] > 0 ? normal_deviation(batch.segment(i), batch.mean[i], batch.lean[i]) : 0;
+      batch.lean_square[i] = deviation * deviation;
+    }
+    fuse(batch, shared);
+    for (std::size_t i = 0; i < batch.pillars; ++i) write(field, shared, batch, i);
     batch.pillars = 0;
   };
   for_each_ambiguous(field.forces(), labels_.runs(contact), [&](std::uint32_t index) {
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormalN)) return;
     const FeasibleSegment segment =
         segment_of(force_of(field, index), field.status[index], model_, {});
-    batch.index[batch.pillars] = index;
-    batch.fixed[batch.pillars] = segment.known_shear;
-    batch.moving[batch.pillars] = segment.free_shear;
-    batch.high[batch.pillars] = segment.high;
-    batch.slope[batch.pillars] = static_cast<float>(segment.slope);
-    batch.slope_square[batch.pillars] = model_.slope_square(shear_y_is_free(field.status[index]));
-    batch.lean[batch.pillars] = leans.empty() ? 0 : leans[index].deviation;
-    if (++batch.pillars == kBatchPillars) finish();
+    const std::size_t i = batch.pillars++;
+    batch.index[i] = index;
+    batch.fixed[i] = segment.known_shear;
+    batch.moving[i] = segment.free_shear;
+    batch.high[i] = segment.high;
+    batch.slope[i] = static_cast<float>(segment.slope);
+    batch.lean[i] = leans.empty() ? 0 : leans[index].deviation;
+    const std::uint32_t row = index / cols_;
+    batch.x[i] = model.box.x_of(index - row * cols_);
+    batch.y[i] = model.box.y_of(row);
+    const auto past = friction_.past().at(index, segment.high, model.noise_n);
+    batch.past[i] = past ? past->normal : 0;
+    batch.past_variance[i] = past ? past->variance : 0;
+    if (batch.pillars == kBatchPillars) finish();
   });
   if (batch.pillars > 0) finish();
-}
-
-/// Writes the posterior mean and standard deviation of one pillar's normal force (C9, C9a).
-void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model,
-                             const Batch& batch, std::size_t i) const {
-  const std::uint32_t index = batch.index[i];
-  const maths::Force point = force_of(field, index);
-  const std::uint8_t status = field.status[index];
-  const bool vertical = shear_y_is_free(status);
-  const double noise_n = model.noise_n;
-  const double high = batch.high[i];
-  double mean = batch.mean[i];
-  const double own = parameters_.ratio_deviation * mean;  // model error of a slipping pillar
-  const double lean =
-      batch.lean[i] > 0 ? normal_deviation(batch.segment(i), mean, batch.lean[i]) : 0;
-  const double residual = model_.residual * mean_reading_n(batch.segment(i));
-  double variance = std::max(batch.square[i] - mean * mean, 0.0) +
-                    0.5 * (noise_n * noise_n + residual * residual) + own * own + lean * lean;
-  // What the cautious posterior adds (C8a): its mean square distance from the mean.
-  const double apart_square = batch.cautious_square[i] + mean * (mean - 2 * batch.cautious_mean[i]);
-  double added = std::max(apart_square - std::max(batch.square[i] - mean * mean, 0.0), 0.0);
-  const std::uint32_t row = index / cols_;
-  if (const auto found = model.predicted(row, index - row * cols_, high, parameters_)) {
-    const double weight = variance / (variance + found->variance);
-    mean += weight * (found->normal - mean);
-    variance *= 1 - weight;
-    added *= (1 - weight) * (1 - weight);
-  }
-  if (const auto past = friction_.past().at(index, high, noise_n)) {
-    // What the past bounds, it bounds for the cautious posterior too.
-    const double weight = NormalEstimate{mean, variance + added}.weight_of(*past);
-    mean += weight * (past->normal - mean);
-    variance *= 1 - weight;
-    added *= 1 - weight;
-  }
-  if (lean > 0) {
-    // The lean moves the segment, and both forces with it: the variance stays (C9a).
-    const double apart = parameters_.point_deviation * high;
-    mean += variance / (variance + apart * apart) * (model_.point * high - mean);
-  }
-  mean = std::min(mean, high);
-  const double deviation = std::sqrt(variance + added);
-  write_force(field, index, force_on_segment(point, status, model_, static_cast<float>(mean)));
-  if (deviation < parameters_.resolved_deviation * high) {
-    field.status[index] |= status::kFromNeighbours;
-  }
-  if (!field.has_uncertainty()) return;
-  const double beside = lean > 0 ? std::hypot(noise_n, double{batch.lean[i]}) : noise_n;
-  const auto low_n = static_cast<float>(std::max(mean - kNormal95 * deviation, 0.0));
-  const auto high_n = static_cast<float>(std::min(mean + kNormal95 * deviation, high));
-  write_ends(field, index, {point, status, low_n, high_n}, batch.segment(i), model_);
-  field.at(Uncertainty::normal, index) = static_cast<float>(deviation);
-  field.at(vertical ? Uncertainty::shear_y : Uncertainty::shear_x, index) =
-      static_cast<float>(std::hypot(model_.slope(vertical) * deviation, beside));
 }
 
 }  // namespace pillarfield

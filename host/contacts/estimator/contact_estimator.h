@@ -34,11 +34,7 @@ class ContactEstimator {
   [[nodiscard]] std::span<const ContactFriction> friction() const { return friction_.friction(); }
 
  private:
-  struct Batch;
-
   void estimate(const FieldPlanes& field, std::uint32_t contact) const;
-  void write(const FieldPlanes& field, const ContactModel& model, const Batch& batch,
-             std::size_t i) const;
 
   ContactParameters parameters_;
   SegmentModel model_;

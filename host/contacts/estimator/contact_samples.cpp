@@ -81,25 +81,16 @@ void ContactSamples::sample(const ForceFieldView& forces, std::span<const LeanSh
   edges_ = 0;
   step_ = (box_.pillars + kMostPillars - 1) / kMostPillars;
   // Samples lie far apart: prefetch all before the first is used.
-  for_each_sampled([&](std::uint32_t row, std::uint32_t col) {
+  for_each_of(runs, step_, [&](std::uint32_t row, std::uint32_t col) {
     const std::size_t index = std::size_t{row} * forces.cols + col;
     prefetch(&forces.status[index]);
     prefetch(&forces.normal[index]);
     prefetch(&forces.shear_x[index]);
     prefetch(&forces.shear_y[index]);
   });
-  for_each_sampled(
-      [&](std::uint32_t row, std::uint32_t col) { sample_pillar(row, col, noise_n, parameters); });
-}
-
-template <class Use>
-void ContactSamples::for_each_sampled(Use use) const {
-  std::uint32_t skip = 0;
-  for (const ContactRun& run : runs_) {
-    std::uint32_t col = run.first + skip;
-    for (; col < run.end; col += step_) use(run.row, col);
-    skip = col - run.end;
-  }
+  for_each_of(runs, step_, [&](std::uint32_t row, std::uint32_t col) {
+    sample_pillar(row, col, noise_n, parameters);
+  });
 }
 
 /// Adds the samples of one pillar.

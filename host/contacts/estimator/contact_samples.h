@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -16,24 +18,63 @@
 
 namespace pillarfield {
 
+/// Calls `use` with the index of each pillar of a contact whose status byte `marks` marks in a word
+/// of eight, by one bit of the byte.
+template <class Marks, class Use>
+void for_each_marked(const ForceFieldView& forces, std::span<const ContactRun> runs, Marks marks,
+                     Use use) {
+  for (const ContactRun& run : runs) {
+    const std::uint32_t end = run.row * forces.cols + run.end;
+    for (std::uint32_t index = run.row * forces.cols + run.first; index < end;
+         index += kWordBytes) {
+      const std::size_t pillars = std::min<std::size_t>(kWordBytes, end - index);
+      std::uint64_t word = 0;
+      if (pillars == kWordBytes) {
+        std::memcpy(&word, &forces.status[index], kWordBytes);
+      } else {
+        std::memcpy(&word, &forces.status[index], pillars);
+      }
+      std::uint64_t marked = marks(word) & (~std::uint64_t{0} >> (8 * (kWordBytes - pillars)));
+      for (; marked != 0; marked &= marked - 1) {
+        use(index + static_cast<std::uint32_t>(std::countr_zero(marked)) / 8);
+      }
+    }
+  }
+}
+
 /// Calls `use` with the index of each pillar of a contact that has a feasible segment.
 template <class Use>
 void for_each_ambiguous(const ForceFieldView& forces, std::span<const ContactRun> runs, Use use) {
+  for_each_marked(
+      forces, runs, [](std::uint64_t word) { return word & (kEachByte * status::kAmbiguous); },
+      [&](std::uint32_t index) {
+        if (has_feasible_segment(forces.status[index])) use(index);
+      });
+}
+
+/// Calls `use` with the index of each pillar of a contact whose readings leave its force open: all
+/// but those of is_determined().
+template <class Use>
+void for_each_undetermined(const ForceFieldView& forces, std::span<const ContactRun> runs,
+                           Use use) {
+  const auto marks = [](std::uint64_t word) {
+    // Three of four sensels: both of a pair, and one of the other.
+    const std::uint64_t both = word & (word >> 1);
+    const std::uint64_t one = word | (word >> 1);
+    const std::uint64_t usable = (both & (one >> 2)) | ((both >> 2) & one);
+    return (~usable | (word >> std::countr_zero(status::kSaturated))) & kEachByte;
+  };
+  for_each_marked(forces, runs, marks, use);
+}
+
+/// Calls `use` with row and column of every `step`-th pillar of a contact.
+template <class Use>
+void for_each_of(std::span<const ContactRun> runs, std::uint32_t step, Use use) {
+  std::uint32_t skip = 0;
   for (const ContactRun& run : runs) {
-    std::uint32_t index = run.row * forces.cols + run.first;
-    const std::uint32_t end = run.row * forces.cols + run.end;
-    while (index < end) {
-      // Skips eight pillars at a time: most are not ambiguous.
-      const bool whole = index + kWordBytes <= end;
-      std::uint64_t word = status::kAmbiguous;
-      if (whole) std::memcpy(&word, &forces.status[index], kWordBytes);
-      const std::uint32_t pillars = whole ? kWordBytes : end - index;
-      for (std::uint32_t i = 0; i < pillars && (word & (status::kAmbiguous * kEachByte)) != 0;
-           ++i) {
-        if (has_feasible_segment(forces.status[index + i])) use(index + i);
-      }
-      index += pillars;
-    }
+    std::uint32_t col = run.first + skip;
+    for (; col < run.end; col += step) use(run.row, col);
+    skip = col - run.end;
   }
 }
 
@@ -97,8 +138,6 @@ class ContactSamples {
     int right;
   };
 
-  template <class Use>
-  void for_each_sampled(Use use) const;
   void sample_pillar(std::uint32_t row, std::uint32_t col, double noise_n,
                      const ContactParameters& parameters);
   void add_edge(const Edge& edge, double weight);

@@ -8,6 +8,7 @@ namespace pillarfield {
 namespace {
 
 constexpr std::size_t kMostPredicted = 16;
+static_assert(kMostPredicted <= PressureRegression::kBatch);
 
 /// Assumed ratio of a contact's largest normal force to the noise, if the noise is unknown.
 constexpr double kPeakOverNoise = 64;
@@ -36,19 +37,6 @@ double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> 
 
 }  // namespace
 
-std::optional<NormalEstimate> ContactModel::predicted(std::uint32_t row, std::uint32_t col,
-                                                      double high,
-                                                      const ContactParameters& parameters) const {
-  if (!pressure) return std::nullopt;
-  const PressureRegression::Prediction found = pressure->at(box.x_of(col), box.y_of(row));
-  if (!(found.square > 0)) return std::nullopt;
-  const double normal = std::min(std::sqrt(found.square), high + noise_n);
-  const double factor = parameters.regression_factor;
-  const double own = parameters.prediction_deviation * normal;
-  return NormalEstimate{normal, factor * factor * found.variance / (4 * found.square) +
-                                    noise_n * noise_n + own * own};
-}
-
 FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowledge& knowledge,
                                      std::size_t members, const ContactParameters& parameters)
     : sensor_(sensor),
@@ -69,7 +57,9 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
   models_.assign(labels.contacts(), {});
   friction_.assign(labels.contacts(), {});
   if (!carries_over_) return;
-  if (parameters_.past_pressure) past_.begin(forces.rows, forces.cols);
+  if (parameters_.past_pressure) {
+    past_.begin(forces.rows, forces.cols, labels.runs_by_row());
+  }
   movements_.assign(labels.contacts(), {});
   std::swap(snapshot_, earlier_snapshot_);
   snapshot_.runs.assign(labels.runs_by_row().begin(), labels.runs_by_row().end());
@@ -155,31 +145,32 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   friction_[contact] = reported(contact, log_likelihood, work);
 }
 
-/// The normal force of an ambiguous pillar by the regression and by the past.
-std::optional<NormalEstimate> FrictionEstimator::predicted(const ForceFieldView& forces,
-                                                           std::uint32_t index, double high,
-                                                           const ContactModel& model) const {
-  const std::uint32_t row = index / forces.cols;
-  const auto found = model.predicted(row, index - row * forces.cols, high, parameters_);
-  const auto past = past_.at(index, high, model.noise_n);
-  if (!found || !past) return found ? found : past;
-  const double weight = found->weight_of(*past);
-  return NormalEstimate{found->normal + weight * (past->normal - found->normal),
-                        (1 - weight) * found->variance};
-}
-
-/// Collects the ratios of ambiguous pillars at their predicted normal forces.
+/// Collects the ratios of ambiguous pillars at their normal forces by regression and past.
 void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel& model,
                                 Workspace& work) const {
   constexpr double kMostDeviation = 0.35;  // largest relative deviation of a prediction
   constexpr double kStep = 0.02;           // relative step of the ratio's derivative
   const std::vector<std::uint32_t>& ambiguous = work.samples.ambiguous();
   const std::size_t step = (ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
-  for (std::size_t i = 0; i < ambiguous.size(); i += step) {
-    const std::uint32_t index = ambiguous[i];
+  const std::size_t count = (ambiguous.size() + step - 1) / step;
+  PressureRegression::Values x{};
+  PressureRegression::Values y{};
+  PressureRegression::Predictions pressure;
+  for (std::size_t i = 0; i < count; ++i) {
+    x[i] = model.box.x_of(ambiguous[i * step] % forces.cols);
+    y[i] = model.box.y_of(ambiguous[i * step] / forces.cols);
+  }
+  if (model.pressure) model.pressure->predict(x, y, pressure);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t index = ambiguous[i * step];
     const LeanShear lean = leans_.empty() ? LeanShear{} : leans_[index];
     const FeasibleSegment segment = segment_at(forces, index, sensor_.segment, lean);
-    const auto found = predicted(forces, index, segment.high, model);
+    auto found = past_.at(index, segment.high, model.noise_n);
+    if (pressure.square[i] > 0) {
+      const NormalEstimate shape = predicted_normal(pressure.square[i], pressure.variance[i],
+                                                    segment.high, model.noise_n, parameters_);
+      found = found ? shape.fused(*found) : shape;
+    }
     if (!found) continue;
     const double normal = found->normal;
     const double deviation = std::sqrt(found->variance) / normal;

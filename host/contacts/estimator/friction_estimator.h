@@ -29,12 +29,6 @@ struct ContactModel {
   std::optional<PressureRegression> pressure;
   double noise_n = 0;
   bool any_ambiguous = false;  ///< false only if no pillar is ambiguous
-
-  /// The regression's estimate of a pillar's normal force (C6), limited to the end `high` of its
-  /// segment, N, plus noise.
-  [[nodiscard]] std::optional<NormalEstimate> predicted(std::uint32_t row, std::uint32_t col,
-                                                        double high,
-                                                        const ContactParameters& parameters) const;
 };
 
 /// What is known of the friction of a contact.
@@ -89,9 +83,6 @@ class FrictionEstimator {
     bool stayed = false;    ///< `friction` stayed while the mean ratio changed
   };
 
-  [[nodiscard]] std::optional<NormalEstimate> predicted(const ForceFieldView& forces,
-                                                        std::uint32_t index, double high,
-                                                        const ContactModel& model) const;
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
   [[nodiscard]] bool may_stick(double friction, Workspace& work) const;
   bool stays(double friction, bool clear, const Workspace& work, History& history) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/wide.h"
 #include "contacts/estimator/contact_samples.h"
 #include "pillarfield/status.h"
 
@@ -12,13 +13,10 @@ namespace {
 constexpr std::uint32_t kMostCompared = 192;  // pillars
 constexpr double kLeastCompared = 4;          // determined pillars that show how the load changed
 
-template <class Use>
-void for_each_pillar(std::span<const ContactRun> runs, std::uint32_t cols, Use use) {
-  for (const ContactRun& run : runs) {
-    for (std::uint32_t col = run.first; col < run.end; ++col) {
-      use(run.row, col, run.row * cols + col);
-    }
-  }
+/// Copies the normal forces that are above zero and not ignored; the others become zero.
+PF_WIDE void copy_pressing(const float* from, std::size_t pillars, float* to) {
+  constexpr auto kMost = static_cast<float>(kMostNormalN);
+  for (std::size_t i = 0; i < pillars; ++i) to[i] = from[i] > 0 && from[i] < kMost ? from[i] : 0;
 }
 
 }  // namespace
@@ -52,13 +50,20 @@ struct PastPressure::Load {
   }
 };
 
-void PastPressure::begin(std::uint32_t rows, std::uint32_t cols) {
-  rows_ = rows;
-  cols_ = cols;
+void PastPressure::begin(std::uint32_t rows, std::uint32_t cols, std::span<const ContactRun> runs) {
   std::swap(now_, before_);
-  now_.resize(std::size_t{rows} * cols);
-  before_.resize(now_.size());
-  ++frame_;
+  if (rows != rows_ || cols != cols_) {
+    rows_ = rows;
+    cols_ = cols;
+    const std::size_t pillars = std::size_t{rows} * cols;
+    const std::vector<float> none(pillars, 0);
+    now_ = before_ = {none, none, none, {}};
+  }
+  for (const ContactRun& run : now_.runs) {
+    float* const normals = &now_.normal[std::size_t{run.row} * cols_];
+    std::fill(normals + run.first, normals + run.end, 0.0F);
+  }
+  now_.runs.assign(runs.begin(), runs.end());
 }
 
 PastPressure::Origin::Origin(const Movement& movement)
@@ -70,37 +75,34 @@ PastPressure::Origin::Origin(const Movement& movement)
 }
 
 /// The frame before between its pillars. Where they differ, so may the place meant.
-std::optional<PastPressure::Cell> PastPressure::before(std::uint32_t row, std::uint32_t col,
-                                                       const Origin& origin) const {
+std::optional<PastPressure::Past> PastPressure::before(std::uint32_t row, std::uint32_t col,
+                                                       const Origin& origin,
+                                                       double noise_square) const {
   double weights = 0;
-  double normal = 0;
+  Past past;
   double squares = 0;
-  double variance = 0;
-  double most = 0;
   for (std::size_t corner = 0; corner < origin.weights.size(); ++corner) {
+    const double weight = origin.weights[corner];
     const std::int64_t r = row + origin.rows + static_cast<std::int64_t>(corner / 2);
     const std::int64_t c = col + origin.cols + static_cast<std::int64_t>(corner % 2);
-    if (r < 0 || c < 0 || r >= rows_ || c >= cols_) continue;
-    const Cell& cell = before_[static_cast<std::size_t>(r * cols_ + c)];
-    if (cell.frame + 1 != frame_) continue;
-    const double weight = origin.weights[corner];
+    if (weight == 0 || r < 0 || c < 0 || r >= rows_ || c >= cols_) continue;
+    const auto index = static_cast<std::size_t>(r * cols_ + c);
+    const float known = before_.normal[index];
+    if (known == 0) continue;
+    const bool determined = known > 0;
+    const double normal = std::abs(known);
     weights += weight;
-    normal += weight * cell.normal;
-    squares += weight * cell.normal * cell.normal;
-    variance += weight * cell.variance;
-    most += weight * cell.most;
+    past.normal += weight * normal;
+    squares += weight * normal * normal;
+    past.variance += weight * (determined ? noise_square : before_.variance[index]);
+    past.most += weight * (determined ? normal : before_.most[index]);
   }
   if (weights < 0.5) return std::nullopt;
-  normal /= weights;
-  const double apart = 2 * std::max(squares / weights - normal * normal, 0.0);
-  return Cell{static_cast<float>(normal), static_cast<float>(variance / weights + apart),
-              static_cast<float>(most / weights), frame_ - 1};
-}
-
-void PastPressure::keep(std::uint32_t index, double normal, double variance, double most) {
-  if (!(normal > 0 && normal < kMostNormalN && variance < kMostNormalN * kMostNormalN)) return;
-  now_[index] = {static_cast<float>(normal), static_cast<float>(variance), static_cast<float>(most),
-                 frame_};
+  past.normal /= weights;
+  past.most /= weights;
+  past.variance =
+      past.variance / weights + 2 * std::max(squares / weights - past.normal * past.normal, 0.0);
+  return past;
 }
 
 void PastPressure::update(const ForceFieldView& forces, std::span<const ContactRun> runs,
@@ -110,22 +112,14 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
   const double least = parameters.least_normal * noise_n;
   const double own = parameters.prediction_deviation;
   const double spread = parameters.regression_factor;
-  bool all_determined = true;
   std::uint32_t pillars = 0;
-  const auto noise_square = static_cast<float>(noise);
   for (const ContactRun& run : runs) {
-    Cell* const cells = &now_[std::size_t{run.row} * cols_];
-    const float* const normals = &forces.normal[std::size_t{run.row} * cols_];
-    const std::uint8_t* const status = &forces.status[std::size_t{run.row} * cols_];
-    for (std::uint32_t col = run.first; col < run.end; ++col) {
-      const float normal = normals[col];
-      const bool determined = is_determined(status[col]);
-      all_determined &= determined;
-      const bool known = determined && normal > 0 && normal < static_cast<float>(kMostNormalN);
-      cells[col] = {normal, noise_square, normal, known ? frame_ : 0};
-    }
+    const std::size_t first = std::size_t{run.row} * cols_ + run.first;
+    copy_pressing(&forces.normal[first], run.end - run.first, &now_.normal[first]);
     pillars += run.end - run.first;
   }
+  bool all_determined = true;
+  for_each_undetermined(forces, runs, [&](std::uint32_t) { all_determined = false; });
   if (all_determined) return;
 
   const auto most_of = [&](std::uint32_t index) {
@@ -136,40 +130,42 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
   const Origin origin(movement);
   // Evenly spread pillars, which bounds the cost of large contacts.
   const std::uint32_t step = std::max(1U, pillars / kMostCompared);
-  std::uint32_t place = 0;
   Load load;
-  for_each_pillar(runs, cols_, [&](std::uint32_t row, std::uint32_t col, std::uint32_t index) {
-    if (place++ % step != 0) return;
-    const auto past = before(row, col, origin);
+  for_each_of(runs, step, [&](std::uint32_t row, std::uint32_t col) {
+    const std::uint32_t index = row * cols_ + col;
+    const auto past = before(row, col, origin, noise);
     if (!past || !(forces.normal[index] < kMostNormalN)) return;
     load.now += most_of(index);
     load.before += past->most;
     if (!is_determined(forces.status[index]) || past->normal < least) return;
     load.products += double{forces.normal[index]} * past->normal;
-    load.past_squares += double{past->normal} * past->normal;
+    load.past_squares += past->normal * past->normal;
     load.squares += double{forces.normal[index]} * forces.normal[index];
     ++load.compared;
   });
   load.conclude(noise, own);
-  for_each_pillar(runs, cols_, [&](std::uint32_t row, std::uint32_t col, std::uint32_t index) {
-    if (is_determined(forces.status[index])) return;
-    const auto past = before(row, col, origin);
+  for_each_undetermined(forces, runs, [&](std::uint32_t index) {
+    now_.normal[index] = 0;
+    const std::uint32_t row = index / cols_;
+    const auto past = before(row, index - row * cols_, origin, noise);
     if (!past) return;
     const double normal = load.factor * past->normal;
     // The factor errs alike from frame to frame, so deviations add and not variances.
     const double lasting = load.factor * std::sqrt(past->variance) + load.deviation * past->normal;
     const double variance =
         lasting * lasting + spread * spread * load.scatter + own * own * normal * normal;
-    keep(index, normal, variance, most_of(index));
+    if (!(normal > 0 && normal < kMostNormalN && variance < kMostNormalN * kMostNormalN)) return;
+    now_.normal[index] = -static_cast<float>(normal);
+    now_.variance[index] = static_cast<float>(variance);
+    now_.most[index] = most_of(index);
   });
 }
 
 std::optional<NormalEstimate> PastPressure::at(std::uint32_t index, double high,
                                                double noise_n) const {
-  if (now_.empty() || now_[index].frame != frame_) return std::nullopt;
-  const Cell& cell = now_[index];
-  return NormalEstimate{std::min(double{cell.normal}, high + noise_n),
-                        cell.variance + noise_n * noise_n};
+  if (now_.normal.empty() || !(now_.normal[index] < 0)) return std::nullopt;
+  return NormalEstimate{std::min(-double{now_.normal[index]}, high + noise_n),
+                        now_.variance[index] + noise_n * noise_n};
 }
 
 }  // namespace pillarfield

@@ -24,8 +24,9 @@ class PastPressure {
     double cols = 0;
   };
 
-  /// Begins a frame of that size: what the frame before knew becomes the past.
-  void begin(std::uint32_t rows, std::uint32_t cols);
+  /// Begins a frame of that size with these runs of loaded pillars: what the frame before knew
+  /// becomes the past.
+  void begin(std::uint32_t rows, std::uint32_t cols, std::span<const ContactRun> runs);
 
   /// Carries the past of a contact over into this frame. The result does not depend on where the
   /// force of an ambiguous pillar lies on its segment. Thread-safe for different contacts.
@@ -39,12 +40,21 @@ class PastPressure {
                                                  double noise_n) const;
 
  private:
-  /// A pillar at a frame.
-  struct Cell {
-    float normal = 0;    ///< N
-    float variance = 0;  ///< N²
-    float most = 0;      ///< largest normal force that its readings allow, N
-    std::uint32_t frame = 0;
+  /// What a frame knows, [rows, cols] each.
+  struct Frame {
+    /// Normal forces, N: above zero if determined, below if carried over, zero if unknown.
+    std::vector<float> normal;
+    /// Of those carried over, N²; that of the determined ones is the noise's.
+    std::vector<float> variance;
+    /// Of those carried over: the largest that the readings allow, N.
+    std::vector<float> most;
+    std::vector<ContactRun> runs;  ///< beyond them `normal` is zero
+  };
+  /// The frame before at the place of a pillar.
+  struct Past {
+    double normal = 0;
+    double variance = 0;
+    double most = 0;
   };
   struct Load;
 
@@ -58,15 +68,13 @@ class PastPressure {
     std::array<double, 4> weights;  ///< upper left, upper right, lower left, lower right
   };
 
-  [[nodiscard]] std::optional<Cell> before(std::uint32_t row, std::uint32_t col,
-                                           const Origin& origin) const;
-  void keep(std::uint32_t index, double normal, double variance, double most);
+  [[nodiscard]] std::optional<Past> before(std::uint32_t row, std::uint32_t col,
+                                           const Origin& origin, double noise_square) const;
 
   std::uint32_t rows_ = 0;
   std::uint32_t cols_ = 0;
-  std::uint32_t frame_ = 1;
-  std::vector<Cell> now_;
-  std::vector<Cell> before_;
+  Frame now_;
+  Frame before_;
 };
 
 }  // namespace pillarfield

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/wide.h"
+
 namespace pillarfield {
 namespace {
 
@@ -13,6 +15,33 @@ constexpr double kHalfWeight = 2;
 /// Least pivot of the Cholesky factorisation as a fraction of the diagonal; below it the fit is
 /// singular.
 constexpr double kLeastPivot = 1e-9;
+
+/// The polynomial at places, and their leverages as variances.
+template <class Terms, class Matrix>
+PF_WIDE void evaluate(const PressureRegression::Values& x, const PressureRegression::Values& y,
+                      const Terms& coefficients, const Matrix& inverse,
+                      PressureRegression::Predictions& found) {
+  std::array<PressureRegression::Values, 6> terms;
+  terms[0].fill(1);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    terms[1][i] = x[i];
+    terms[2][i] = y[i];
+    terms[3][i] = x[i] * x[i];
+    terms[4][i] = x[i] * y[i];
+    terms[5][i] = y[i] * y[i];
+  }
+  found = {};
+  for (std::size_t row = 0; row < terms.size(); ++row) {
+    PressureRegression::Values sum{};
+    for (std::size_t col = 0; col <= row; ++col) {
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += inverse[row][col] * terms[col][i];
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      found.square[i] += coefficients[row] * terms[row][i];
+      found.variance[i] += sum[i] * sum[i];
+    }
+  }
+}
 
 }  // namespace
 
@@ -75,7 +104,7 @@ std::optional<PressureRegression> PressureRegression::fit(const std::vector<Samp
     forward(matrix, right);
     backward(matrix, right);
     result.coefficients_ = right;
-    result.factor_ = matrix;
+    if (round + 1 == kRounds) result.inverse_ = inverse_of(matrix);
     double squares = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const double weight = weight_of(i);
@@ -90,14 +119,20 @@ std::optional<PressureRegression> PressureRegression::fit(const std::vector<Samp
   return result;
 }
 
-PressureRegression::Prediction PressureRegression::at(double x, double y) const {
-  Terms terms = terms_of(x, y);
-  double square = 0;
-  for (std::size_t k = 0; k < kTerms; ++k) square += coefficients_[k] * terms[k];
-  forward(factor_, terms);
-  double leverage = 0;
-  for (const double each : terms) leverage += each * each;
-  return {square, mean_square_ * (1 + leverage)};
+PressureRegression::Matrix PressureRegression::inverse_of(const Matrix& factor) {
+  Matrix inverse{};
+  for (std::size_t col = 0; col < kTerms; ++col) {
+    Terms unit{};
+    unit[col] = 1;
+    forward(factor, unit);
+    for (std::size_t row = col; row < kTerms; ++row) inverse[row][col] = unit[row];
+  }
+  return inverse;
+}
+
+void PressureRegression::predict(const Values& x, const Values& y, Predictions& predictions) const {
+  evaluate(x, y, coefficients_, inverse_, predictions);
+  for (double& variance : predictions.variance) variance = mean_square_ * (1 + variance);
 }
 
 }  // namespace pillarfield

@@ -17,15 +17,17 @@ class PressureRegression {
     double square;  ///< N²
     double weight;  ///< 0 or more
   };
-  struct Prediction {
-    double square;    ///< N², may be negative
-    double variance;  ///< N⁴
+  static constexpr std::size_t kBatch = 32;  ///< places predicted at a time
+  using Values = std::array<double, kBatch>;
+  struct Predictions {
+    Values square{};    ///< N², may be negative
+    Values variance{};  ///< N⁴
   };
 
   /// Fits the polynomial; unset for fewer than 12 samples or samples on a conic or line.
   static std::optional<PressureRegression> fit(const std::vector<Sample>& samples);
 
-  [[nodiscard]] Prediction at(double x, double y) const;
+  void predict(const Values& x, const Values& y, Predictions& predictions) const;
 
  private:
   static constexpr std::size_t kTerms = 6;
@@ -36,9 +38,10 @@ class PressureRegression {
   static bool factorise(Matrix& matrix);
   static void forward(const Matrix& factor, Terms& values);
   static void backward(const Matrix& factor, Terms& values);
+  static Matrix inverse_of(const Matrix& factor);
 
   Terms coefficients_{};
-  Matrix factor_{};         ///< Cholesky's, lower triangle
+  Matrix inverse_{};        ///< of Cholesky's factor, lower triangle
   double mean_square_ = 0;  ///< mean square of the residuals
 };
 
