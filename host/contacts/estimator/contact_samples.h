@@ -104,7 +104,7 @@ class ContactSamples {
  public:
   /// Largest number of sampled pillars, evenly spread, and of rows or columns sampled at the edge.
   /// Bounds the cost of large contacts.
-  static constexpr std::uint32_t kMostPillars = 96;
+  static constexpr std::uint32_t kMostPillars = FrictionLikelihood::kMostPillars;
   static constexpr std::uint32_t kMostEdges = 16;
 
   /// Samples the pillars of a contact. `leans` are those of its ambiguous pillars, or empty without
@@ -119,9 +119,7 @@ class ContactSamples {
   /// Ratios of determined pillars, and lower bounds of the ratios of ambiguous pillars.
   [[nodiscard]] const std::vector<ObservedRatio>& ratios() const { return ratios_; }
   [[nodiscard]] const std::vector<ObservedRatio>& bounds() const { return bounds_; }
-  [[nodiscard]] const std::vector<PressureRegression::Sample>& pressure() const {
-    return pressure_;
-  }
+  [[nodiscard]] std::vector<PressureRegression::Sample>& pressure() { return pressure_; }
   /// Sampled ambiguous pillars, by index in the frame.
   [[nodiscard]] const std::vector<std::uint32_t>& ambiguous() const { return ambiguous_; }
   [[nodiscard]] bool is_subsampled() const { return step_ > 1; }

@@ -13,12 +13,6 @@ static_assert(kMostPredicted <= PressureRegression::kBatch);
 /// Assumed ratio of a contact's largest normal force to the noise, if the noise is unknown.
 constexpr double kPeakOverNoise = 64;
 
-/// Parameters under which a sticking pillar's ratio is a lower bound of the friction, no more.
-ContactParameters cautious(ContactParameters parameters) {
-  parameters.stick_exponent = 0;
-  return parameters;
-}
-
 /// A wider prior, unless the friction is given.
 FrictionKnowledge cautious(FrictionKnowledge knowledge, const ContactParameters& parameters) {
   knowledge.spread *= parameters.cautious_spread;
@@ -42,7 +36,6 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
     : sensor_(sensor),
       parameters_(parameters),
       likelihood_(parameters),
-      cautious_likelihood_(cautious(parameters)),
       prior_{FrictionPosterior(knowledge), FrictionPosterior(cautious(knowledge, parameters))},
       given_(knowledge.given),
       carries_over_(knowledge.memory),
@@ -119,30 +112,30 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   // Pillars that were not sampled may be ambiguous.
   model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
 
-  FrictionCurve log_likelihood{};
-  FrictionCurve cautious{};
-  likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, log_likelihood);
-  cautious_likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, cautious);
-  likelihood_.add_lower_bounds(samples.bounds(), parameters_.effective_pillars, log_likelihood);
-  likelihood_.add_lower_bounds(samples.bounds(), parameters_.effective_pillars, cautious);
+  FrictionEvidence evidence;
+  likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, evidence);
+  likelihood_.add_lower_bounds(samples.bounds(), parameters_.effective_pillars, evidence);
   if (!samples.ambiguous().empty()) {
     if (!samples.pressure().empty()) samples.add_edges();
     model.pressure = PressureRegression::fit(samples.pressure());
     work.predicted.clear();
     if (model.pressure || remembers) predict(forces, model, work);
-    likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
-                                  log_likelihood);
+    FrictionEvidence by_pressure;
+    likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions, by_pressure);
+    for (std::size_t i = 0; i < evidence.estimate.size(); ++i) {
+      evidence.estimate[i] += by_pressure.estimate[i];
+    }
   }
   if (!samples.ratios().empty() || !samples.bounds().empty()) {
-    belief.estimate.update(log_likelihood);
-    belief.cautious.update(cautious);
+    belief.estimate.update(evidence.estimate);
+    belief.cautious.update(evidence.cautious);
   }
   for (std::size_t i = 0; model.any_ambiguous && i < ContactModel::kNodes; ++i) {
     const double part = (static_cast<double>(i) + 0.5) / ContactModel::kNodes;
     model.frictions[i] = static_cast<float>(belief.estimate.quantile(part));
     model.cautious[i] = static_cast<float>(belief.cautious.quantile(part));
   }
-  friction_[contact] = reported(contact, log_likelihood, work);
+  friction_[contact] = reported(contact, evidence.estimate, work);
 }
 
 /// Collects the ratios of ambiguous pillars at their normal forces by regression and past.

@@ -92,7 +92,6 @@ class FrictionEstimator {
   Sensor sensor_;
   ContactParameters parameters_;
   FrictionLikelihood likelihood_;
-  FrictionLikelihood cautious_likelihood_;
   FrictionBelief prior_;
   std::optional<double> given_;
   bool carries_over_;

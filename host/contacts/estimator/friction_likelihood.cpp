@@ -14,9 +14,6 @@ constexpr std::size_t kPoints = FrictionGrid::kPoints;
 /// Range of ratios over which an outlier's density is uniform.
 constexpr double kOutlierRange = 6;
 
-/// Number of factors in [1e-4, 100] whose product a double holds.
-constexpr std::size_t kFactors = 64;
-
 using Factors = std::array<double, kPoints>;
 using Powers = std::array<float, kPoints>;
 
@@ -24,34 +21,19 @@ double normal_cumulative(double deviations) {
   return 0.5 * std::erfc(-deviations / std::numbers::sqrt2);
 }
 
-/// Product of likelihoods per grid point; sums logarithms every kFactors factors.
-class LogProduct {
- public:
-  LogProduct() { product_.fill(1); }
+constexpr Factors kOnes = [] {
+  Factors ones{};
+  ones.fill(1);
+  return ones;
+}();
 
-  Factors& next() {
-    if (factors_++ == kFactors) flush();
-    return product_;
+/// Adds the logarithm of a product of at most FrictionLikelihood::kMostPillars factors. Above 1e-4
+/// each, together they may be too small for a double, where no posterior has weight.
+void add_logarithm(const Factors& product, double weight, FrictionCurve& log_likelihood) {
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    log_likelihood[i] += weight * std::log(std::max(product[i], 1e-300));
   }
-
-  void add_to(FrictionCurve& log_likelihood, double weight) {
-    flush();
-    for (std::size_t i = 0; i < kPoints; ++i) log_likelihood[i] += weight * logarithm_[i];
-  }
-
- private:
-  void flush() {
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      logarithm_[i] += std::log(product_[i]);
-    }
-    product_.fill(1);
-    factors_ = 1;
-  }
-
-  Factors product_{};
-  FrictionCurve logarithm_{};
-  std::size_t factors_ = 0;
-};
+}
 
 /// Terms of one pillar's likelihood of slipping at a friction or sticking below it (C3).
 struct SlipOrStick {
@@ -64,13 +46,15 @@ struct SlipOrStick {
   float outlier;
 };
 
-PF_WIDE void multiply(Factors& product, const SlipOrStick& pillar, const Powers& stick_factor) {
+PF_WIDE void multiply(Factors& estimate, Factors& cautious, const SlipOrStick& pillar,
+                      const Powers& stick_factor) {
   for (std::size_t i = 0; i < kPoints; ++i) {
     const float factor =
         stick_factor[i] > pillar.least_factor ? stick_factor[i] : pillar.least_factor;
-    const float likelihood = pillar.slip * pillar.density[i] * pillar.below_ceiling[i] +
-                             pillar.stick * factor * pillar.cumulative[i] + pillar.outlier;
-    product[i] *= static_cast<double>(likelihood);
+    const float slips = pillar.slip * pillar.density[i] * pillar.below_ceiling[i] + pillar.outlier;
+    const float sticks = pillar.stick * pillar.cumulative[i];
+    estimate[i] *= static_cast<double>(slips + factor * sticks);
+    cautious[i] *= static_cast<double>(slips + sticks);
   }
 }
 
@@ -118,36 +102,44 @@ const FrictionLikelihood::Width& FrictionLikelihood::width_of(double deviation) 
 }
 
 void FrictionLikelihood::add_slip_or_stick(const std::vector<ObservedRatio>& pillars,
-                                           double effective, FrictionCurve& log_likelihood) const {
+                                           double effective, FrictionEvidence& evidence) const {
   if (pillars.empty()) return;
   const double slips = parameters_.slip_probability * (1 - parameters_.outliers);
   const double sticks = (1 - parameters_.slip_probability) * (1 - parameters_.outliers);
-  LogProduct product;
+  Factors estimate = kOnes;
+  Factors cautious = kOnes;
   for (const ObservedRatio& pillar : pillars) {
     const Width& width = width_of(pillar.deviation);
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
-    const std::size_t at_ceiling = kPoints - FrictionGrid::nearest(pillar.ceiling);
-    multiply(product.next(),
+    const std::size_t ceiling = FrictionGrid::nearest(pillar.ceiling);
+    multiply(estimate, cautious,
              {width.density.data() + at, width.cumulative.data() + at,
-              below_ceiling_.data() + at_ceiling,
+              below_ceiling_.data() + kPoints - ceiling,
               static_cast<float>(slips / std::max(FrictionGrid::kLeast, pillar.ratio)),
-              static_cast<float>(sticks), stick_factor_[FrictionGrid::nearest(pillar.ceiling)],
+              static_cast<float>(sticks), stick_factor_[ceiling],
               static_cast<float>(parameters_.outliers / kOutlierRange)},
              stick_factor_);
   }
-  product.add_to(log_likelihood, weight_of(pillars.size(), effective));
+  const double weight = weight_of(pillars.size(), effective);
+  add_logarithm(estimate, weight, evidence.estimate);
+  add_logarithm(cautious, weight, evidence.cautious);
 }
 
 void FrictionLikelihood::add_lower_bounds(const std::vector<ObservedRatio>& pillars,
-                                          double effective, FrictionCurve& log_likelihood) const {
+                                          double effective, FrictionEvidence& evidence) const {
   if (pillars.empty()) return;
-  LogProduct product;
+  Factors product = kOnes;
   for (const ObservedRatio& pillar : pillars) {
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
-    multiply(product.next(), width_of(pillar.deviation).cumulative.data() + at,
+    multiply(product, width_of(pillar.deviation).cumulative.data() + at,
              static_cast<float>(parameters_.outliers));
   }
-  product.add_to(log_likelihood, weight_of(pillars.size(), effective));
+  FrictionCurve logarithm{};
+  add_logarithm(product, weight_of(pillars.size(), effective), logarithm);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    evidence.estimate[i] += logarithm[i];
+    evidence.cautious[i] += logarithm[i];
+  }
 }
 
 }  // namespace pillarfield

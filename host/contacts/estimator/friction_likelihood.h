@@ -17,20 +17,29 @@ struct ObservedRatio {
   static constexpr double kNoCeiling = 1e3;  ///< above all frictions
 };
 
+/// Logarithms of the likelihood for FrictionBelief.
+struct FrictionEvidence {
+  FrictionCurve estimate{};
+  /// A sticking pillar's ratio is a lower bound of the friction, no more (C8a).
+  FrictionCurve cautious{};
+};
+
 /// Likelihood of the friction coefficient given observed ratios, from tables
 /// (docs/derivations/contact.md, section 3).
 class FrictionLikelihood {
  public:
   explicit FrictionLikelihood(const ContactParameters& parameters);
 
+  static constexpr std::size_t kMostPillars = 96;  ///< of a call
+
   /// Adds pillars that slip at the friction or stick below it (C3). The sum over pillars is scaled
   /// to that of at most `effective` pillars.
   void add_slip_or_stick(const std::vector<ObservedRatio>& pillars, double effective,
-                         FrictionCurve& log_likelihood) const;
+                         FrictionEvidence& evidence) const;
 
   /// Adds pillars whose ratio is at least the observed one (C5).
   void add_lower_bounds(const std::vector<ObservedRatio>& pillars, double effective,
-                        FrictionCurve& log_likelihood) const;
+                        FrictionEvidence& evidence) const;
 
  private:
   /// Values by difference of grid points: index j + kPoints for the point `nearest` + j.

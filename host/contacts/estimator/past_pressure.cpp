@@ -78,30 +78,34 @@ PastPressure::Origin::Origin(const Movement& movement)
 std::optional<PastPressure::Past> PastPressure::before(std::uint32_t row, std::uint32_t col,
                                                        const Origin& origin,
                                                        double noise_square) const {
+  const std::int64_t first_row = row + origin.rows;
+  const std::int64_t first_col = col + origin.cols;
+  const bool inside =
+      first_row >= 0 && first_col >= 0 && first_row + 1 < rows_ && first_col + 1 < cols_;
   double weights = 0;
   Past past;
   double squares = 0;
   for (std::size_t corner = 0; corner < origin.weights.size(); ++corner) {
     const double weight = origin.weights[corner];
-    const std::int64_t r = row + origin.rows + static_cast<std::int64_t>(corner / 2);
-    const std::int64_t c = col + origin.cols + static_cast<std::int64_t>(corner % 2);
-    if (weight == 0 || r < 0 || c < 0 || r >= rows_ || c >= cols_) continue;
+    const std::int64_t r = first_row + static_cast<std::int64_t>(corner / 2);
+    const std::int64_t c = first_col + static_cast<std::int64_t>(corner % 2);
+    if (weight == 0 || (!inside && (r < 0 || c < 0 || r >= rows_ || c >= cols_))) continue;
     const auto index = static_cast<std::size_t>(r * cols_ + c);
     const float known = before_.normal[index];
     if (known == 0) continue;
-    const bool determined = known > 0;
     const double normal = std::abs(known);
     weights += weight;
     past.normal += weight * normal;
     squares += weight * normal * normal;
-    past.variance += weight * (determined ? noise_square : before_.variance[index]);
-    past.most += weight * (determined ? normal : before_.most[index]);
+    past.variance += weight * (known > 0 ? noise_square : before_.variance[index]);
+    past.most += weight * (known > 0 ? normal : before_.most[index]);
   }
   if (weights < 0.5) return std::nullopt;
-  past.normal /= weights;
-  past.most /= weights;
+  const double scale = 1 / weights;
+  past.normal *= scale;
+  past.most *= scale;
   past.variance =
-      past.variance / weights + 2 * std::max(squares / weights - past.normal * past.normal, 0.0);
+      past.variance * scale + 2 * std::max(squares * scale - past.normal * past.normal, 0.0);
   return past;
 }
 

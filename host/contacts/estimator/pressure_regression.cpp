@@ -76,45 +76,43 @@ void PressureRegression::backward(const Matrix& factor, Terms& values) {
   }
 }
 
-std::optional<PressureRegression> PressureRegression::fit(const std::vector<Sample>& samples) {
+std::optional<PressureRegression> PressureRegression::fit(std::vector<Sample>& samples) {
   if (samples.size() < kLeastSamples) return std::nullopt;
   PressureRegression result;
-  std::vector<double> residuals(samples.size(), 0);
   for (int round = 0; round < kRounds; ++round) {
     const double bend = kHalfWeight * kHalfWeight * result.mean_square_;
-    const auto weight_of = [&](std::size_t i) {
-      const double square = residuals[i] * residuals[i];
-      return samples[i].weight * (bend > 0 ? bend / (bend + square) : 1);
+    const auto weight_of = [&](const Sample& sample) {
+      return bend > 0 ? sample.weight * bend / (bend + sample.residual * sample.residual)
+                      : sample.weight;
     };
     Matrix matrix{};
     Terms right{};
     double weights = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Terms terms = terms_of(samples[i].x, samples[i].y);
-      const double weight = weight_of(i);
+    for (const Sample& sample : samples) {
+      const Terms terms = terms_of(sample.x, sample.y);
+      const double weight = weight_of(sample);
       weights += weight;
       for (std::size_t row = 0; row < kTerms; ++row) {
-        for (std::size_t col = 0; col <= row; ++col) {
-          matrix[row][col] += weight * terms[row] * terms[col];
-        }
-        right[row] += weight * terms[row] * samples[i].square;
+        const double weighted = weight * terms[row];
+        for (std::size_t col = 0; col <= row; ++col) matrix[row][col] += weighted * terms[col];
+        right[row] += weighted * sample.square;
       }
     }
     if (!factorise(matrix)) return std::nullopt;
     forward(matrix, right);
     backward(matrix, right);
     result.coefficients_ = right;
-    if (round + 1 == kRounds) result.inverse_ = inverse_of(matrix);
     double squares = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const double weight = weight_of(i);
-      const Terms terms = terms_of(samples[i].x, samples[i].y);
+    for (Sample& sample : samples) {
+      const double weight = weight_of(sample);
+      const Terms terms = terms_of(sample.x, sample.y);
       double fitted = 0;
       for (std::size_t k = 0; k < kTerms; ++k) fitted += right[k] * terms[k];
-      residuals[i] = samples[i].square - fitted;
-      squares += weight * residuals[i] * residuals[i];
+      sample.residual = sample.square - fitted;
+      squares += weight * sample.residual * sample.residual;
     }
     result.mean_square_ = squares / std::max(weights - static_cast<double>(kTerms), 2.0);
+    if (round + 1 == kRounds) result.inverse_ = inverse_of(matrix);
   }
   return result;
 }

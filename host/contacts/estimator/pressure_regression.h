@@ -14,8 +14,9 @@ class PressureRegression {
   struct Sample {
     double x;  ///< place, magnitude about 1
     double y;
-    double square;  ///< N²
-    double weight;  ///< 0 or more
+    double square;        ///< N²
+    double weight;        ///< 0 or more
+    double residual = 0;  ///< of the last fit, N²
   };
   static constexpr std::size_t kBatch = 32;  ///< places predicted at a time
   using Values = std::array<double, kBatch>;
@@ -25,7 +26,7 @@ class PressureRegression {
   };
 
   /// Fits the polynomial; unset for fewer than 12 samples or samples on a conic or line.
-  static std::optional<PressureRegression> fit(const std::vector<Sample>& samples);
+  static std::optional<PressureRegression> fit(std::vector<Sample>& samples);
 
   void predict(const Values& x, const Values& y, Predictions& predictions) const;
 
