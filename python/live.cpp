@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -63,35 +64,38 @@ py::dict counts_of(const StreamHealth& health) {
   return counts;
 }
 
-/// A stream that several threads use in turn, until it is closed.
-template <class Stream>
-class SharedStream {
+/// A live source or sink that several threads use in turn, until it is closed.
+template <class Live>
+class Shared {
  public:
-  explicit SharedStream(std::unique_ptr<Stream> stream) : stream_(std::move(stream)) {}
+  Shared(std::string name, std::unique_ptr<Live> live)
+      : name_(std::move(name)), live_(std::move(live)) {}
 
   template <class Call>
   void use(Call call) {
-    if (stream_.is_foreign()) throw_foreign("the live source");
+    if (live_.is_foreign()) throw_foreign(name_);
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(mutex_);
-    if (stream_.get() == nullptr) throw Error("the live source", "it is closed", "open it again");
-    call(*stream_.get());
+    if (live_.get() == nullptr) throw Error(name_, "it is closed", "open it again");
+    call(*live_.get());
   }
   py::dict health() {
     StreamHealth health;
-    use([&](Stream& stream) { health = stream.health(); });
+    use([&](Live& stream) { health = stream.health(); });
     return counts_of(health);
   }
-  void close() {
+  void close(const std::function<void(Live&)>& at_last = {}) {
     const py::gil_scoped_release unlocked;
-    if (stream_.is_foreign()) return;
+    if (live_.is_foreign()) return;
     const std::lock_guard alone(mutex_);
-    stream_.reset();
+    if (at_last && live_.get() != nullptr) at_last(*live_.get());
+    live_.reset();
   }
 
  private:
   std::mutex mutex_;
-  ProcessBound<Stream> stream_;
+  std::string name_;
+  ProcessBound<Live> live_;
 };
 
 /// A live source, used by one thread at a time.
@@ -108,7 +112,7 @@ class LiveFrames {
     skin_ = stream->skin();
     sensel_type_ = stream->sensel_type();
     frame_ = std::make_unique<StreamedFrame>(sensel_type_, skin_);
-    stream_.emplace(std::move(stream));
+    stream_.emplace("the live source", std::move(stream));
   }
 
   /// The next frame as (readings, time, sequence, missing); None where none came in time. Throws
@@ -147,7 +151,7 @@ class LiveFrames {
     return py::make_tuple(readings, time_s, sequence, missing);
   }
 
-  std::optional<SharedStream<FrameStream>> stream_;
+  std::optional<Shared<FrameStream>> stream_;
   Skin skin_;
   SenselType sensel_type_ = SenselType::u8;
   std::unique_ptr<StreamedFrame> frame_;
@@ -164,7 +168,7 @@ class LiveResults {
       throw Error(source, "it holds frames, not results", "open it with live()");
     }
     skin_ = stream->skin();
-    stream_.emplace(std::move(stream));
+    stream_.emplace("the live source", std::move(stream));
   }
 
   /// The planes of the next result, with its time and contacts; None where none came in time.
@@ -188,7 +192,7 @@ class LiveResults {
     return planes;
   }
 
-  std::optional<SharedStream<ResultStream>> stream_;
+  std::optional<Shared<ResultStream>> stream_;
   Skin skin_;
 };
 
@@ -203,7 +207,7 @@ class Sink {
         live_sink_info(plan, "", source, contacts ? std::optional(ContactOptions{}) : std::nullopt);
     info.replace = overwrite ? Replace::anything : Replace::results;
     info.allowed_origins = std::move(allow_origins);
-    sink_.emplace(create_live_sink(target, info));
+    sink_.emplace(target, create_live_sink(target, info));
   }
 
   void send(const py::dict& planes, const std::shared_ptr<FrameContacts>& contacts, double time_s,
@@ -216,7 +220,7 @@ class Sink {
       throw Error(target_, "the forces do not fit its plan",
                   "send one frame of the plan's size and outputs");
     }
-    with_sink([&](LiveSink& sink) {
+    sink_->use([&](LiveSink& sink) {
       sink.append({.forces = forces.frame(0),
                    .contacts = contacts.get(),
                    .time_s = time_s,
@@ -227,7 +231,7 @@ class Sink {
 
   [[nodiscard]] py::dict statistics() {
     LiveSinkStatistics done;
-    with_sink([&](LiveSink& sink) { done = sink.statistics(); });
+    sink_->use([&](LiveSink& sink) { done = sink.statistics(); });
     py::dict counts;
     counts["frames"] = done.frames;
     counts["dropped"] = done.dropped;
@@ -239,28 +243,15 @@ class Sink {
   }
 
   void close(bool finish) {
-    const py::gil_scoped_release unlocked;
-    if (sink_->is_foreign()) return;
-    const std::lock_guard alone(mutex_);
-    if (finish && sink_->get() != nullptr) sink_->get()->finish();
-    sink_->reset();
+    sink_->close([finish](LiveSink& sink) {
+      if (finish) sink.finish();
+    });
   }
 
  private:
-  template <class Call>
-  void with_sink(Call call) {
-    if (sink_->is_foreign()) throw_foreign(target_);
-    const py::gil_scoped_release unlocked;
-    const std::lock_guard alone(mutex_);
-    LiveSink* const sink = sink_->get();
-    if (sink == nullptr) throw Error(target_, "it is closed", "open it again");
-    call(*sink);
-  }
-
-  std::mutex mutex_;
   std::string target_;
   SolverPlan plan_;
-  std::optional<ProcessBound<LiveSink>> sink_;
+  std::optional<Shared<LiveSink>> sink_;
 };
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
-#include "viewer/source/newest_field.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/plane_block.h"
 #include "viewer/source/result_player.h"
@@ -69,7 +68,7 @@ struct LiveFieldOwner {
 
 struct LivePlayer::State final : ForceSink {
   State(std::unique_ptr<FrameStream> from, const std::string& name, SolverPlan with,
-        Processor solver, std::shared_ptr<Curves> measured);
+        Processor solver, std::shared_ptr<Curves> measured, NewestField& shown, Wanted& asked);
   ~State() override;
 
   void append(const SolvedFrame& frame) override;
@@ -96,11 +95,8 @@ struct LivePlayer::State final : ForceSink {
   bool tracks = false;
   double time_s = 0;  ///< of the frame solved last
 
+  Wanted& wanted;
   std::atomic<bool> stopping = false;
-  std::atomic<bool> paused = false;
-  std::atomic<bool> wants_contacts = false;
-  std::atomic<bool> wants_peak = false;
-  std::atomic<bool> peak_begins = false;
   std::atomic<bool> ended = false;
   std::atomic<std::uint64_t> solved = 0;
 
@@ -108,12 +104,13 @@ struct LivePlayer::State final : ForceSink {
   std::string message;
   std::uint64_t messages = 0;
 
-  NewestField newest;
+  NewestField& newest;
   std::thread thread;  ///< last: uses the other members
 };
 
 LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& name,
-                         SolverPlan with, Processor solver, std::shared_ptr<Curves> measured)
+                         SolverPlan with, Processor solver, std::shared_ptr<Curves> measured,
+                         NewestField& shown, Wanted& asked)
     : stream(std::move(from)),
       plan(std::move(with)),
       processor(std::move(solver)),
@@ -122,6 +119,8 @@ LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& n
       session(*stream, plan, processor, recording_info(info, plan)),
       tracker(plan.skin.element_pitch_mm(), info.contacts),
       fields(FieldProducer::kMostShown, [this] { return std::make_unique<LiveField>(plan); }),
+      wanted(asked),
+      newest(shown),
       thread([this] { run(); }) {}
 
 LivePlayer::State::~State() {
@@ -142,16 +141,16 @@ void LivePlayer::State::run() {
     failure = std::current_exception();
   }
   ended = true;
-  newest.fail(failure);
+  newest.end(failure);
 }
 
 /// Runs until the player ends, or contacts are switched.
 void LivePlayer::State::run_pipeline() {
-  tracks = wants_contacts;
+  tracks = wanted.contacts;
   if (tracks) tracker = ContactTracker(plan.skin.element_pitch_mm(), info.contacts);
   const PipelineStatistics done =
       session.run({.contacts = tracks ? &tracker : nullptr, .sink = this, .stop = [this] {
-                     return stopping || tracks != wants_contacts;
+                     return stopping || tracks != wanted.contacts;
                    }});
   ended = !done.stopped;
 }
@@ -187,13 +186,13 @@ ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t i
 void LivePlayer::State::append(const SolvedFrame& frame) {
   time_s = clock.time_s(frame.time_s, frame.arrived);
   curves->add(field_of(frame, solved));
-  if (wants_peak) {
-    if (peak_begins.exchange(false)) peak.reset();
+  if (wanted.peak) {
+    if (wanted.peak_anew.exchange(false)) peak.reset();
     peak.add(frame.forces);
   }
   newest.count(frame.arrived);
   ++solved;
-  if (!paused) publish(frame);
+  if (!wanted.paused) publish(frame);
 }
 
 /// Hands the frame solved last to the display: its forces in place, its readings copied.
@@ -219,42 +218,21 @@ void LivePlayer::State::publish(const SolvedFrame& frame) {
     field.contacts = std::make_shared<const ShownContacts>(
         with_extents(*frame.contacts, tracker.labels(), info.contacts.noise_n));
   }
-  if (wants_peak) field.peak = peak.field(field);
+  if (wanted.peak) field.peak = peak.field(field);
   newest.set(std::move(field));
 }
 
 LivePlayer::LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name,
                        const SolverPlan& plan, Processor processor, std::shared_ptr<Curves> curves)
     : state_(std::make_unique<State>(std::move(stream), name, plan, std::move(processor),
-                                     std::move(curves))) {}
+                                     std::move(curves), newest_, wanted_)) {}
 
 LivePlayer::~LivePlayer() = default;
 
 const SourceInfo& LivePlayer::info() const { return state_->info; }
-void LivePlayer::play() { state_->paused = false; }
-void LivePlayer::pause() { state_->paused = true; }
-void LivePlayer::set_contacts(bool wanted) { state_->wants_contacts = wanted; }
-
-void LivePlayer::set_peak(bool wanted) {
-  state_->peak_begins = wanted;
-  state_->wants_peak = wanted;
-}
 
 PlayerState LivePlayer::state() const {
-  return {.frame = state_->solved,
-          .frames = 0,
-          .playing = !state_->paused,
-          .loops = false,
-          .follows = true,
-          .speed = 1,
-          .rate_hz = state_->session.health().stream.rate_hz};
-}
-
-PlayerStatistics LivePlayer::statistics() const { return state_->newest.statistics(); }
-std::optional<ShownField> LivePlayer::take() { return state_->newest.take(); }
-
-void LivePlayer::on_new_field(std::function<void()> wake) {
-  state_->newest.on_new_field(std::move(wake));
+  return state_after(state_->solved, state_->session.health().stream.rate_hz);
 }
 
 void LivePlayer::tare() { state_->session.start_tare(kTareTime); }

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "viewer/source/newest_field.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/plane_block.h"
+#include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -35,7 +35,7 @@ SourceInfo results_info(const std::string& name, const Skin& skin) {
 
 struct ResultPlayer::State {
   State(std::unique_ptr<ResultStream> from, const std::string& name,
-        std::shared_ptr<Curves> measured);
+        std::shared_ptr<Curves> measured, NewestField& display, Wanted& asked);
   ~State();
 
   // Run in the thread.
@@ -56,11 +56,8 @@ struct ResultPlayer::State {
   PeakHold peak;
   ObjectPool<PlaneBlock> blocks;
 
+  Wanted& wanted;
   std::atomic<bool> stopping = false;
-  std::atomic<bool> paused = false;
-  std::atomic<bool> wants_contacts = false;
-  std::atomic<bool> wants_peak = false;
-  std::atomic<bool> peak_begins = false;
 
   mutable std::mutex mutex;  ///< guards the members up to `messages`
   StreamHealth health;
@@ -68,12 +65,12 @@ struct ResultPlayer::State {
   std::string message;
   std::uint64_t messages = 0;
 
-  NewestField newest;
+  NewestField& newest;
   std::thread thread;  ///< last: uses the other members
 };
 
 ResultPlayer::State::State(std::unique_ptr<ResultStream> from, const std::string& name,
-                           std::shared_ptr<Curves> measured)
+                           std::shared_ptr<Curves> measured, NewestField& display, Wanted& asked)
     : stream(std::move(from)),
       info(results_info(name, stream->skin())),
       curves(std::move(measured)),
@@ -83,6 +80,8 @@ ResultPlayer::State::State(std::unique_ptr<ResultStream> from, const std::string
                return std::make_unique<PlaneBlock>(info.skin.layout, info.skin.element_rows(),
                                                    info.skin.element_cols(), false);
              }),
+      wanted(asked),
+      newest(display),
       thread([this] { run(); }) {}
 
 ResultPlayer::State::~State() {
@@ -92,18 +91,18 @@ ResultPlayer::State::~State() {
 
 void ResultPlayer::State::run() {
   try {
-    bool with_contacts = wants_contacts;
+    bool with_contacts = wanted.contacts;
     while (!stopping) {
       const bool came = stream->next(result, kPatience);
       if (came) add();
-      const bool changed = std::exchange(with_contacts, wants_contacts) != with_contacts;
-      if ((came || (changed && stream->health().frames > 0)) && !paused) publish();
+      const bool changed = std::exchange(with_contacts, wanted.contacts) != with_contacts;
+      if ((came || (changed && stream->health().frames > 0)) && !wanted.paused) publish();
       const std::scoped_lock lock(mutex);
       health = stream->health();
       if (came) arrived = result.arrived;
     }
   } catch (...) {
-    newest.fail(std::current_exception());
+    newest.end(std::current_exception());
   }
 }
 
@@ -116,8 +115,8 @@ void ResultPlayer::State::add() {
   shown.arrived = result.arrived;
   curves->add(shown);
   newest.count(result.arrived);
-  if (!wants_peak) return;
-  if (peak_begins.exchange(false)) peak.reset();
+  if (!wanted.peak) return;
+  if (wanted.peak_anew.exchange(false)) peak.reset();
   peak.add(result.forces.view());
 }
 
@@ -130,8 +129,8 @@ void ResultPlayer::State::publish() {
   field.forces = block->view();
   field.pages = block->pages();
   field.keep_alive = block;
-  if (wants_contacts) field.contacts = contacts_of(field);
-  if (wants_peak) field.peak = peak.field(field);
+  if (wanted.contacts) field.contacts = contacts_of(field);
+  if (wanted.peak) field.peak = peak.field(field);
   newest.set(std::move(field));
 }
 
@@ -148,36 +147,16 @@ std::shared_ptr<const ShownContacts> ResultPlayer::State::contacts_of(const Show
 
 ResultPlayer::ResultPlayer(std::unique_ptr<ResultStream> stream, const std::string& name,
                            std::shared_ptr<Curves> curves)
-    : state_(std::make_unique<State>(std::move(stream), name, std::move(curves))) {}
+    : state_(
+          std::make_unique<State>(std::move(stream), name, std::move(curves), newest_, wanted_)) {}
 
 ResultPlayer::~ResultPlayer() = default;
 
 const SourceInfo& ResultPlayer::info() const { return state_->info; }
-void ResultPlayer::play() { state_->paused = false; }
-void ResultPlayer::pause() { state_->paused = true; }
-void ResultPlayer::set_contacts(bool wanted) { state_->wants_contacts = wanted; }
-
-void ResultPlayer::set_peak(bool wanted) {
-  state_->peak_begins = wanted;
-  state_->wants_peak = wanted;
-}
 
 PlayerState ResultPlayer::state() const {
   const PlayerStatistics counts = statistics();
-  return {.frame = counts.produced,
-          .frames = 0,
-          .playing = !state_->paused,
-          .loops = false,
-          .follows = true,
-          .speed = 1,
-          .rate_hz = counts.produced_hz};
-}
-
-PlayerStatistics ResultPlayer::statistics() const { return state_->newest.statistics(); }
-std::optional<ShownField> ResultPlayer::take() { return state_->newest.take(); }
-
-void ResultPlayer::on_new_field(std::function<void()> wake) {
-  state_->newest.on_new_field(std::move(wake));
+  return state_after(counts.produced, counts.produced_hz);
 }
 
 void ResultPlayer::tare() {

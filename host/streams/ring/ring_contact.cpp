@@ -2,14 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
+#include <utility>
 
 namespace pillarfield {
 namespace {
 
+using Ring = PillarfieldContact;
+using Found = ContactQuantities;
+
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// Members of a ring's contact, and those that they hold.
+constexpr std::pair<std::uint64_t Ring::*, std::uint64_t Found::*> kCounts[] = {
+    {&Ring::pillars, &Found::pillars},
+    {&Ring::ambiguous, &Found::ambiguous},
+    {&Ring::resolved, &Found::resolved}};
+constexpr std::pair<double Ring::*, double Found::*> kNumbers[] = {
+    {&Ring::normal_n, &Found::normal_n},
+    {&Ring::area_mm2, &Found::area_mm2},
+    {&Ring::peak_n, &Found::peak_n}};
+constexpr std::pair<double Ring::*, double Found::*> kOfPillars[] = {
+    {&Ring::shear_x_n, &Found::shear_x_n},
+    {&Ring::shear_y_n, &Found::shear_y_n},
+    {&Ring::torque_nmm, &Found::torque_nmm}};
+constexpr std::pair<std::pair<double Ring::*, double Ring::*>, PatchPlace Found::*> kPlaces[] = {
+    {{&Ring::centre_x_mm, &Ring::centre_y_mm}, &Found::centre_of_pressure},
+    {{&Ring::middle_x_mm, &Ring::middle_y_mm}, &Found::centre},
+    {{&Ring::peak_x_mm, &Ring::peak_y_mm}, &Found::peak}};
+constexpr std::pair<double Ring::*, std::optional<double> Found::*> kIfKnown[] = {
+    {&Ring::friction, &Found::friction},
+    {&Ring::friction_deviation, &Found::friction_deviation},
+    {&Ring::slip_margin, &Found::slip_margin},
+    {&Ring::slipping_share, &Found::slipping_share}};
+constexpr std::pair<double Ring::*, std::optional<double> SlipForecast::*> kTimes[] = {
+    {&Ring::time_to_slip_s, &SlipForecast::time_s},
+    {&Ring::time_to_slip_low_s, &SlipForecast::low_s},
+    {&Ring::time_to_slip_high_s, &SlipForecast::high_s}};
 
 static_assert(static_cast<int>(SlipState::sticking) == PILLARFIELD_STICKING &&
               static_cast<int>(SlipState::partial) == PILLARFIELD_PARTIAL_SLIP &&
@@ -22,25 +52,6 @@ std::optional<double> if_known(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-void set_forecast(PillarfieldContact& contact, const std::optional<SlipForecast>& forecast) {
-  contact.time_to_slip_s = contact.time_to_slip_low_s = contact.time_to_slip_high_s = kNotKnown;
-  std::ranges::fill(contact.slip_within, kNotKnown);
-  if (!forecast) return;
-  contact.time_to_slip_s = forecast->time_s.value_or(kNever);
-  contact.time_to_slip_low_s = forecast->low_s.value_or(kNever);
-  contact.time_to_slip_high_s = forecast->high_s.value_or(kNever);
-  std::ranges::copy(forecast->probability, contact.slip_within);
-}
-
-std::optional<SlipForecast> forecast_from(const PillarfieldContact& contact) {
-  if (!std::isfinite(contact.slip_within[0])) return std::nullopt;
-  SlipForecast forecast = {.time_s = if_known(contact.time_to_slip_s),
-                           .low_s = if_known(contact.time_to_slip_low_s),
-                           .high_s = if_known(contact.time_to_slip_high_s)};
-  std::ranges::copy(contact.slip_within, forecast.probability.begin());
-  return forecast;
-}
-
 template <class State>
 State state_from(std::uint32_t value, State last) {
   return value <= static_cast<std::uint32_t>(last) ? static_cast<State>(value) : State{};
@@ -49,31 +60,24 @@ State state_from(std::uint32_t value, State last) {
 }  // namespace
 
 PillarfieldContact ring_contact(const ContactQuantities& of) {
-  const auto of_pillars = [&](double value) { return of.has_shear ? value : kNotKnown; };
-  PillarfieldContact contact = {};
-  contact.pillars = of.pillars;
-  contact.ambiguous = of.ambiguous;
-  contact.resolved = of.resolved;
-  contact.slip = static_cast<std::uint32_t>(of.slip);
-  contact.friction_source = static_cast<std::uint32_t>(of.friction_source);
-  contact.shear_x_n = of_pillars(of.shear_x_n);
-  contact.shear_y_n = of_pillars(of.shear_y_n);
-  contact.normal_n = of.normal_n;
-  contact.torque_nmm = of_pillars(of.torque_nmm);
-  contact.centre_x_mm = of.centre_of_pressure.x_mm;
-  contact.centre_y_mm = of.centre_of_pressure.y_mm;
-  contact.middle_x_mm = of.centre.x_mm;
-  contact.middle_y_mm = of.centre.y_mm;
-  contact.area_mm2 = of.area_mm2;
-  contact.peak_n = of.peak_n;
-  contact.peak_x_mm = of.peak.x_mm;
-  contact.peak_y_mm = of.peak.y_mm;
-  contact.friction = of.friction.value_or(kNotKnown);
-  contact.friction_deviation = of.friction_deviation.value_or(kNotKnown);
-  contact.slip_margin = of.slip_margin.value_or(kNotKnown);
-  contact.slipping_share = of.slipping_share.value_or(kNotKnown);
-  set_forecast(contact, of.slip_forecast);
-  return contact;
+  PillarfieldContact to = {};
+  for (const auto& [ring, found] : kCounts) to.*ring = of.*found;
+  for (const auto& [ring, found] : kNumbers) to.*ring = of.*found;
+  for (const auto& [ring, found] : kOfPillars) to.*ring = of.has_shear ? of.*found : kNotKnown;
+  for (const auto& [ring, found] : kPlaces) {
+    to.*ring.first = (of.*found).x_mm;
+    to.*ring.second = (of.*found).y_mm;
+  }
+  for (const auto& [ring, found] : kIfKnown) to.*ring = (of.*found).value_or(kNotKnown);
+  to.slip = static_cast<std::uint32_t>(of.slip);
+  to.friction_source = static_cast<std::uint32_t>(of.friction_source);
+  const auto& forecast = of.slip_forecast;
+  for (const auto& [ring, found] : kTimes) {
+    to.*ring = forecast ? (*forecast.*found).value_or(kNever) : kNotKnown;
+  }
+  std::ranges::fill(to.slip_within, kNotKnown);
+  if (forecast) std::ranges::copy(forecast->probability, to.slip_within);
+  return to;
 }
 
 PillarfieldContact ring_contact(const TrackedContact& tracked) {
@@ -84,36 +88,26 @@ PillarfieldContact ring_contact(const TrackedContact& tracked) {
   return contact;
 }
 
-TrackedContact contact_from(const PillarfieldContact& contact, double time_s, SkinLayout layout) {
+TrackedContact contact_from(const PillarfieldContact& of, double time_s, SkinLayout layout) {
   TrackedContact tracked;
-  tracked.track_id = contact.track_id;
-  tracked.label = contact.label;
-  tracked.first_time_s = contact.first_time_s;
-  tracked.age_s = time_s - contact.first_time_s;
+  tracked.track_id = of.track_id;
+  tracked.label = of.label;
+  tracked.first_time_s = of.first_time_s;
+  tracked.age_s = time_s - of.first_time_s;
   ContactQuantities& to = tracked.quantities;
-  to.pillars = contact.pillars;
-  to.ambiguous = contact.ambiguous;
-  to.resolved = contact.resolved;
   to.has_shear = layout == SkinLayout::pillars;
-  if (to.has_shear) {
-    to.shear_x_n = contact.shear_x_n;
-    to.shear_y_n = contact.shear_y_n;
-    to.torque_nmm = contact.torque_nmm;
-  }
-  to.normal_n = contact.normal_n;
-  to.centre_of_pressure = {contact.centre_x_mm, contact.centre_y_mm};
-  to.centre = {contact.middle_x_mm, contact.middle_y_mm};
-  to.area_mm2 = contact.area_mm2;
-  to.peak_n = contact.peak_n;
-  to.peak = {contact.peak_x_mm, contact.peak_y_mm};
+  for (const auto& [ring, found] : kCounts) to.*found = of.*ring;
+  for (const auto& [ring, found] : kNumbers) to.*found = of.*ring;
+  for (const auto& [ring, found] : kOfPillars) to.*found = to.has_shear ? of.*ring : 0;
+  for (const auto& [ring, found] : kPlaces) to.*found = {of.*ring.first, of.*ring.second};
+  for (const auto& [ring, found] : kIfKnown) to.*found = if_known(of.*ring);
   to.mean_pressure_kpa = to.area_mm2 > 0 ? 1000 * to.normal_n / to.area_mm2 : 0;
-  to.friction = if_known(contact.friction);
-  to.friction_deviation = if_known(contact.friction_deviation);
-  to.friction_source = state_from(contact.friction_source, FrictionSource::carried_over);
-  to.slip = state_from(contact.slip, SlipState::sliding);
-  to.slip_margin = if_known(contact.slip_margin);
-  to.slipping_share = if_known(contact.slipping_share);
-  to.slip_forecast = forecast_from(contact);
+  to.friction_source = state_from(of.friction_source, FrictionSource::carried_over);
+  to.slip = state_from(of.slip, SlipState::sliding);
+  if (!if_known(of.slip_within[0])) return tracked;
+  SlipForecast& forecast = to.slip_forecast.emplace();
+  for (const auto& [ring, found] : kTimes) forecast.*found = if_known(of.*ring);
+  std::ranges::copy(of.slip_within, forecast.probability.begin());
   return tracked;
 }
 

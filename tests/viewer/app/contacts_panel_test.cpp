@@ -60,7 +60,9 @@ TEST(FormatContact, TellsWhenItSlips) {
   contact.slip_forecast->time_s = 1e9;
   EXPECT_EQ(slips_in(), "> 60 s");
   contact.slip_forecast->time_s.reset();
+  contact.slip_forecast->low_s.reset();
   EXPECT_EQ(slips_in(), "–");
+  EXPECT_NE(format_slip_details(contact).find("does not slip (95 %)"), std::string::npos);
 }
 
 TEST(FormatContact, OfSenselsHasNoShear) {

@@ -11,6 +11,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
 #include "tests/viewer/source/touched_field.h"
+#include "viewer/source/live_player.h"
 #include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {

@@ -235,7 +235,7 @@ std::vector<ContactColumn> shear_columns() {
            [](const ContactQuantities& contact) {
              return three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n));
            }},
-          {"µ", "friction", "0.00", format_friction},
+          {"µ", "friction", "00.00", format_friction},
           {"slip", "sticking, partial or sliding", "sticking", format_slip},
           {"slips in", "seconds until the whole contact slides at the present rates", "00.0 s",
            format_time_to_slip},
@@ -285,7 +285,9 @@ std::string format_slip_details(const ContactQuantities& contact) {
     return time_s ? fmt::format("{:.2f} s", *time_s) : "never";
   };
   if (!words.empty()) words += "\n";
-  words += fmt::format("slips in {} … {} (95 %)", end(forecast->low_s), end(forecast->high_s));
+  words += forecast->low_s
+               ? fmt::format("slips in {} … {} (95 %)", end(forecast->low_s), end(forecast->high_s))
+               : "does not slip (95 %)";
   for (std::size_t i = 0; i < forecast->probability.size(); ++i) {
     words += fmt::format("\nslips within {} s  {:.0f} %", SlipForecast::kWithinS[i],
                          100 * forecast->probability[i]);

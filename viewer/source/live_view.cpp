@@ -1,4 +1,4 @@
-#include "viewer/source/newest_field.h"
+#include "viewer/source/live_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ void NewestField::set(ShownField field) {
   wake_display();
 }
 
-void NewestField::fail(std::exception_ptr failure) {
+void NewestField::end(std::exception_ptr failure) {
   {
     const std::scoped_lock lock(mutex_);
     failed_ = std::move(failure);
@@ -80,6 +80,16 @@ double FieldClock::time_s(double sensor_s, std::chrono::nanoseconds arrived) {
   last_s_ = follows ? by_sensor_s : std::max(arrived_s, last_s_ + kLeastStepS);
   offset_s_ = last_s_ - sensor_s;
   return last_s_;
+}
+
+PlayerState LiveView::state_after(std::uint64_t frames, double rate_hz) const {
+  return {.frame = frames,
+          .frames = 0,
+          .playing = !wanted_.paused,
+          .loops = false,
+          .follows = true,
+          .speed = 1,
+          .rate_hz = rate_hz};
 }
 
 }  // namespace pillarfield::viewer
