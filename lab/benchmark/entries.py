@@ -84,7 +84,8 @@ def training(seed, number):
     """Histories of other bodies: ellipsoids that are dragged until they slide, and on round corners."""
     rng = np.random.default_rng(seed)
     for index in range(number):
-        friction, degrees, size, shape = rng.uniform((0.7, 0, 1.5, 0.8), (4.5, 360, 12, 1.25))
+        friction, size = np.exp(rng.uniform(np.log((0.7, 1.5)), np.log((4.5, 12))))
+        degrees, shape = rng.uniform((0, 0.8), (360, 1.25))
         frames = generate.drag_and_slide((28, 28), size, friction, degrees, (shape, 1 / shape), rng.uniform(-0.5, 0.5, 2),
                                          (0, 0.3, 0.6, 0.9), [(turn, 1) for turn in (0, *rng.uniform(-90, 90, 2))])
         yield generate.history(frames, friction, (seed, index))

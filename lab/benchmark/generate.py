@@ -82,8 +82,8 @@ def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), share
 
 def drag_back(friction):
     x, y = cells(24, 24)
-    shares = [(share, None) for share in (0, 0.4, 0.7, 0.9)] + [(share, 0.9) for share in (0.6, 0.2, -0.2, -0.5, -0.7, -0.85)]
-    return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), *share) for share in shares]
+    return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), share, 0.9 if t > 3 else None)
+            for t, share in enumerate((0, 0.4, 0.7, 0.9, 0.6, 0.2, -0.2, -0.5, -0.7, -0.85))]
 
 
 def pressed_askew():
@@ -133,11 +133,9 @@ def rough_ball():
     places = 2.6 * np.mgrid[-2:3, -2:3].reshape(2, 25).T + rng.uniform(-0.2, 0.2, (25, 2))
     hills = [(rng.uniform(0.6, 1.1), *place) for place in places if np.hypot(*place) < 7]
 
-    def frame(way):
-        return np.sum([dragged(lambda part, at=at, size=size: hertz(x - at[0], y - at[1], size * part), 3, 3.0, 0.15,
-                               1 - max(0, 1 - way / size**2)**1.5) for size, *at in hills], axis=0)
-
-    return [frame(way) for way in (0, 0.15, 0.3, 0.45, 0.6, 0.8, 1, 1.3)]
+    return [np.sum([dragged(lambda part, at=at, size=size: hertz(x - at[0], y - at[1], size * part), 3, 3.0, 0.15,
+                            1 - max(0, 1 - way / size**2)**1.5) for size, *at in hills], axis=0)
+            for way in (0, 0.15, 0.3, 0.45, 0.6, 0.8, 1, 1.3)]
 
 
 def edge(friction):

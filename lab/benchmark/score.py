@@ -48,8 +48,8 @@ def score(history, forces, slip=None):
     slip = np.full(len(forces), -1) if slip is None else np.asarray(slip)
     if forces.shape != history.truth.shape or slip.shape != forces.shape[:1] or not np.isfinite(forces).all():
         raise ValueError(f"{history.name}: forces {forces.shape} and slip {slip.shape}; give {history.truth.shape} "
-                      f"finite forces and {history.truth.shape[:1]} states")
-    squares = history.skin[0]**2 * ((forces - history.truth)**2).sum(1)
+                         f"finite forces and {history.truth.shape[:1]} states")
+    squares = history.skin[0]**2 * ((forces - history.truth)**2).sum(1)  # counts^2
     region = regions(sensels(history.readings) > history.skin[1])
     off, total = (np.linalg.norm(each.sum((2, 3)), axis=1) for each in (forces - history.truth, history.truth))
     right = slip == slip_states(history.slip_share)
@@ -64,16 +64,14 @@ def score(history, forces, slip=None):
 
 def seconds_a_frame(solve, histories):
     """Processor time of a further frame: that of each history many times over, less that of once."""
-    def timed(frames):
-        start = time.process_time()
-        solve(frames, *history.skin)
-        return time.process_time() - start
-
     total = frames = 0
     for history in histories:
-        once = timed(history.readings)
-        times = int(np.clip(SECONDS / max(once, 1e-6), 3, 500))
-        total += timed(np.concatenate([history.readings] * times)) - once
+        before = time.process_time()
+        solve(history.readings, *history.skin)
+        start = time.process_time()
+        times = int(np.clip(SECONDS / max(start - before, 1e-6), 3, 500))
+        solve(np.concatenate([history.readings] * times), *history.skin)
+        total += time.process_time() - start - (start - before)
         frames += (times - 1) * len(history.readings)
     return total / frames
 

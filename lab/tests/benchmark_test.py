@@ -51,11 +51,9 @@ class Scores(unittest.TestCase):
         generate.write(Path(self.folder.name, "edge.h5"), *generate.make("edge"))
         self.history = score.History(Path(self.folder.name, "edge.h5"))
 
-    def test_the_truth_scores_zero(self):
+    def test_the_truth_scores_zero_and_an_offset_itself(self):
         found = score.score(self.history, self.history.truth, score.slip_states(self.history.slip_share))
         self.assertEqual(list(found.values()), [0, 0, 0, 0, 100, 0])
-
-    def test_an_offset_scores_itself(self):
         offset = np.array([3, 0, -4]).reshape(1, 3, 1, 1) / generate.K
         found = score.score(self.history, self.history.truth + offset, [1, -1, -1, -1, -1, -1, -1, 2, 2])  # first: 0
         np.testing.assert_allclose(list(found.values())[:3], 5)
