@@ -39,7 +39,7 @@ def lengths(v, threshold):
 
 
 def forces_of(v, k, threshold, diagonal):
-    """Forces [T, 3, P, Q] of sensels [T, P, Q, 4]; diagonal [T, P, Q]: the sum of one where none is usable as a whole."""
+    """Forces [T, 3, P, Q] of sensels [T, P, Q, 4]; diagonal [T, P, Q]: the sum of one where neither is usable."""
     usable, other = v > threshold, np.roll(v, 2, -1)
     whole = usable & (other > threshold)
     total = np.where(whole.any(-1), np.where(whole, v + other, 0).sum(-1) / np.maximum(whole.sum(-1), 1), diagonal)
@@ -49,9 +49,10 @@ def forces_of(v, k, threshold, diagonal):
     return np.stack([(v1 + v4 - v2 - v3) / 8**0.5, (v1 + v2 - v3 - v4) / 8**0.5, (v1 + v2 + v3 + v4) / 4], 1)
 
 
-def penalty(readings, k, threshold, friction=2.0, weight=0.3, steps=100):
+def penalty(readings, k, threshold, friction=2.0, weight=1.0, steps=100):
     """Least sum over neighbours (N_i - N_j)^2 + weight * sum max(0, |s| - friction N)^2 on the segments, by projected
-    gradients. Friction and weight: the best of a grid on histories of training()."""
+    gradients; the shear towards the usable sensels falls by sqrt(2) times the diagonal. Friction and weight: the best of a
+    grid on histories of training()."""
     v = sensels(readings.astype(float))
     length, loaded = lengths(v, threshold), np.pad((v > threshold).any(-1), ((0, 0), (1, 1), (1, 1)))
     diagonal = length / 2
@@ -60,7 +61,6 @@ def penalty(readings, k, threshold, friction=2.0, weight=0.3, steps=100):
         shear, padded = np.hypot(x, y), np.pad(n, ((0, 0), (1, 1), (1, 1)))
         around = sum((np.roll(loaded, *way) * (padded - np.roll(padded, *way)))[:, 1:-1, 1:-1]
                      for way in ((1, 1), (-1, 1), (1, 2), (-1, 2)))
-        # The shear towards the usable sensels falls by sqrt(2) times the diagonal.
         slope = 2**0.5 * np.maximum(abs(x), abs(y)) / np.maximum(shear, 1e-9) + friction
         slope = around - weight * np.maximum(shear - friction * n, 0) * slope
         diagonal = np.clip(diagonal - slope / (8 + weight * (2**0.5 + friction)**2), 0, length)
@@ -68,8 +68,8 @@ def penalty(readings, k, threshold, friction=2.0, weight=0.3, steps=100):
 
 
 def patches(readings, threshold):
-    """Places of the pillars of region 3, and for each the readings of 5 x 5 pillars in this frame and the one before, over
-    the sum of its own, turned so that the usable sensels point to +x."""
+    """Places of the pillars of region 3; the readings of 5 x 5 pillars around each in this frame and the one before, over
+    the sum of its own, turned so that its usable sensels are at +x."""
     usable = sensels(readings) > threshold
     places = np.nonzero(regions(usable) == 3)
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(readings.astype(float), ((1, 0), (4, 4), (4, 4))), (2, 10, 10))
@@ -91,29 +91,27 @@ def training(seed, number):
         yield generate.history(frames, friction, (seed, index))
 
 
-def lifted(features, weights):
-    """Rectified random projections of patches, and a constant."""
-    return np.pad(np.maximum(features @ weights[:-1] + weights[-1], 0), ((0, 0), (0, 1)), constant_values=1)
-
-
 @functools.lru_cache
 def trained(hidden=600, ridge=3.0):
-    """Weights of the random features, and of the ridge regression from them to the place on the segment, 0 to 1."""
+    """The function from patches to the place on the segment, 0 to 1: ridge regression on rectified random projections."""
     inputs, targets = [], []
     for readings, forces, *_ in training(1000, 40):
         places, features = patches(readings, generate.THRESHOLD)
         inputs.append(features)
         targets.append(2 * generate.K * forces[:, 2][places] / lengths(sensels(readings), generate.THRESHOLD)[places])
     random = np.random.default_rng(1).normal(0, 1 / 200**0.5, (201, hidden))
-    lift = lifted(np.vstack(inputs), random)
-    return random, np.linalg.solve(lift.T @ lift + ridge * np.eye(hidden + 1),
-                                   lift.T @ np.clip(np.concatenate(targets), 0, 1))
+
+    def lifted(features):
+        return np.column_stack([np.maximum(features @ random[:-1] + random[-1], 0), np.ones(len(features))])
+
+    lift = lifted(np.vstack(inputs))
+    output = np.linalg.solve(lift.T @ lift + ridge * np.eye(hidden + 1), lift.T @ np.clip(np.concatenate(targets), 0, 1))
+    return lambda features: np.clip(lifted(features) @ output, 0, 1)
 
 
 def learnt(readings, k, threshold):
     v = sensels(readings.astype(float))
-    places, features = patches(readings, threshold)
-    random, output = trained()
     diagonal = lengths(v, threshold)
-    diagonal[places] *= np.clip(lifted(features, random) @ output, 0, 1)
+    places, features = patches(readings, threshold)
+    diagonal[places] *= trained()(features)
     return forces_of(v, k, threshold, diagonal), None

@@ -1,7 +1,7 @@
 """generate.py FOLDER: writes the twelve histories of the open benchmark (docs/histories.md), the same bytes each time.
 
-A history is a list of frames (p, qx, qy), pressure and shear on the skin in any unit, on square cells: arrays [rows,
-columns], row 0 at +y. Lengths are in pillars. Closed forms: K. L. Johnson, Contact Mechanics (1985), chapters 4, 7, 8."""
+A history is a list of frames (p, qx, qy), pressure and shear on the skin in any unit: arrays of cells, row 0 at +y;
+lengths are in pillars. Closed forms: K. L. Johnson, Contact Mechanics (1985), chapters 4, 7 and 8."""
 
 import sys
 from pathlib import Path
@@ -42,9 +42,9 @@ def along(p, q, angle):
 
 
 def dragged(pressure, order, friction, angle, share, before=None):
-    """Cattaneo's and Mindlin's partial slip: shear of `share` (-1 to 1) of the friction at a constant load, from zero, or
-    from a drag to the share `before` that turned back. pressure(s): of the contact scaled by s, whose load grows with
-    s**order (3 of a point, 2 of a line)."""
+    """Cattaneo's and Mindlin's partial slip: shear of `share` of the friction at a constant load, after none or, turning
+    back, after the share `before`. pressure(s): of the contact scaled by s, whose load grows with s**order (3; 2 of a
+    line)."""
     p = pressure(1)
     q = p - pressure((1 - (share if before is None else before))**(1 / order))
     if before is not None:
@@ -67,22 +67,23 @@ def rolling(x, y, half, length, friction, share, angle, at):
     return along(p, np.sign(share) * friction * (p - line(ahead - half + stick, side, stick, length)), angle)
 
 
-def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), shares=DRAG, slides=((0, 1), (0, 1), (0, 1))):
+def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), shares=DRAG, slides=3 * ((0, 1),)):
     """An ellipsoid is dragged until it slides, a third of a pillar a frame; slides: its turn, degrees, and its size."""
     x, y = cells(*grid)
     angle = np.radians(degrees)
     frames = [dragged(lambda part: hertz(x - at[0], y - at[1], size * part, radii), 3, friction, angle, share)
               for share in shares]
     for turn, scale in slides:
-        step = np.cos(angle + np.radians(turn)) / 3, np.sin(angle + np.radians(turn)) / 3
-        at = np.add(at, step)
+        step = np.array([np.cos(angle + np.radians(turn)), np.sin(angle + np.radians(turn))]) / 3
+        at = at + step
         frames.append(sliding(x, y, hertz(x - at[0], y - at[1], size * scale, radii), friction, step))
     return frames
 
 
 def drag_back(friction):
     x, y = cells(24, 24)
-    return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), share, 0.9 if t > 3 else None)
+    return [dragged(lambda part: hertz(x - 0.2, y + 0.3, 9 * part), 3, friction, np.radians(80), share,
+                    0.9 if t > 3 else None)
             for t, share in enumerate((0, 0.4, 0.7, 0.9, 0.6, 0.2, -0.2, -0.5, -0.7, -0.85))]
 
 
@@ -117,17 +118,15 @@ def roller(friction, share, degrees):
 def punch_pushed():
     """A flat punch sticks all over until it slides all over; the singular pressure of its rim is cut off."""
     x, y = cells(20, 20)
-    frames = []
-    for t, ratio in enumerate((0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6)):
-        r2 = (x**2 + (y - 0.4 + 0.3 * max(0, t - 7))**2) / 36
-        p = np.where(r2 < 1, 1 / np.sqrt(np.maximum(1 - r2, 0.02)), 0)
-        frames.append(along(p, ratio * p, np.radians(-85)))
-    return frames
+    r2 = [(x**2 + (y - 0.4 + 0.3 * max(0, t - 7))**2) / 36 for t in range(10)]
+    pressures = [np.where(each < 1, 1 / np.sqrt(np.maximum(1 - each, 0.02)), 0) for each in r2]
+    return [along(p, ratio * p, np.radians(-85)) for p, ratio in
+            zip(pressures, (0, 0.5, 1, 1.5, 2, 2.3, 2.5, 2.6, 2.6, 2.6))]
 
 
 def rough_ball():
-    """A ball on the contacts of its hills. Each has Mindlin's share of shear for the way of the ball, slides from the way
-    size**2 on, and does not feel the others."""
+    """A ball on the contacts of its hills: each has Mindlin's share of shear for the way of the ball, and slides from the
+    way size**2 on."""
     x, y = cells(24, 28)
     rng = np.random.default_rng(11)
     places = 2.6 * np.mgrid[-2:3, -2:3].reshape(2, 25).T + rng.uniform(-0.2, 0.2, (25, 2))
@@ -173,7 +172,7 @@ def model(forces):
 
 
 def history(frames, friction, seed):
-    """Readings [T, R, C], uint8; forces [T, 3, P, Q], N, scaled to the peak; share of the load that slips [T]; friction."""
+    """Readings [T, R, C]; forces [T, 3, P, Q], N, scaled to the peak; share of the load that slips [T]; friction."""
     p, qx, qy = np.moveaxis(np.array(frames), 1, 0)
     slips = np.hypot(qx, qy) >= 0.999 * friction * p
     rows, cols = np.array(p.shape[1:]) // PER_PILLAR

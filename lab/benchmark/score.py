@@ -10,7 +10,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-STICKING, SLIDING = 0.1, 0.9  # shares of the load that slips, up to which and from which a frame is in that state
 SECONDS = 0.5  # about the time of a history many times over, by which an entry is timed
 
 
@@ -39,8 +38,8 @@ def regions(usable):
 
 
 def slip_states(share):
-    """0 sticking, 1 partial, 2 sliding."""
-    return 1 - (share <= STICKING) + (share >= SLIDING)
+    """0 sticking, 1 partial, 2 sliding, from the share of the load that slips."""
+    return 1 - (share <= 0.1) + (share >= 0.9)
 
 
 def score(history, forces, slip=None):
@@ -101,7 +100,7 @@ def table(found):
 
 
 def run(folder, entries):
-    """The histories of a folder, and what evaluate() finds of each entry. Modules are sought in the working folder too."""
+    """The histories of a folder, and what evaluate() finds of each entry."""
     sys.path.append(".")
     histories = [History(path) for path in sorted(Path(folder).glob("*.h5"))]
     if not histories:
