@@ -28,6 +28,7 @@ void NamedBoxes::set(const Skin& skin, std::vector<NamedBox> boxes) {
   const Size size = size_of(skin);
   std::erase_if(sizes_, [&](const Sized& each) { return each.size == size; });
   if (boxes.empty()) return;
+  for (NamedBox& box : boxes) box.cached.reset();  // Another source has other sums.
   sizes_.insert(sizes_.begin(), {size, std::move(boxes)});
   if (sizes_.size() > kMostSizes) sizes_.pop_back();
 }

@@ -38,7 +38,10 @@ TEST(NamedBoxes, AreOfOneSizeAndLayoutOfSkin) {
   const std::vector<NamedBox> of_pillars{{"left heel", {1, 4, 2, 9}, 1},
                                          {"Fußballen", {0, 20, 0, 30}, 2}};
   const std::vector<NamedBox> of_sensels{{"  3 7", {19, 20, 29, 30}, 1}};
-  boxes.set(skin_of(20, 30), of_pillars);
+  std::vector<NamedBox> with_sums = of_pillars;
+  with_sums[0].cached.emplace();
+  boxes.set(skin_of(20, 30), with_sums);
+  EXPECT_FALSE(boxes.on(skin_of(20, 30))[0].cached);
   boxes.set(skin_of(20, 30, SkinLayout::sensels), of_sensels);
   const NamedBoxes again = from_text(boxes.text());
   EXPECT_EQ(again.on(skin_of(20, 30)), of_pillars);
