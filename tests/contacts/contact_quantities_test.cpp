@@ -5,12 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <string>
 
 #include "pillarfield/contact_tracker.h"
-#include "pillarfield/host_solve.h"
-#include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -162,6 +158,11 @@ TEST(Slip, StateGoesByTheShareThatSlips) {
   EXPECT_DOUBLE_EQ(*band(30, 70, 0, 0.5).slipping_share, 0.3);
 }
 
+TEST(Slip, APillarSlipsFromNineTenthsOfTheFrictionOn) {
+  EXPECT_EQ(band(100, 0, 0, 0.5 / 0.93).slip, SlipState::sliding);
+  EXPECT_EQ(band(100, 0, 0, 0.5 / 0.91).slip, SlipState::sticking);
+}
+
 TEST(Slip, PillarsLeftOpenMayMakeItUnknown) {
   using enum SlipState;
   EXPECT_EQ(band(0, 91, 9, 0.5).slip, sticking);
@@ -198,6 +199,7 @@ TEST(Slip, MarginIsOfTheSums) {
   const ContactQuantities contact = band(50, 50, 0, 0.5);
   EXPECT_NEAR(*contact.slip_margin, 1 - 0.3 / 0.5, 1e-6);
   EXPECT_EQ(contact.friction_source, FrictionSource::given);
+  EXPECT_NEAR(*band(100, 0, 0, 0.4).slip_margin, 1 - 0.5 / 0.4, 1e-6);  // beyond the friction
 }
 
 TEST(Slip, IsForetoldFromTheFourthFrameOfATrack) {
@@ -222,15 +224,16 @@ double rounded(std::uint32_t i, std::uint32_t count) {
 }
 
 /// A contact of `rows` x `cols` pillars under a rounded body. A seventh of the pillars sticks; the
-/// others slip in various directions, with a little noise.
-ForceField mostly_sliding(std::uint32_t rows, std::uint32_t cols, double friction) {
+/// others slip in various directions, with a little noise. The friction varies by `variation`.
+ForceField mostly_sliding(std::uint32_t rows, std::uint32_t cols, double friction,
+                          double variation = 0) {
   ForceField field(rows + 2, cols + 2);
   for (std::uint32_t i = 0; i < rows * cols; ++i) {
     const std::uint32_t row = i / cols;
     const std::uint32_t col = i % cols;
     const double normal = rounded(row, rows) * rounded(col, cols);
     const double direction = 0.1 * i;
-    const double noise = 1 + 0.02 * std::sin(1.7 * i);
+    const double noise = 1 + 0.02 * std::sin(1.7 * i) + variation * std::sin(0.6 * col);
     const bool sticks = i * 2654435761U % 7 == 0;
     const double shear = normal * (sticks ? 0.3 * friction : friction * noise);
     load(field, row + 1, col + 1, static_cast<float>(shear * std::cos(direction)),
@@ -264,6 +267,18 @@ TEST(Friction, OfARoundedBodyIsObservedAndCarriedOver) {
   EXPECT_EQ(stuck.slip, SlipState::sticking);
   EXPECT_EQ(stuck.friction_source, FrictionSource::carried_over);
   EXPECT_NEAR(*stuck.friction, 0.7, 0.02);
+}
+
+TEST(Friction, OfAnUnevenBodyHasADeviationThatSaysSo) {
+  double narrower = 0.03;  // of an even body
+  for (const double variation : {0.0, 0.1, 0.2}) {
+    const ContactQuantities contact = only_contact(mostly_sliding(20, 24, 0.7, variation));
+    ASSERT_TRUE(contact.friction_deviation) << variation;
+    EXPECT_NEAR(*contact.friction, 0.7, 1.96 * *contact.friction_deviation) << variation;
+    if (variation > 0) EXPECT_GT(*contact.friction_deviation, 1.3 * narrower) << variation;
+    EXPECT_LT(*contact.friction_deviation, 0.03 + 0.7 * variation) << variation;
+    narrower = *contact.friction_deviation;
+  }
 }
 
 TEST(Friction, WithoutMemoryIsNotCarriedOver) {
@@ -368,105 +383,6 @@ TEST(Friction, OfALargeContactIsSeenInSomeOfItsPillars) {
     // Slip is summed over all pillars.
     EXPECT_NEAR(*contact.slipping_share, 6.0 / 7, 0.03) << rows << " x " << cols;
   }
-}
-
-/// A scene, solved and tracked frame by frame.
-class SolvedScene {
- public:
-  explicit SolvedScene(const std::string& name)
-      : simulator_(load_scene(std::string(PILLARFIELD_SCENES) + "/" + name)),
-        raw_(simulator_.sensel_type(), scene().skin.rows, scene().skin.cols),
-        truth_(scene().skin.pillar_rows(), scene().skin.pillar_cols()),
-        tracker_(scene().skin.pillar_pitch_mm(), {.minimum_pillars = 5}) {
-    plan_.skin = scene().skin;
-    plan_.sensel_type = simulator_.sensel_type();
-    plan_.calibration = simulator_.calibration();
-    set_solver(plan_, scene());
-    plan_.angles = false;
-    plan_.uncertainty = false;
-  }
-
-  [[nodiscard]] const Scene& scene() const { return simulator_.scene(); }
-
-  const FrameContacts& frame(std::uint64_t index) {
-    simulator_.render(index, raw_, truth_);
-    const ForceField solved = solve_on_host(plan_, raw_.view());
-    return tracker_.update(solved.view(), simulator_.time_of(index));
-  }
-
-  /// Load and place of a contact of the scene.
-  [[nodiscard]] ContactKey key(std::size_t contact, double time_s) const {
-    const auto& path = std::get<std::vector<ClosedFormContact>>(scene().load).at(contact).path;
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      if (time_s > path[i].time_s) continue;
-      const ContactKey& a = path[i - 1];
-      const ContactKey& b = path[i];
-      const double part = (time_s - a.time_s) / (b.time_s - a.time_s);
-      return {time_s, a.x_mm + part * (b.x_mm - a.x_mm), a.y_mm + part * (b.y_mm - a.y_mm),
-              a.load_n + part * (b.load_n - a.load_n)};
-    }
-    return path.back();
-  }
-
- private:
-  Simulator simulator_;
-  SolverPlan plan_;
-  FrameBuffer raw_;
-  ForceField truth_;
-  ContactTracker tracker_;
-};
-
-/// Noise of half a count, rounding, and a threshold above the edge's readings.
-TEST(Scenes, SeveralContactsBearTheirLoads) {
-  SolvedScene scene("several_contacts.toml");
-  std::set<std::uint64_t> ids;
-  for (std::uint64_t index = 20; index < 95; index += 5) {
-    const FrameContacts& frame = scene.frame(index);
-    ASSERT_EQ(frame.contacts.size(), 3) << index;
-    double sum_n = 0;
-    for (const TrackedContact& tracked : frame.contacts) {
-      ids.insert(tracked.track_id);
-      const ContactQuantities& contact = tracked.quantities;
-      const PatchPlace& at = contact.centre_of_pressure;
-      const std::size_t which = at.y_mm > 0 ? 0 : at.x_mm < 0 ? 1 : 2;
-      const ContactKey key = scene.key(which, frame.time_s);
-      EXPECT_NEAR(contact.normal_n, key.load_n, 0.01 * key.load_n + 0.1);
-      EXPECT_NEAR(at.x_mm, key.x_mm, 0.1);
-      EXPECT_NEAR(at.y_mm, key.y_mm, 0.1);
-      sum_n += key.load_n;
-      if (which == 2) {  // a punch that turns: it might stick
-        EXPECT_EQ(contact.slip, SlipState::unknown) << index;
-        continue;
-      }
-      const double friction[] = {0.6, 1.0};
-      ASSERT_TRUE(contact.friction.has_value()) << index << " " << which;
-      EXPECT_NEAR(*contact.friction, friction[which], 0.03);
-      const double share[] = {1, 0.7};
-      EXPECT_NEAR(*contact.slip_margin, 1 - share[which], 0.05);
-      EXPECT_EQ(contact.slip, which == 1 ? SlipState::partial : SlipState::sliding) << index;
-    }
-    EXPECT_NEAR(frame.total.normal_n, sum_n, 0.01 * sum_n);
-  }
-  EXPECT_EQ(ids.size(), 3);
-}
-
-/// A spin has no resultant shear, but torque and slip.
-TEST(Scenes, SpinSlidesThoughItsShearCancels) {
-  SolvedScene scene("spin.toml");
-  const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
-  EXPECT_EQ(contact.slip, SlipState::sliding);
-  EXPECT_NEAR(*contact.friction, 1.6, 0.03);
-  EXPECT_GT(*contact.slip_margin, 0.99);
-  // Under a Hertz pressure, 3 pi / 16 times mu P a; clockwise.
-  EXPECT_NEAR(contact.torque_nmm, -3 * M_PI / 16 * 1.6 * 60 * 16, 0.1 * 900);
-}
-
-TEST(Scenes, PartialSlipAlongAnAxisShowsAFrictionOfWideDeviation) {
-  SolvedScene scene("partial_slip.toml");
-  const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
-  ASSERT_TRUE(contact.friction);
-  EXPECT_NEAR(*contact.friction, 1.6, 1.96 * *contact.friction_deviation);
-  EXPECT_GT(*contact.friction_deviation, 0.1);
 }
 
 }  // namespace

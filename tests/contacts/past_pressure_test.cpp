@@ -84,5 +84,49 @@ TEST(PastPressure, MovesWithTheContact) {
   EXPECT_GT(elsewhere.stated, elsewhere.error);
 }
 
+/// A face of five by four pillars that moved by 0.4 pillars to the right and then slips in its
+/// upper rows; the left half of it bears `left`, the rest 1 N.
+PastPressure moved_face(double left) {
+  PastPressure past;
+  for (const bool slips : {false, true}) {
+    ForceField field(kSide, kSide);
+    for (std::uint32_t row = 4; row < 9; ++row) {
+      for (std::uint32_t col = 4; col < (slips ? 9U : 8U); ++col) {
+        const std::size_t i = std::size_t{row} * kSide + col;
+        field.normal[i] = col < 6 ? static_cast<float>(left) : 1;
+        field.status[i] = slips && row < 6 ? 9 | status::kAmbiguous : status::kUsable;
+      }
+    }
+    ContactLabels labels;
+    labels.find(field.status, kSide, kSide);
+    past.begin(kSide, kSide, labels.runs_by_row());
+    past.update(field.view(), labels.runs(0), {0, slips ? 0.4 : 0}, kNoiseN, {.point = 1}, {});
+  }
+  return past;
+}
+
+TEST(PastPressure, IsKnownWhereMostOfThePlaceWasInContact) {
+  const PastPressure past = moved_face(1);
+  const auto at = [&](std::uint32_t col) { return past.at(5 * kSide + col, 10, kNoiseN); };
+  EXPECT_TRUE(at(4).has_value());   // 0.6 of it
+  EXPECT_FALSE(at(8).has_value());  // 0.4
+  EXPECT_FALSE(at(3).has_value());
+  EXPECT_FALSE(past.at(7 * kSide + 5, 10, kNoiseN).has_value());  // determined
+  EXPECT_NEAR(at(4)->normal, 1, 0.01);
+  EXPECT_EQ(past.at(5 * kSide + 4, 0.5, kNoiseN)->normal, 0.5 + kNoiseN);
+}
+
+TEST(PastPressure, StatesWhatTheFrameAndAnUncertainPlaceAdd) {
+  const auto deviation = [](const PastPressure& past, std::uint32_t col) {
+    return std::sqrt(past.at(5 * kSide + col, 10, kNoiseN)->variance);
+  };
+  // Three hundredths for a frame, and noise.
+  const double even = deviation(moved_face(1), 6);
+  EXPECT_GT(even, 0.03);
+  EXPECT_LT(even, 0.037);
+  // Halfway up a step of 1 N: a mean square difference of two places of 0.4 times 0.6 times 2.
+  EXPECT_GT(deviation(moved_face(2), 6), std::sqrt(0.48));
+}
+
 }  // namespace
 }  // namespace pillarfield

@@ -63,6 +63,11 @@ struct ContactParameters {
   double most_above = 0.02;
   /// Relative standard deviation of a reported friction beyond that of its posterior.
   double friction_deviation = 0.02;
+  /// Relative standard deviation of the friction over a contact, as known before its ratios are
+  /// seen: usual, as of so many pillars, and where its estimate starts.
+  double usual_scatter = 0.05;
+  double usual_scatter_pillars = 4;
+  double most_scatter = 0.15;
   /// Whether pillars remember their normal forces (contact.md, section 4): costly beside a solve
   /// that does not resolve them.
   bool past_pressure = true;

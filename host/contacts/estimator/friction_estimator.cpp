@@ -1,7 +1,9 @@
 #include "contacts/estimator/friction_estimator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace pillarfield {
@@ -17,6 +19,44 @@ constexpr double kPeakOverNoise = 64;
 FrictionKnowledge cautious(FrictionKnowledge knowledge, const ContactParameters& parameters) {
   knowledge.spread *= parameters.cautious_spread;
   return knowledge;
+}
+
+/// Relative standard deviation of the friction over a contact: the scatter about `friction` of the
+/// ratios of its slipping pillars beyond noise (section 5).
+double friction_scatter(const std::vector<ObservedRatio>& ratios, double friction,
+                        const ContactParameters& parameters) {
+  constexpr std::size_t kMostPillars = 48;
+  constexpr int kRounds = 3;
+  const double own = parameters.ratio_deviation * parameters.ratio_deviation;
+  const double usual = parameters.usual_scatter * parameters.usual_scatter;
+  const std::size_t step = (ratios.size() + kMostPillars - 1) / kMostPillars;
+  std::array<double, kMostPillars> apart{};
+  for (std::size_t i = 0; i * step < ratios.size(); ++i) {
+    apart[i] = std::log(ratios[i * step].ratio / friction);
+  }
+  double scatter = parameters.most_scatter * parameters.most_scatter;
+  double slipping = 0.5;
+  for (int round = 0; round < kRounds; ++round) {
+    double pillars = 1;
+    double slip_pillars = 0;
+    double squares = parameters.usual_scatter_pillars * usual;
+    for (std::size_t i = 0; i * step < ratios.size(); ++i, ++pillars) {
+      const double deviation = ratios[i * step].deviation;
+      const double variance = scatter + deviation * deviation - own;
+      const double square = apart[i] * apart[i];
+      if (square > 16 * variance) continue;
+      const double slips = slipping * std::exp(-0.5 * square / variance) /
+                           std::sqrt(2 * std::numbers::pi * variance);
+      const double sticks = apart[i] < 0 ? (1 - slipping) * (1 + apart[i]) : 0;
+      const double weight = slips / (slips + std::max(sticks, parameters.outliers));
+      const double share = scatter / variance;
+      squares += weight * (share * share * square + scatter * (1 - share));
+      slip_pillars += weight;
+    }
+    scatter = squares / (slip_pillars + parameters.usual_scatter_pillars);
+    slipping = (slip_pillars + 0.5) / pillars;
+  }
+  return std::sqrt(scatter);
 }
 
 double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> runs) {
@@ -232,7 +272,8 @@ ContactFriction FrictionEstimator::reported(std::uint32_t contact,
   if (!certain && may_stick(friction.median, work)) return friction;
   const bool observed = agrees && alone.spread() <= parameters_.reported_spread;
   friction.spread =
-      std::hypot(parameters_.stated_over_spread * friction.spread, parameters_.friction_deviation);
+      std::hypot(parameters_.stated_over_spread * friction.spread, parameters_.friction_deviation,
+                 friction_scatter(work.samples.ratios(), friction.median, parameters_));
   friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
 }
