@@ -111,7 +111,6 @@ namespace {
 
 constexpr std::size_t kBatchPillars = PressureRegression::kBatch;
 using Values = std::array<float, kBatchPillars>;
-using Doubles = PressureRegression::Values;
 
 /// Mean and mean square of the normal force over equally probable frictions `nodes`; a pillar
 /// sticks with probability `sticks`, else it slips (C8).
@@ -164,13 +163,13 @@ struct Batch {
   Values cautious_mean{};  ///< likewise, by FrictionBelief::cautious
   Values cautious_square{};
   PressureRegression::Predictions regression;
-  Doubles x{};  ///< place for the regression
-  Doubles y{};
-  Doubles past{};  ///< by PastPressure, N; 0 if unknown
-  Doubles past_variance{};
-  Doubles lean_square{};  ///< variance of the normal force due to the lean, N²
-  Doubles normal{};       ///< results: normal force and its deviation, N
-  Doubles deviation{};
+  PressureRegression::Values x{};  ///< place for the regression
+  PressureRegression::Values y{};
+  PressureRegression::Values past{};  ///< by PastPressure, N; 0 if unknown
+  PressureRegression::Values past_variance{};
+  PressureRegression::Values lean_square{};  ///< variance of the normal force due to the lean, N²
+  PressureRegression::Values normal{};       ///< results: normal force and its deviation, N
+  PressureRegression::Values deviation{};
   std::size_t pillars = 0;
 
   [[nodiscard]] FeasibleSegment segment(std::size_t i) const {

@@ -23,12 +23,6 @@ double ceiling_of(double shear_x, double shear_y, const SegmentModel& model) {
   return least > 0 ? std::numbers::sqrt2 * shear / least : ObservedRatio::kNoCeiling;
 }
 
-void prefetch([[maybe_unused]] const void* from) {
-#if defined(__GNUC__)
-  __builtin_prefetch(from);
-#endif
-}
-
 }  // namespace
 
 LeanShear lean_at(const ForceFieldView& forces, std::uint32_t index, float pitch_over_arm) {

@@ -67,6 +67,13 @@ void for_each_undetermined(const ForceFieldView& forces, std::span<const Contact
   for_each_marked(forces, runs, marks, use);
 }
 
+/// Prefetches what lies too far apart for hardware prefetching.
+inline void prefetch([[maybe_unused]] const void* from) {
+#if defined(__GNUC__)
+  __builtin_prefetch(from);
+#endif
+}
+
 /// Calls `use` with row and column of every `step`-th pillar of a contact.
 template <class Use>
 void for_each_of(std::span<const ContactRun> runs, std::uint32_t step, Use use) {

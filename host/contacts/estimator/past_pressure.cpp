@@ -74,6 +74,18 @@ PastPressure::Origin::Origin(const Movement& movement)
   weights = {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
 }
 
+void PastPressure::prefetch_before(std::span<const ContactRun> runs, const Origin& origin) const {
+  constexpr std::uint32_t kLine = 16;  // pillars
+  const auto pillars = static_cast<std::int64_t>(before_.normal.size());
+  for (const ContactRun& run : runs) {
+    const std::int64_t at = (run.row + origin.rows) * cols_ + origin.cols;
+    for (std::uint32_t col = run.first; col < run.end + kLine; col += kLine) {
+      const std::int64_t index = at + col;
+      if (index >= 0 && index < pillars) prefetch(&before_.normal[static_cast<std::size_t>(index)]);
+    }
+  }
+}
+
 /// The frame before between its pillars. Where they differ, so may the place meant.
 std::optional<PastPressure::Past> PastPressure::before(std::uint32_t row, std::uint32_t col,
                                                        const Origin& origin,
@@ -132,6 +144,7 @@ void PastPressure::update(const ForceFieldView& forces, std::span<const ContactR
                                         : forces.normal[index];
   };
   const Origin origin(movement);
+  prefetch_before(runs, origin);
   // Evenly spread pillars, which bounds the cost of large contacts.
   const std::uint32_t step = std::max(1U, pillars / kMostCompared);
   Load load;

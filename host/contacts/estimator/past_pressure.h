@@ -68,6 +68,7 @@ class PastPressure {
     std::array<double, 4> weights;  ///< upper left, upper right, lower left, lower right
   };
 
+  void prefetch_before(std::span<const ContactRun> runs, const Origin& origin) const;
   [[nodiscard]] std::optional<Past> before(std::uint32_t row, std::uint32_t col,
                                            const Origin& origin, double noise_square) const;
 
