@@ -87,7 +87,7 @@ def drag_back(friction):
             for t, share in enumerate((0, 0.4, 0.7, 0.9, 0.6, 0.2, -0.2, -0.5, -0.7, -0.85))]
 
 
-def pressed_askew():
+def pressed_obliquely():
     """A force that grows in one direction: the ball sticks, at one ratio of shear to pressure."""
     x, y = cells(14, 14)
     return [along(p, 1.9 * p, np.radians(4)) for p in
@@ -148,7 +148,7 @@ HISTORIES = {  # name: frames, friction
     "two balls": (lambda: np.add(drag_and_slide((26, 30), 5, 1.2, 30, at=(-7, 4)),
                                  drag_and_slide((26, 30), 4, 1.2, 215, at=(6, -5))), 1.2),
     "ball dragged back": (lambda: drag_back(2.2), 2.2),
-    "ball of 19 pillars": (pressed_askew, 3.0),
+    "ball of 19 pillars": (pressed_obliquely, 3.0),
     "fingertip": (lambda: drag_and_slide((26, 30), 9, 1.6, 15, (1.15, 0.8), slides=(
         (0, 1), (0, 1), (20, 1), (40, 1), (60, 1), (80, 1))), 1.6),
     "ball slides and spins": (lambda: slide_and_spin(1.8), 1.8),
