@@ -19,8 +19,8 @@ PF_INLINE Real outer_part(Real outer, Real inner) {
 PF_INLINE Real size_of(Real x) { return x < PF_REAL(0.0) ? -x : x; }
 
 /* The lean towards `after` of a pillar with the normal force `own`, N; the pillars in its line are
- * far_before, before, own, after, far_after. An odd polynomial in four ratios, exact in a pressure
- * that varies linearly, to third order; its coefficients are least squares over wide and narrow
+ * far_before, before, own, after, far_after. An odd polynomial in four ratios, exact to first
+ * order in a pressure that varies linearly; its coefficients are least squares over wide and narrow
  * bodies on an elastic half-space (lab/lean), and the deviation is what they leave. */
 PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
   const Real zero = PF_REAL(0.0);
@@ -36,17 +36,18 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   const Real s = high + low - one;
   const Real t = far_high + far_low - one;
   const Real d2 = d * d;
+  const Real e2 = e * e;
   const Real s2 = s * s;
-  const Real st = s * t;
-  const Real by_d = PF_REAL(0.16666666666666666667) +
-                    s * s2 * (PF_REAL(1.013) + PF_REAL(2.264) * s) +
-                    d2 * (PF_REAL(0.334) * d2 + PF_REAL(1.269) * st) + PF_REAL(0.048) * (e * e * t);
-  const Real by_e = s * st * (PF_REAL(1.875) + PF_REAL(1.224) * s);
+  const Real by_d = PF_REAL(0.16666666666666666667) - s2 * (PF_REAL(1.005) + PF_REAL(2.458) * s) +
+                    t * t * (PF_REAL(0.290) + PF_REAL(0.469) * t) -
+                    d2 * (PF_REAL(0.112) + PF_REAL(0.692) * s + PF_REAL(0.682) * t) +
+                    PF_REAL(0.515) * (e2 * s);
+  const Real by_e = PF_REAL(1.358) * (s2 * t) - PF_REAL(0.079) * e2;
   const Real part = d * by_d + e * by_e;
   const Real bounded =
       part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
-  const Real deviation = PF_REAL(0.0015) + s2 * (PF_REAL(0.145) + PF_REAL(0.723) * d2) +
-                         PF_REAL(0.041) * size_of(e - d) + PF_REAL(0.01) * (t * t);
+  const Real deviation = PF_REAL(0.003) + s2 * (PF_REAL(0.116) + PF_REAL(0.578) * d2) +
+                         PF_REAL(0.033) * size_of(e - d) + PF_REAL(0.01) * (t * t);
   Lean lean;
   lean.moment = loaded ? own * bounded : zero;
   lean.deviation = loaded ? own * deviation : zero;
@@ -150,8 +151,7 @@ PF_INLINE ShearRatio mean_ratio(ShearRatio own, RatioSum around) {
   const Real narrower = own.variance / (one + own.variance * around.weight);
   const Real shift = narrower * around.difference;
   const Real square = around.square - shift * around.difference;
-  const Real disagreement = PF_REAL(0.5) * (square < zero ? zero : square);
-  const Real wider = narrower * (one + disagreement);
+  const Real wider = narrower * (one + (square < zero ? zero : square));
   ShearRatio mean;
   mean.value = own.value + shift;
   mean.variance = wider < most ? wider : most;
