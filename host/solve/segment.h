@@ -43,10 +43,6 @@ struct SegmentModel {
   }
   /// Decrease of the free shear component per newton of normal force (F6).
   [[nodiscard]] double slope(bool vertical) const { return vertical ? slope_y : slope_x; }
-  [[nodiscard]] float slope_square(bool vertical) const {
-    const float coefficient = vertical ? coefficient_y : coefficient_x;
-    return 2 / (coefficient * coefficient);
-  }
 };
 
 /// The model of a sensor with the coefficients and the arm of `effects`.

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "contacts/estimator/contact_samples.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -126,6 +128,22 @@ TEST(PastPressure, StatesWhatTheFrameAndAnUncertainPlaceAdd) {
   EXPECT_LT(even, 0.037);
   // Halfway up a step of 1 N: a mean square difference of two places of 0.4 times 0.6 times 2.
   EXPECT_GT(deviation(moved_face(2), 6), std::sqrt(0.48));
+}
+
+/// Whatever the status bytes and the place of a run within words of eight.
+TEST(ContactSamples, FindPillarsThatAreNotDetermined) {
+  ForceField field(1, 256);
+  for (std::uint32_t i = 0; i < 256; ++i) field.status[i] = static_cast<std::uint8_t>(i * 37);
+  for (const std::uint32_t first : {0U, 3U, 250U}) {
+    const std::vector<ContactRun> runs = {{0, first, 253, 0}};
+    std::vector<std::uint32_t> found;
+    for_each_undetermined(field.view(), runs, [&](std::uint32_t i) { found.push_back(i); });
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = first; i < 253; ++i) {
+      if (!is_determined(field.status[i])) expected.push_back(i);
+    }
+    EXPECT_EQ(found, expected) << first;
+  }
 }
 
 }  // namespace
