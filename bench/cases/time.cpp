@@ -37,8 +37,8 @@ Measurement time_latency(const Session& session, const SolverPlan& plan) {
   report("host_", on_host);
   report("opencl_", on_opencl);
   measured.counters["of_empty_launch"] = timing.ratio(solve, empty);
-  measured.label = fmt::format("{} times, {}", timing.times(solve).size(),
-                               (is_hosts ? host : opencl).device());
+  measured.label =
+      fmt::format("{} times, {}", timing.times(solve).size(), (is_hosts ? host : opencl).device());
   return measured;
 }
 
