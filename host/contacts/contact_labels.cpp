@@ -125,6 +125,10 @@ void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& idle
   const std::size_t skew =
       std::size_t{row} * cols % size;  // pillars of the first block in the row above
   const std::size_t blocks = (skew + cols + size - 1) / size;
+  if (row * idle.stride + blocks > idle.flags.size()) {
+    throw Error("ContactLabels::find", "the idle blocks are those of a smaller frame",
+                "give Processor::contacts() of the same frame");
+  }
   const auto marks = idle.flags.subspan(row * idle.stride, blocks);
   const auto skip = [&](std::size_t at) {
     while (at + kWordBytes <= blocks && word_at(marks.data() + at) == kEachByte) at += kWordBytes;

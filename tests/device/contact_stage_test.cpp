@@ -211,6 +211,10 @@ TEST_P(EveryPath, ATrackerFindsTheContactsOfADirectSolveBesideIdleBlocks) {
     EXPECT_TRUE(GetParam().memory == Memory::staged || solver.contacts().idle != nullptr);
     tracker.update(forces, static_cast<double>(index), solver.contacts());
     EXPECT_GT(found.contacts(), 2U);
+    if (solver.contacts().idle != nullptr) {
+      const ForceField larger(plan.skin.pillar_rows() + 1, plan.skin.pillar_cols());
+      EXPECT_THROW(ContactTracker(1).update(larger.view(), 0, solver.contacts()), Error);
+    }
     expect_same_runs(tracker.labels().runs(), found.runs());
   }
 }
