@@ -465,9 +465,11 @@ class BoxTest(WindowTest):
             self.screen.xdotool("type", "--window", window.id, word)
             window.key("Return")
             self.wait_for(lambda: word in settings.read_text(encoding="utf-8"), "the name is not kept")
-        self.shoot(name)
+        self.screen.xdotool("mousemove", width + 150, height + 110)
+        shots.append(self.shoot(name))
         do("orbit", lambda: window.key("v"))
-        do("relief", lambda: window.key("b"))
+        window.key("b")
+        shots.append(self.shoot_changed(name + "_relief", *shots[-2:]))
         self.assert_quiet(window)
         kept = [line for line in settings.read_text(encoding="utf-8").splitlines() if line.startswith("box ")]
         self.assertEqual([line.split()[-1] for line in kept], ["ball", "slides", "twist"])
