@@ -151,7 +151,8 @@ PF_INLINE ShearRatio mean_ratio(ShearRatio own, RatioSum around) {
   const Real narrower = own.variance / (one + own.variance * around.weight);
   const Real shift = narrower * around.difference;
   const Real square = around.square - shift * around.difference;
-  const Real wider = narrower * (one + (square < zero ? zero : square));
+  const Real disagreement = PF_REAL(0.5) * (square < zero ? zero : square);
+  const Real wider = narrower * (one + disagreement);
   ShearRatio mean;
   mean.value = own.value + shift;
   mean.variance = wider < most ? wider : most;
