@@ -61,8 +61,6 @@ struct ContactParameters {
   double face_load = 0.6;
   /// Largest fraction of determined pillars whose ratio exceeds a friction by `other_load`.
   double most_above = 0.02;
-  /// Relative standard deviation of a reported friction beyond that of its posterior.
-  double friction_deviation = 0.02;
   /// Relative standard deviation of the friction over a contact, as known before its ratios are
   /// seen: usual, as of so many pillars, and where its estimate starts.
   double usual_scatter = 0.05;

@@ -272,7 +272,7 @@ ContactFriction FrictionEstimator::reported(std::uint32_t contact,
   if (!certain && may_stick(friction.median, work)) return friction;
   const bool observed = agrees && alone.spread() <= parameters_.reported_spread;
   friction.spread =
-      std::hypot(parameters_.stated_over_spread * friction.spread, parameters_.friction_deviation,
+      std::hypot(parameters_.stated_over_spread * friction.spread,
                  friction_scatter(work.samples.ratios(), friction.median, parameters_));
   friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
