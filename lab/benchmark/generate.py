@@ -59,14 +59,6 @@ def sliding(x, y, p, friction, velocity, spin=0, at=(0, 0)):
     return p, scale * vx, scale * vy
 
 
-def rolling(x, y, half, length, friction, share, angle, at):
-    """Carter's cylinder, which rolls along `angle` and sticks at its leading edge; shear of `share` of the friction."""
-    ahead, side = turned(x, y, angle, at)
-    stick = half * np.sqrt(1 - abs(share))
-    p = line(ahead, side, half, length)
-    return along(p, np.sign(share) * friction * (p - line(ahead - half + stick, side, stick, length)), angle)
-
-
 def drag_and_slide(grid, size, friction, degrees, radii=(1, 1), at=(0, 0), shares=DRAG, slides=3 * ((0, 1),)):
     """An ellipsoid is dragged until it slides, a third of a pillar a frame; slides: its turn, degrees, and its size."""
     x, y = cells(*grid)
@@ -109,10 +101,15 @@ def twisted(friction):
 
 
 def roller(friction, share, degrees):
-    """A long cylinder rolls half a pillar a frame; driven, it pushes the skin back (share below zero)."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return [rolling(*cells(24, 24), 4, 12, friction, share, np.radians(degrees), (c * way, s * way))
-            for way in np.arange(10) / 2 - 2.2]
+    """Carter's cylinder rolls half a pillar a frame and sticks at its leading edge; driven, it pushes the skin back, by a
+    share of the friction below zero."""
+    ahead, side = turned(*cells(24, 24), np.radians(degrees))
+    stick, frames = 4 * np.sqrt(1 - abs(share)), []
+    for way in np.arange(10) / 2 - 2.2:
+        p = line(ahead - way, side, 4, 12)
+        q = p - line(ahead - way - 4 + stick, side, stick, 12)
+        frames.append(along(p, np.sign(share) * friction * q, np.radians(degrees)))
+    return frames
 
 
 def punch_pushed():

@@ -1,9 +1,7 @@
-"""histories.py DOCS HISTORIES ENTRY...: scores the entries on the histories and writes DOCS/histories.md."""
+"""histories.py DOCS HISTORIES ENTRY...: scores the entries on the histories and writes DOCS/histories.md.
+PYTHONPATH has lab/benchmark."""
 
 import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "benchmark"))
 
 import page
 import processors

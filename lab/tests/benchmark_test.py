@@ -25,7 +25,7 @@ class Histories(unittest.TestCase):
             p, qx, qy = generate.dragged(lambda part: generate.hertz(x, y, 6 * part), 3, 1.5, 0.5, share, before)
             self.assertAlmostEqual(p.sum() / 64 / (2 / 3 * np.pi * 6**3), 1, delta=0.002)
             self.assertAlmostEqual((qx * np.cos(0.5) + qy * np.sin(0.5)).sum() / p.sum(), 1.5 * share, delta=0.005)
-        p, qx, _ = generate.rolling(x, y, 4, 12, 2, -0.7, 0, (0, 0))
+        p, qx, _ = generate.roller(2, -0.7, 0)[0]
         self.assertAlmostEqual(p.sum() / 64 / (np.pi / 2 * 16 * 12), 1, delta=0.002)
         self.assertAlmostEqual(qx.sum() / p.sum(), -1.4, delta=0.01)
 
