@@ -51,8 +51,7 @@ def forces_of(v, k, threshold, diagonal):
 
 def penalty(readings, k, threshold, friction=2.0, weight=1.0, steps=100):
     """Least sum over neighbours (N_i - N_j)^2 + weight * sum max(0, |s| - friction N)^2 on the segments, by projected
-    gradients; the shear towards the usable sensels falls by sqrt(2) times the diagonal. Friction and weight: the best of a
-    grid on histories of training()."""
+    gradients (shear towards usable sensels falls by sqrt(2) times the diagonal). Constants: a grid's best in training()."""
     v = sensels(readings.astype(float))
     length, loaded = lengths(v, threshold), np.pad((v > threshold).any(-1), ((0, 0), (1, 1), (1, 1)))
     diagonal = length / 2

@@ -42,9 +42,8 @@ def along(p, q, angle):
 
 
 def dragged(pressure, order, friction, angle, share, before=None):
-    """Cattaneo's and Mindlin's partial slip: shear of `share` of the friction at a constant load, after none or, turning
-    back, after the share `before`. pressure(s): of the contact scaled by s, whose load grows with s**order (3; 2 of a
-    line)."""
+    """Cattaneo's and Mindlin's partial slip: shear of `share` of the friction at a constant load, or back from the share
+    `before`. pressure(s): of the contact scaled by s, whose load grows with s**order (3; 2 of a line)."""
     p = pressure(1)
     q = p - pressure((1 - (share if before is None else before))**(1 / order))
     if before is not None:
@@ -101,8 +100,7 @@ def twisted(friction):
 
 
 def roller(friction, share, degrees):
-    """Carter's cylinder rolls half a pillar a frame and sticks at its leading edge; driven, it pushes the skin back, by a
-    share of the friction below zero."""
+    """Carter's cylinder sticks at its leading edge; driven, it pushes the skin back by a share of the friction below 0."""
     ahead, side = turned(*cells(24, 24), np.radians(degrees))
     stick, frames = 4 * np.sqrt(1 - abs(share)), []
     for way in np.arange(10) / 2 - 2.2:
@@ -122,8 +120,7 @@ def punch_pushed():
 
 
 def rough_ball():
-    """A ball on the contacts of its hills: each has Mindlin's share of shear for the way of the ball, and slides from the
-    way size**2 on."""
+    """A ball on its hills: each has Mindlin's share of shear for the way of the ball, and slides from size**2 on."""
     x, y = cells(24, 28)
     rng = np.random.default_rng(11)
     places = 2.6 * np.mgrid[-2:3, -2:3].reshape(2, 25).T + rng.uniform(-0.2, 0.2, (25, 2))

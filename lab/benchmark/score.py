@@ -10,8 +10,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-SECONDS = 0.5  # about the time of a history many times over, by which an entry is timed
-
 
 def planes(file, group):
     """Forces [T, 3, P, Q] of a group."""
@@ -68,7 +66,7 @@ def seconds_a_frame(solve, histories):
         before = time.process_time()
         solve(history.readings, *history.skin)
         start = time.process_time()
-        times = int(np.clip(SECONDS / max(start - before, 1e-6), 3, 500))
+        times = int(np.clip(0.5 / max(start - before, 1e-6), 3, 500))
         solve(np.concatenate([history.readings] * times), *history.skin)
         total += time.process_time() - start - (start - before)
         frames += (times - 1) * len(history.readings)

@@ -1,5 +1,4 @@
-"""histories.py DOCS HISTORIES ENTRY...: scores the entries on the histories and writes DOCS/histories.md.
-PYTHONPATH has lab/benchmark."""
+"""PYTHONPATH=lab/benchmark histories.py DOCS HISTORIES ENTRY...: scores the entries and writes DOCS/histories.md."""
 
 import sys
 
