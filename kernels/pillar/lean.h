@@ -38,15 +38,15 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   const Real d2 = d * d;
   const Real e2 = e * e;
   const Real s2 = s * s;
-  const Real by_d = PF_REAL(0.16666666666666666667) - s2 * (PF_REAL(1.005) + PF_REAL(2.458) * s) +
-                    t * t * (PF_REAL(0.290) + PF_REAL(0.469) * t) -
-                    d2 * (PF_REAL(0.112) + PF_REAL(0.692) * s + PF_REAL(0.682) * t) +
-                    PF_REAL(0.515) * (e2 * s);
-  const Real by_e = PF_REAL(1.358) * (s2 * t) - PF_REAL(0.079) * e2;
+  const Real by_d = PF_REAL(0.16666666666666666667) - s2 * (PF_REAL(1.095) + PF_REAL(2.413) * s) +
+                    t * t * (PF_REAL(0.204) + PF_REAL(0.361) * t) -
+                    d2 * (PF_REAL(0.111) + PF_REAL(0.847) * s + PF_REAL(0.619) * t) +
+                    PF_REAL(0.415) * (e2 * s);
+  const Real by_e = PF_REAL(1.266) * (s2 * t) - PF_REAL(0.075) * e2;
   const Real part = d * by_d + e * by_e;
   const Real bounded =
       part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
-  const Real deviation = PF_REAL(0.003) + s2 * (PF_REAL(0.116) + PF_REAL(0.578) * d2) +
+  const Real deviation = PF_REAL(0.003) + s2 * (PF_REAL(0.118) + PF_REAL(0.531) * d2) +
                          PF_REAL(0.033) * size_of(e - d) + PF_REAL(0.01) * (t * t);
   Lean lean;
   lean.moment = loaded ? own * bounded : zero;
