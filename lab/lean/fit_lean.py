@@ -1,7 +1,7 @@
 """fit_lean.py: prints the coefficients of kernels/pillar/lean.h.
 
-Least squares of the moments under random rigid bodies that are pressed on an elastic half-space, half
-of them narrower than a few pillars. Lengths in pillars. Equations: docs/derivations/sensor_effects.md, E7."""
+Least squares of the moments under random rigid bodies pressed on an elastic half-space, some of them
+narrower than a pillar. Lengths in pillars. Equations: docs/derivations/sensor_effects.md, E7."""
 
 import os
 from multiprocessing import Pool
@@ -146,16 +146,17 @@ def body(kind, random):
     else:
         pins = [numpy.hypot(x - uniform(-6, 6), y - uniform(-6, 6)) for _ in range(
             random.integers(1, 8))]
-        height = numpy.min([uniform(0, 0.1) + (face(pin - radius, min(radius, 0.2)) if uniform() < 0.5
-                                               else dome(pin, radius))
-                            for pin in pins for radius in [spread(0.3, 2.5)]], axis=0)
+        height = numpy.min([uniform(0, 0.1) + (
+            face(pin - radius, min(radius, 0.2)) if uniform() < 0.5 else dome(pin, radius))
+            for pin in pins for radius in [spread(0.3, 2.5)]], axis=0)
     height = numpy.minimum(height, NOWHERE)
-    if kind in ("punch", "square", "ring", "letter") and uniform() < 0.6:  # not quite flat on the skin
+    if kind in ("punch", "square", "ring", "letter") and uniform() < 0.6:  # it tilts
         height = height + uniform(0, 0.04) * (numpy.cos(turn) * X + numpy.sin(turn) * Y)
     return height - height.min(), depth
 
 
-KINDS = ("ball", "ellipsoid", "punch", "square", "cylinder", "rough", "edge", "ring", "letter", "pins")
+KINDS = ("ball", "ellipsoid", "punch", "square", "cylinder", "rough",
+         "edge", "ring", "letter", "pins")
 
 
 def pressed(number):
@@ -203,7 +204,8 @@ def samples(number):
     own, moment = ((numpy.concatenate([a[loaded], b.T[loaded.T]]))
                    for a, b in ((normal, normal), moments))
     # Errors are relative to a body's own.
-    return numpy.concatenate(z, axis=1), own, moment, numpy.full(own.size, (moment**2).sum() ** -0.5)
+    weight = numpy.full(own.size, (moment**2).sum() ** -0.5)
+    return numpy.concatenate(z, axis=1), own, moment, weight
 
 
 def main():

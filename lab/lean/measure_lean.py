@@ -1,7 +1,7 @@
 """measure_lean.py FRICTION FOLDER PROGRAM...: what the correction of off-centre pressure leaves.
 
-Errors in regions 1 and 2, counts, under bodies of which fit_lean.py knows none, ignored and corrected
-by each PROGRAM, pillarfield. The first one simulates in FOLDER. docs/decisions/off_centre_pressure.md."""
+Errors in regions 1 and 2, counts, under bodies of which fit_lean.py knows none, ignored and
+corrected by each PROGRAM, pillarfield. The first one simulates in FOLDER."""
 
 import random
 import subprocess
@@ -46,10 +46,10 @@ BODIES = {
     "wire": (dome(Y, 0.6) + face(abs(X) - 4.5, 0.5), 5),
     "cap ring": (face(abs(R - 4.8) - 0.45, 0.2), 12),
     "O-ring": ((R - 3.6) ** 2 / 1.6, 8),
-    "letter A": (face(numpy.minimum(strokes((-3, -4), (0, 4), (3, -4)), strokes((-1.5, -1), (1.5, -1)))
-                      - 0.5, 0.25), 9),
-    "letter S": (face(strokes((2.2, 3.2), (-2.2, 3.2), (-2.2, 0), (2.2, 0), (2.2, -3.2), (-2.2, -3.2))
-                      - 0.6, 0.3), 12),
+    "letter A": (face(numpy.minimum(strokes((-3, -4), (0, 4), (3, -4)),
+                                    strokes((-1.5, -1), (1.5, -1))) - 0.5, 0.25), 9),
+    "letter S": (face(strokes((2.2, 3.2), (-2.2, 3.2), (-2.2, 0), (2.2, 0), (2.2, -3.2),
+                              (-2.2, -3.2)) - 0.6, 0.3), 12),
     "pin": (dome(R, 0.9), 1),
     "three pins": (numpy.minimum(face(numpy.hypot(X - 2.3, Y) - 0.7, 0.3), face(
         numpy.hypot(abs(X + 2.1) + 0 * Y, abs(Y) - 2.4) - 0.9, 0.3)), 5),
@@ -73,8 +73,8 @@ def scene(folder, number, name, friction):
         f"{{ time_s = {time}, position_mm = [{x + part * right:.4f}, {y + part * up:.4f}], "
         f"angle_deg = {angle + turned * turn:.3f}, load_n = {part_n * load_n:g} }}"
         for time, part, turned, part_n in path)
-    return (f"[skin]\npillars = [36, 36]\nthreshold_counts = {4 * NOISE_COUNTS}\nmodulus_kpa = 400\n"
-            f"counts_per_newton = {K}\n[sensor]\npillar_arm_mm = 0.224\n[time]\nrate_hz = 10\n"
+    return (f"[skin]\npillars = [36, 36]\nthreshold_counts = {4 * NOISE_COUNTS}\n"
+            f"modulus_kpa = 400\ncounts_per_newton = {K}\n[sensor]\npillar_arm_mm = 0.224\n[time]\nrate_hz = 10\n"
             f"frames = 12\nseed = {number}\n[[indenter]]\n{shape}\nfriction = {friction}\n"
             f"path = [\n{keys}\n]\n")
 
@@ -84,7 +84,7 @@ def run(*words):
 
 
 def recording(program, folder, number, name, friction):
-    """The path of a recording with noise, scaled to its peak, and the true forces [axis, frame, ...]."""
+    """The path of a recording with noise, scaled to its peak, and the true forces [axis, ...]."""
     text, path = (folder / f"{number}.{end}" for end in ("toml", "h5"))
     text.write_text(scene(folder, number, name, friction), encoding="utf-8")
     run(program, "simulate", text, "-o", path)
@@ -98,16 +98,17 @@ def recording(program, folder, number, name, friction):
 
 
 def judge(program, path, truth):
-    """Sum of squared errors, counts, of pillars with three or four usable sensels, their number, and
-    how many truths lie in the stated 95 % in x and in y."""
+    """Sum of squared errors, counts, of pillars with three or four usable sensels, their number,
+    and how many truths lie in the stated 95 % in x and in y."""
     out = path.with_suffix(".forces.h5")
-    run(program, "solve", path, "-o", out, "--noise", NOISE_COUNTS, "--outputs", "forces,uncertainty")
+    run(program, "solve", path, "-o", out, "--noise", NOISE_COUNTS, "--outputs",
+        "forces,uncertainty")
     with h5py.File(out) as file:
         status = file["force/status"][:]
         determined = sum((status >> bit) & 1 for bit in range(4)) >= 3
-        force, low, high = (numpy.stack([file[f"{group}/{axis}{end}"][:][determined] for axis in AXES])
-                            for group, end in (("force", ""), ("uncertainty", "_low"),
-                                               ("uncertainty", "_high")))
+        force, low, high = (
+            numpy.stack([file[f"{group}/{axis}{end}"][:][determined] for axis in AXES])
+            for group, end in (("force", ""), ("uncertainty", "_low"), ("uncertainty", "_high")))
     truth = truth[:, determined]
     held = ((low <= truth) & (truth <= high)).sum(axis=1)
     return numpy.array([K**2 * ((force - truth) ** 2).sum(), determined.sum(), held[0], held[1]])
