@@ -1,6 +1,6 @@
 """fit_lean.py: prints the coefficients of kernels/pillar/lean.h.
 
-Least squares of the moments under random rigid bodies pressed on an elastic half-space, some of them
+Least squares of the moments under random rigid bodies pressed on an elastic half-space, some
 narrower than a pillar. Lengths in pillars. Equations: docs/derivations/sensor_effects.md, E7."""
 
 import os
@@ -19,8 +19,6 @@ PLACES = (numpy.arange(SIDE) + 0.5) / POINTS - PILLARS / 2
 X, Y = numpy.meshgrid(PLACES, PLACES)
 NOWHERE = 99.0  # height where a body does not reach
 
-
-# --- Elastic half-space ---
 
 def response():
     """Transform of the displacement by a unit pressure on one point's square."""
@@ -64,7 +62,7 @@ def press(height, depth, tolerance=1e-3):
     return pressure
 
 
-# --- Bodies: heights over their lowest point ---
+# Heights of bodies, over their lowest point.
 
 def face(outside, radius):
     """A flat face with a rounded edge, from the distance outside it."""
@@ -172,8 +170,6 @@ def pressed(number):
     read = scale * normal + random.normal(0, NOISE_COUNTS, normal.shape)
     return numpy.where(scale * normal > THRESHOLD_COUNTS, read, 0), scale * moments
 
-
-# --- Fit ---
 
 def part(outer, inner):
     whole = outer + inner
