@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -64,38 +63,35 @@ py::dict counts_of(const StreamHealth& health) {
   return counts;
 }
 
-/// A live source or sink that several threads use in turn, until it is closed.
-template <class Live>
-class Shared {
+/// A stream that several threads use in turn, until it is closed.
+template <class Stream>
+class SharedStream {
  public:
-  Shared(std::string name, std::unique_ptr<Live> live)
-      : name_(std::move(name)), live_(std::move(live)) {}
+  explicit SharedStream(std::unique_ptr<Stream> stream) : stream_(std::move(stream)) {}
 
   template <class Call>
   void use(Call call) {
-    if (live_.is_foreign()) throw_foreign(name_);
+    if (stream_.is_foreign()) throw_foreign("the live source");
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(mutex_);
-    if (live_.get() == nullptr) throw Error(name_, "it is closed", "open it again");
-    call(*live_.get());
+    if (stream_.get() == nullptr) throw Error("the live source", "it is closed", "open it again");
+    call(*stream_.get());
   }
   py::dict health() {
     StreamHealth health;
-    use([&](Live& stream) { health = stream.health(); });
+    use([&](Stream& stream) { health = stream.health(); });
     return counts_of(health);
   }
-  void close(const std::function<void(Live&)>& at_last = {}) {
+  void close() {
     const py::gil_scoped_release unlocked;
-    if (live_.is_foreign()) return;
+    if (stream_.is_foreign()) return;
     const std::lock_guard alone(mutex_);
-    if (at_last && live_.get() != nullptr) at_last(*live_.get());
-    live_.reset();
+    stream_.reset();
   }
 
  private:
   std::mutex mutex_;
-  std::string name_;
-  ProcessBound<Live> live_;
+  ProcessBound<Stream> stream_;
 };
 
 /// A live source, used by one thread at a time.
@@ -112,7 +108,7 @@ class LiveFrames {
     skin_ = stream->skin();
     sensel_type_ = stream->sensel_type();
     frame_ = std::make_unique<StreamedFrame>(sensel_type_, skin_);
-    stream_.emplace("the live source", std::move(stream));
+    stream_.emplace(std::move(stream));
   }
 
   /// The next frame as (readings, time, sequence, missing); None where none came in time. Throws
@@ -151,7 +147,7 @@ class LiveFrames {
     return py::make_tuple(readings, time_s, sequence, missing);
   }
 
-  std::optional<Shared<FrameStream>> stream_;
+  std::optional<SharedStream<FrameStream>> stream_;
   Skin skin_;
   SenselType sensel_type_ = SenselType::u8;
   std::unique_ptr<StreamedFrame> frame_;
@@ -168,7 +164,7 @@ class LiveResults {
       throw Error(source, "it holds frames, not results", "open it with live()");
     }
     skin_ = stream->skin();
-    stream_.emplace("the live source", std::move(stream));
+    stream_.emplace(std::move(stream));
   }
 
   /// The planes of the next result, with its time and contacts; None where none came in time.
@@ -192,7 +188,7 @@ class LiveResults {
     return planes;
   }
 
-  std::optional<Shared<ResultStream>> stream_;
+  std::optional<SharedStream<ResultStream>> stream_;
   Skin skin_;
 };
 
@@ -207,7 +203,7 @@ class Sink {
         live_sink_info(plan, "", source, contacts ? std::optional(ContactOptions{}) : std::nullopt);
     info.replace = overwrite ? Replace::anything : Replace::results;
     info.allowed_origins = std::move(allow_origins);
-    sink_.emplace(target, create_live_sink(target, info));
+    sink_.emplace(create_live_sink(target, info));
   }
 
   void send(const py::dict& planes, const std::shared_ptr<FrameContacts>& contacts, double time_s,
@@ -220,7 +216,7 @@ class Sink {
       throw Error(target_, "the forces do not fit its plan",
                   "send one frame of the plan's size and outputs");
     }
-    sink_->use([&](LiveSink& sink) {
+    with_sink([&](LiveSink& sink) {
       sink.append({.forces = forces.frame(0),
                    .contacts = contacts.get(),
                    .time_s = time_s,
@@ -231,7 +227,7 @@ class Sink {
 
   [[nodiscard]] py::dict statistics() {
     LiveSinkStatistics done;
-    sink_->use([&](LiveSink& sink) { done = sink.statistics(); });
+    with_sink([&](LiveSink& sink) { done = sink.statistics(); });
     py::dict counts;
     counts["frames"] = done.frames;
     counts["dropped"] = done.dropped;
@@ -243,15 +239,28 @@ class Sink {
   }
 
   void close(bool finish) {
-    sink_->close([finish](LiveSink& sink) {
-      if (finish) sink.finish();
-    });
+    const py::gil_scoped_release unlocked;
+    if (sink_->is_foreign()) return;
+    const std::lock_guard alone(mutex_);
+    if (finish && sink_->get() != nullptr) sink_->get()->finish();
+    sink_->reset();
   }
 
  private:
+  template <class Call>
+  void with_sink(Call call) {
+    if (sink_->is_foreign()) throw_foreign(target_);
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(mutex_);
+    LiveSink* const sink = sink_->get();
+    if (sink == nullptr) throw Error(target_, "it is closed", "open it again");
+    call(*sink);
+  }
+
+  std::mutex mutex_;
   std::string target_;
   SolverPlan plan_;
-  std::optional<Shared<LiveSink>> sink_;
+  std::optional<ProcessBound<LiveSink>> sink_;
 };
 
 }  // namespace
