@@ -75,8 +75,8 @@ def scene(folder, number, name, friction):
         for time, part, turned, part_n in path)
     return (f"[skin]\npillars = [36, 36]\nthreshold_counts = {4 * NOISE_COUNTS}\n"
             f"modulus_kpa = 400\ncounts_per_newton = {K}\n[sensor]\npillar_arm_mm = 0.224\n[time]\n"
-            f"rate_hz = 10\nframes = 12\nseed = {number}\n[[indenter]]\n{shape}\nfriction = {friction}\n"
-            f"path = [\n{keys}\n]\n")
+            f"rate_hz = 10\nframes = 12\nseed = {number}\n[[indenter]]\n{shape}\n"
+            f"friction = {friction}\npath = [\n{keys}\n]\n")
 
 
 def run(*words):
