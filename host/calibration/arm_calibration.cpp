@@ -26,6 +26,24 @@ constexpr double kMostLeanDeviation = 0.04;
 constexpr std::uint64_t kFewestArmPillars = 12;
 constexpr int kArmRounds = 4;
 
+/// The lean under a ball: the odd cubic of least squares over smooth bodies, and what it leaves.
+/// With the polynomial of the solve, which knows narrow bodies too, arms are found up to a fifth
+/// too short (docs/decisions/off_centre_pressure.md).
+single_precision::Lean lean_under_ball(float far_before, float before, float own, float after,
+                                       float far_after) {
+  const auto [d, e, s, t] =
+      single_precision::line_ratios(far_before, before, own, after, far_after);
+  const float by_d = 1 / 6.0F + s * (-0.152F + 0.390F * s) +
+                     t * (-0.486F + 1.187F * s - 1.173F * t) + d * (0.789F * d - 1.210F * e) +
+                     0.264F * (e * e);
+  const float by_e =
+      s * (0.798F - 1.144F * s + 1.029F * t) + t * (0.032F + 0.090F * t) + 0.015F * (e * e);
+  const float steep = std::abs(d);
+  const float deviation = 0.004F + 0.093F * steep * steep * steep + 0.009F * std::abs(s) +
+                          0.076F * s * s + 0.011F * std::abs(e - d);
+  return single_precision::lean_of(own, d * by_d + e * by_e, deviation);
+}
+
 /// One shear component of a pillar and the lean that explains it, N.
 struct LeaningShear {
   double shear;
@@ -119,7 +137,7 @@ class ArmFit {
   void add_pillar(const ForceField& field, std::uint32_t index, std::size_t place) {
     if (!is_fully_pressed(field.status[index])) return;
     ++pillars_;
-    const PillarLean lean = pillar_lean(field.view(), index);
+    const PillarLean lean = pillar_lean(field.view(), index, lean_under_ball);
     const auto add = [&](float shear, float deviation, const auto& along) {
       if (along.deviation > kMostLeanDeviation * field.normal[index]) return;
       shears_.push_back({shear, along.moment, double{deviation} * deviation,

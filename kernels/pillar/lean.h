@@ -18,23 +18,53 @@ PF_INLINE Real outer_part(Real outer, Real inner) {
 
 PF_INLINE Real size_of(Real x) { return x < PF_REAL(0.0) ? -x : x; }
 
+/* Ratios of the normal forces of five pillars in a line: the difference and the sum, less one, of
+ * the outer parts of the pillar's neighbours (d, s) and of theirs (e, t). */
+typedef struct {
+  Real d;
+  Real e;
+  Real s;
+  Real t;
+} LineRatios;
+
+PF_INLINE LineRatios line_ratios(Real far_before, Real before, Real own, Real after,
+                                 Real far_after) {
+  const Real one = PF_REAL(1.0);
+  const Real low = outer_part(before, own);
+  const Real high = outer_part(after, own);
+  const Real far_low = outer_part(far_before, before);
+  const Real far_high = outer_part(far_after, after);
+  LineRatios ratios;
+  ratios.d = high - low;
+  ratios.e = far_high - far_low;
+  ratios.s = high + low - one;
+  ratios.t = far_high + far_low - one;
+  return ratios;
+}
+
+/* The lean of a pillar with the normal force `own`, N, whose moment is this part of it. */
+PF_INLINE Lean lean_of(Real own, Real part, Real deviation) {
+  const Real zero = PF_REAL(0.0);
+  const Real largest_part = PF_REAL(0.5);
+  const Mask loaded = own > zero;
+  const Real bounded =
+      part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
+  Lean lean;
+  lean.moment = loaded ? own * bounded : zero;
+  lean.deviation = loaded ? own * deviation : zero;
+  return lean;
+}
+
 /* The lean towards `after` of a pillar with the normal force `own`, N; the pillars in its line are
  * far_before, before, own, after, far_after. An odd polynomial in four ratios, exact to first
  * order in a pressure that varies linearly; its coefficients are least squares over wide and narrow
  * bodies on an elastic half-space (lab/lean), and the deviation is what they leave. */
 PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
-  const Real zero = PF_REAL(0.0);
-  const Real one = PF_REAL(1.0);
-  const Real largest_part = PF_REAL(0.5);
-  const Mask loaded = own > zero;
-  const Real low = outer_part(before, own);
-  const Real high = outer_part(after, own);
-  const Real far_low = outer_part(far_before, before);
-  const Real far_high = outer_part(far_after, after);
-  const Real d = high - low;
-  const Real e = far_high - far_low;
-  const Real s = high + low - one;
-  const Real t = far_high + far_low - one;
+  const LineRatios ratios = line_ratios(far_before, before, own, after, far_after);
+  const Real d = ratios.d;
+  const Real e = ratios.e;
+  const Real s = ratios.s;
+  const Real t = ratios.t;
   const Real d2 = d * d;
   const Real e2 = e * e;
   const Real s2 = s * s;
@@ -43,15 +73,9 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
                     d2 * (PF_REAL(0.111) + PF_REAL(0.847) * s + PF_REAL(0.619) * t) +
                     PF_REAL(0.415) * (e2 * s);
   const Real by_e = PF_REAL(1.266) * (s2 * t) - PF_REAL(0.075) * e2;
-  const Real part = d * by_d + e * by_e;
-  const Real bounded =
-      part < -largest_part ? -largest_part : (part > largest_part ? largest_part : part);
   const Real deviation = PF_REAL(0.003) + s2 * (PF_REAL(0.118) + PF_REAL(0.531) * d2) +
                          PF_REAL(0.033) * size_of(e - d) + PF_REAL(0.01) * (t * t);
-  Lean lean;
-  lean.moment = loaded ? own * bounded : zero;
-  lean.deviation = loaded ? own * deviation : zero;
-  return lean;
+  return lean_of(own, d * by_d + e * by_e, deviation);
 }
 
 /* True if a sensel that is usable by its bit of the status is loaded by less than `margin`, or an
