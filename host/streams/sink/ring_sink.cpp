@@ -77,7 +77,7 @@ void RingSink::append(const SolvedFrame& frame) {
   write_head(*reinterpret_cast<PillarfieldResultSlot*>(slot), frame);
   std::byte* place = slot + sizeof(PillarfieldResultSlot);
   for (const std::span plane : {forces.shear_x, forces.shear_y, forces.normal}) {
-    std::memcpy(place, plane.data(), plane.size_bytes());
+    if (!plane.empty()) std::memcpy(place, plane.data(), plane.size_bytes());
     place += plane.size_bytes();
   }
   std::memcpy(place, forces.status.data(), forces.status.size());
