@@ -45,7 +45,8 @@ RingReader::Time now_of_ring() { return std::chrono::steady_clock::now().time_si
   }
   if (valid) throw Error(name, "it holds frames, not results", "open the ring of stream --to");
   constexpr std::array kContents = {"frames or results", "frames", "results"};
-  throw Error(name, fmt::format("is not a ring of {}", kContents[static_cast<int>(content)]),
+  throw Error(name,
+              fmt::format("is not a ring of {}", kContents[static_cast<std::size_t>(content)]),
               "docs/stream_format.md describes the ring");
 }
 
