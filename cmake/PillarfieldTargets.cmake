@@ -1,6 +1,6 @@
 # Options of all targets.
 
-# The compilers of `./dev check`. Newer ones have more warnings, which must not break a user's build.
+# The compilers of `./dev test`. Newer ones have more warnings, which must not break a user's build.
 if((CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12\\.")
    OR (CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^14\\."))
   set(PILLARFIELD_KNOWN_COMPILER ON)

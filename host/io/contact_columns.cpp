@@ -57,25 +57,25 @@ SlipForecast& forecast_of(ContactQuantities& contact) {
   return *contact.slip_forecast;
 }
 
-template <auto kMember>
+template <auto member>
 double get_forecast(const ContactQuantities& contact) {
   if (!contact.slip_forecast) return kUnset;
-  return (*contact.slip_forecast.*kMember).value_or(kUnset);
+  return (*contact.slip_forecast.*member).value_or(kUnset);
 }
 
-template <auto kMember>
+template <auto member>
 void set_forecast(ContactQuantities& contact, double value) {
-  if (!std::isnan(value)) forecast_of(contact).*kMember = value;
+  if (!std::isnan(value)) forecast_of(contact).*member = value;
 }
 
-template <std::size_t kWithin>
+template <std::size_t within>
 double get_probability(const ContactQuantities& contact) {
-  return contact.slip_forecast ? contact.slip_forecast->probability[kWithin] : kUnset;
+  return contact.slip_forecast ? contact.slip_forecast->probability[within] : kUnset;
 }
 
-template <std::size_t kWithin>
+template <std::size_t within>
 void set_probability(ContactQuantities& contact, double value) {
-  if (!std::isnan(value)) forecast_of(contact).probability[kWithin] = value;
+  if (!std::isnan(value)) forecast_of(contact).probability[within] = value;
 }
 
 using Contact = TrackedContact;

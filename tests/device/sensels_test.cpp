@@ -87,7 +87,7 @@ class SenselsOnDevice : public testing::TestWithParam<Path> {
   static void expect_host_bits(const SolverPlan& plan) {
     const Path& path = GetParam();
     Processor processor(test_device(), plan, {.memory = path.memory},
-                        {.lanes = path.lanes, .paths = {.stores = path.stores}});
+                        {.lanes = tested_lanes(path.lanes), .paths = {.stores = path.stores}});
     HostReference host(plan);
     for (std::uint32_t number = 0; number < 12; ++number) {
       SCOPED_TRACE(number);
@@ -122,7 +122,7 @@ TEST_P(SenselsOnDevice, HaveNeitherShearNorAngles) {
   SolverPlan plan = without_pillars(bare_plan(path.rows, path.cols, path.type));
   plan.uncertainty = true;
   plan.noise_counts = 1;
-  Processor processor(test_device(), plan, {}, {.lanes = path.lanes});
+  Processor processor(test_device(), plan, {}, {.lanes = tested_lanes(path.lanes)});
   const RandomFrame frame(plan, 0, 1);
   processor.submit(frame.view());
   const ForceFieldView solved = processor.receive();

@@ -128,7 +128,7 @@ class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
     const Path& path = GetParam();
     Processor processor(
         test_device(), plan, {.memory = path.memory, .frames_in_flight = kInFlight},
-        {.lanes = path.lanes,
+        {.lanes = tested_lanes(path.lanes),
          .paths = {.skip_idle = skip_idle,
                    .stores = path.lanes == 16 ? Stores::streaming : Stores::cached}});
     std::deque<Frames> frames;  // their buffers may be in flight
@@ -208,7 +208,7 @@ TEST(SensorEffects, WiresOfANarrowTileMakeSenselsActive) {
   const ForceField expected = solve_on_host(plan, frame.view());
   EXPECT_EQ(expected.status[2 * 33 + 32], status::kUsable);
   for (const int lanes : {1, 16}) {
-    Processor processor(test_device(), plan, {}, {.lanes = lanes});
+    Processor processor(test_device(), plan, {}, {.lanes = tested_lanes(lanes)});
     for (int repeated = 0; repeated < 3; ++repeated) {
       processor.submit(frame.view());
       expect_same_bits(processor.receive(), expected.view());
@@ -234,7 +234,7 @@ TEST_P(SensorEffectsOnDevice, RunsOfIdleBlocksKeepTheBitsOfTheHost) {
   plan.calibration.effects.arm_mm = 0.3;
   plan.calibration.effects.pillar_leak = {0.03, 0.01};
   Processor processor(test_device(), plan, {.memory = GetParam().memory},
-                      {.lanes = GetParam().lanes, .paths = {.skip_idle = true}});
+                      {.lanes = tested_lanes(GetParam().lanes), .paths = {.skip_idle = true}});
   FrameBuffer buffer(plan.sensel_type, 12, 2 * kPillars);
   const auto press = [&](auto readings, std::uint32_t first) {
     std::fill(readings.begin(), readings.end(), 0);

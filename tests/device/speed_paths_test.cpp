@@ -73,7 +73,7 @@ void expect_host_bits(const SolverPlan& plan, int lanes, const SpeedPaths& paths
                       Memory memory = Memory::automatic) {
   HostReference host(plan);
   Processor processor(test_device(), plan, {.memory = memory, .frames_in_flight = 2},
-                      {.lanes = lanes, .paths = paths});
+                      {.lanes = tested_lanes(lanes), .paths = paths});
   MovingContact contact(plan, 5);
   for (int i = 0; i < 14; ++i) {
     SCOPED_TRACE(i);

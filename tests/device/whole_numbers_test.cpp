@@ -47,7 +47,7 @@ class WholeNumbers : public testing::Test {
   }
 
   static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
-    Processor processor(test_device(), plan, {}, {.lanes = lanes});
+    Processor processor(test_device(), plan, {}, {.lanes = tested_lanes(lanes)});
     processor.submit(kFrame.view());
     expect_same_bits(processor.receive(), solve_on_host(plan, kFrame.view()).view());
   }

@@ -190,8 +190,10 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   PressureRegression::Values y{};
   PressureRegression::Predictions pressure;
   for (std::size_t i = 0; i < count; ++i) {
-    x[i] = model.box.x_of(ambiguous[i * step] % forces.cols);
-    y[i] = model.box.y_of(ambiguous[i * step] / forces.cols);
+    const std::uint32_t col = ambiguous[i * step] % forces.cols;
+    const std::uint32_t row = ambiguous[i * step] / forces.cols;
+    x[i] = model.box.x_of(col);
+    y[i] = model.box.y_of(row);
   }
   if (model.pressure) model.pressure->predict(x, y, pressure);
   for (std::size_t i = 0; i < count; ++i) {

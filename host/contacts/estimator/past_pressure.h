@@ -65,7 +65,7 @@ class PastPressure {
 
     std::int64_t rows;
     std::int64_t cols;
-    std::array<double, 4> weights;  ///< upper left, upper right, lower left, lower right
+    std::array<double, 4> weights{};  ///< upper left, upper right, lower left, lower right
   };
 
   void prefetch_before(std::span<const ContactRun> runs, const Origin& origin) const;

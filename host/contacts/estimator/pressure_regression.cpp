@@ -21,7 +21,7 @@ template <class Terms, class Matrix>
 PF_WIDE void evaluate(const PressureRegression::Values& x, const PressureRegression::Values& y,
                       const Terms& coefficients, const Matrix& inverse,
                       PressureRegression::Predictions& found) {
-  std::array<PressureRegression::Values, 6> terms;
+  std::array<PressureRegression::Values, 6> terms{};
   terms[0].fill(1);
   for (std::size_t i = 0; i < x.size(); ++i) {
     terms[1][i] = x[i];

@@ -12,10 +12,10 @@ namespace pillarfield {
 class PressureRegression {
  public:
   struct Sample {
-    double x;  ///< place, magnitude about 1
-    double y;
-    double square;        ///< N²
-    double weight;        ///< 0 or more
+    double x = 0;  ///< place, magnitude about 1
+    double y = 0;
+    double square = 0;    ///< N²
+    double weight = 0;    ///< 0 or more
     double residual = 0;  ///< of the last fit, N²
   };
   static constexpr std::size_t kBatch = 32;  ///< places predicted at a time
