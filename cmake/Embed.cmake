@@ -21,7 +21,6 @@ file(WRITE "${OUTPUT}" "#include <string_view>
 
 namespace pillarfield {
 
-std::string_view ${FUNCTION}();
 std::string_view ${FUNCTION}() {
   static constexpr unsigned char kBytes[] = {${bytes}};
   return {reinterpret_cast<const char*>(kBytes), sizeof kBytes};

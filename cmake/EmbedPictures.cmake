@@ -6,8 +6,9 @@ set(entries "")
 foreach(scene IN LISTS SCENES)
   file(READ "${FOLDER}/${scene}.png" bytes HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
-  string(APPEND arrays "constexpr unsigned char k_${scene}[] = {${bytes}};\n")
-  string(APPEND entries "      EmbeddedPicture{\"${scene}\", k_${scene}},\n")
+  string(REPLACE "_" "" name "kPicture${scene}")
+  string(APPEND arrays "constexpr unsigned char ${name}[] = {${bytes}};\n")
+  string(APPEND entries "      EmbeddedPicture{\"${scene}\", ${name}},\n")
 endforeach()
 file(WRITE "${OUTPUT}" "#include \"viewer/app/source/start_pictures.h\"
 

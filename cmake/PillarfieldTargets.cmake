@@ -72,7 +72,8 @@ function(pillarfield_library name)
 endfunction()
 
 # pillarfield_embed(<variable> <file> <function> [files...]): sets the variable to a source file whose function
-# pillarfield::<function>() returns the bytes of the file, which includes the further files.
+# pillarfield::<function>() returns the bytes of the file, which includes the further files. It is the last of its
+# target: in a unity build the definition follows the declaration.
 function(pillarfield_embed variable file function)
   set(output "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp")
   set(script "${PROJECT_SOURCE_DIR}/cmake/Embed.cmake")

@@ -13,7 +13,7 @@ namespace pillarfield::viewer {
 
 /// Sums of a rectangle in one frame.
 struct CachedSums {
-  std::uint64_t frame;
+  std::uint64_t frame = 0;
   PillarRect rect;
   SelectionSums sums;
 };
