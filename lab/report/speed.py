@@ -283,8 +283,7 @@ def live_cost_rows(bench, live):
     return [["readings in, GB/s", text(cost["readings_gb_per_s"], ".3g")],
             ["forces out, GB/s", text(cost["forces_gb_per_s"], ".3g")],
             [f"both over the copy's {copy_gb_per_s:.3g} GB/s of all stages", text(traffic / copy_gb_per_s)],
-            ["core-milliseconds a frame", text(1e3 * cost["core_s_per_frame"], ".3g")],
-            ["joules a frame", text(cost["joules_per_frame"], ".2g", "unmeasured: no counter can be read")]]
+            ["core-milliseconds a frame", text(1e3 * cost["core_s_per_frame"], ".3g")]]
 
 
 def main(docs, bench_json, live_json):

@@ -137,10 +137,9 @@ class Replay(StreamTest):
         self.assertGreater(cost["core_s_per_frame"], 0)
         # Four readings of a byte; three forces of four and a status.
         self.assertAlmostEqual(cost["forces_gb_per_s"] / cost["readings_gb_per_s"], 13 / 4)
-        self.assertGreater(cost["joules_per_frame"] or 1, 0)
         text = run("stream", self.scene, "--rate", 100000, *limits).stdout
         for words in ("99 % never", "20 frames solved more than a period of 0.010 ms", " lost, ",
-                      " GB/s of forces out", " core-milliseconds, "):
+                      " GB/s of forces out", " core-milliseconds"):
             self.assertIn(words, text)
 
     def test_an_interrupt_completes_the_files(self):

@@ -42,7 +42,6 @@ void RunCost::count(const ForceFieldView& forces) {
 void RunCost::look() {
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   core_s_ = core_seconds() - core_s_at_start_;
-  joules_ = meter_.joules();
 }
 
 double RunCost::per_frame(double total) const { return total / static_cast<double>(frames_); }
@@ -53,22 +52,17 @@ double RunCost::gb_per_s(std::size_t frame_bytes) const {
 
 nlohmann::ordered_json RunCost::json() const {
   if (frames_ == 0) return nullptr;
-  nlohmann::ordered_json joules(nullptr);
-  if (joules_) joules = per_frame(*joules_);
   return {{"readings_gb_per_s", gb_per_s(readings_bytes_)},
           {"forces_gb_per_s", gb_per_s(forces_bytes_)},
-          {"core_s_per_frame", per_frame(core_s_)},
-          {"joules_per_frame", joules}};
+          {"core_s_per_frame", per_frame(core_s_)}};
 }
 
 std::string RunCost::text() const {
   if (frames_ == 0) return "";
-  const std::string energy = joules_ ? fmt::format("{:.2g} J", per_frame(*joules_))
-                                     : "energy not known: no counter can be read";
   return fmt::format(
       "  traffic    {:.3g} GB/s of readings in, {:.3g} GB/s of forces out\n"
-      "  a frame    {:.3g} core-milliseconds, {}\n",
-      gb_per_s(readings_bytes_), gb_per_s(forces_bytes_), 1e3 * per_frame(core_s_), energy);
+      "  a frame    {:.3g} core-milliseconds\n",
+      gb_per_s(readings_bytes_), gb_per_s(forces_bytes_), 1e3 * per_frame(core_s_));
 }
 
 }  // namespace pillarfield::cli

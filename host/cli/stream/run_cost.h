@@ -6,20 +6,19 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/energy_meter.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield::cli {
 
-/// What a run asks of the computer: its traffic, core-seconds and energy from construction on.
+/// What a run asks of the computer: its traffic and core-seconds from construction on.
 class RunCost {
  public:
   explicit RunCost(const SolverPlan& plan);
 
   void count(const ForceFieldView& forces);
 
-  /// Reads time and energy; to be called every few minutes.
+  /// Reads the times.
   void look();
 
   /// As of the last look; null and "" without a frame.
@@ -37,8 +36,6 @@ class RunCost {
   double core_s_at_start_;
   double seconds_ = 0;
   double core_s_ = 0;
-  EnergyMeter meter_;
-  std::optional<double> joules_;
 };
 
 }  // namespace pillarfield::cli
