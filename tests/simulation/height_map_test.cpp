@@ -1,7 +1,6 @@
 #include "simulation/indenter/height_map.h"
 
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -202,85 +201,14 @@ TEST(HeightMap, OfABallInNumpyPressesAsTheBall) {
   std::filesystem::remove(file);
 }
 
-TEST(HeightMap, OfABallAsAPictureOf16BitsPressesAsTheBall) {
-  const auto file = scratch("ball.png");
-  const std::vector<double> relief = ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm);
-  const double low = relief[0];
-  const double range = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - low;
-  std::vector<std::uint16_t> samples;
-  samples.reserve(relief.size());
-  for (const double height : relief) {
-    samples.push_back(static_cast<std::uint16_t>(std::lround((height - low) / range * 65535)));
-  }
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = kMapSide;
-  image.height = kMapSide;
-  image.format = PNG_FORMAT_LINEAR_Y;
-  ASSERT_TRUE(png_image_write_to_file(&image, file.c_str(), 0, samples.data(), 0, nullptr));
-  expect_like_ball(map_indenter(file), 2e-3);
-  std::filesystem::remove(file);
-}
-
-std::string png_bytes(png_uint_32 format, png_uint_32 side) {
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = side;
-  image.height = side;
-  image.format = format;
-  std::vector<png_byte> samples(std::size_t{side} * side * PNG_IMAGE_PIXEL_SIZE(format));
-  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<png_byte>(i * 7);
-  png_alloc_size_t size = 0;
-  png_image_write_to_memory(&image, nullptr, &size, 0, samples.data(), 0, nullptr);
-  std::string bytes(size, '\0');
-  png_image_write_to_memory(&image, bytes.data(), &size, 0, samples.data(), 0, nullptr);
-  bytes.resize(size);
-  return bytes;
-}
-
-HeightMap parsed_png(const std::string& file) { return parse_png(as_bytes(file), "a.png"); }
-
-TEST(HeightMap, ReadsGreyOf8BitsRowByRow) {
-  const HeightMap map = parsed_png(png_bytes(PNG_FORMAT_GRAY, 3));
-  ASSERT_EQ(map.rows, 3U);
-  for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(map.heights[i], static_cast<double>(i) / 8);
-}
-
-TEST(HeightMap, RefusesOtherPicturesInOneLine) {
-  const auto refused = [](const std::string& file) {
-    return message_of([&] { static_cast<void>(parsed_png(file)); });
-  };
-  EXPECT_EQ(refused(png_bytes(PNG_FORMAT_RGB, 3)),
-            "a.png: the picture is not grey of 8 or 16 bits; convert it to that");
-  EXPECT_EQ(refused(png_bytes(PNG_FORMAT_GA, 3)),
-            "a.png: the picture is not grey of 8 or 16 bits; convert it to that");
-  EXPECT_EQ(refused(png_bytes(PNG_FORMAT_GRAY, 1)),
-            "a.png: the picture has 1 x 1 pixels; a height map has 2 x 2 at least");
-  EXPECT_TRUE(refused("\x89PNG").starts_with("a.png: is not a readable picture: "));
-  EXPECT_TRUE(refused("").starts_with("a.png: is not a readable picture: "));
-  const std::string good = png_bytes(PNG_FORMAT_GRAY, 20);
-  for (std::size_t length = 0; length < good.size(); ++length) {
-    EXPECT_THROW(static_cast<void>(parsed_png(good.substr(0, length))), Error) << length;
-  }
-  for (std::size_t at = 0; at < good.size(); ++at) {
-    std::string changed = good;
-    changed[at] = static_cast<char>(changed[at] ^ '\x41');
-    try {
-      static_cast<void>(parsed_png(changed));
-    } catch (const Error&) {
-      continue;
-    }
-  }
-}
-
 TEST(HeightMap, OnlyRegularFilesWithAKnownEndingAreOpened) {
   const auto refused = [](const std::filesystem::path& path) {
     return message_of([&] { static_cast<void>(read_height_map(path)); });
   };
   EXPECT_EQ(refused("/nowhere/a.npy"), "/nowhere/a.npy: No such file or directory; check its name");
   EXPECT_EQ(refused("/dev/zero"),
-            "/dev/zero: is not a height map; name a file that ends in .npy or .png");
-  const auto folder = scratch("folder.png");
+            "/dev/zero: is not a height map; name a file that ends in .npy");
+  const auto folder = scratch("folder.npy");
   std::filesystem::create_directory(folder);
   EXPECT_EQ(refused(folder), folder.string() + ": is a directory; name a file in it");
   std::filesystem::remove(folder);

@@ -247,12 +247,12 @@ TEST(SceneSurface, GivesTheSkinAShapeAndItsCurvature) {
             0);
 }
 
-/// Heights of a map are sampled at the pillars: key.png, 28 x 12 mm, on a skin of about 25 x 10 mm.
+/// Heights of a map are sampled at the pillars: key.npy, 28 x 12 mm, on a skin of about 25 x 10 mm.
 TEST(SceneSurface, SamplesAHeightMapAtThePillars) {
   const auto scene = [](const std::string& size) {
     return parse_scene(
         "skin.pillars = [8, 20]\n[surface]\nshape = \"height_map\"\nheight_map = "
-        "\"key.png\"\nheight_map_size_mm = " +
+        "\"key.npy\"\nheight_map_size_mm = " +
             size + "\nheight_map_depth_mm = 1.5\n",
         std::string(PILLARFIELD_SCENES) + "/s.toml");
   };
@@ -384,7 +384,7 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
            skin + "[[indenter]]\nshape = \"ellipsoid\"\nradii_mm = [9, 8, 7]\n" + at,
            skin + "[[indenter]]\nshape = \"cylinder\"\nradius_mm = 9\nlength_mm = 9\n" + at,
            skin +
-               "[[indenter]]\nshape = \"height_map\"\nheight_map = \"a.png\"\n"
+               "[[indenter]]\nshape = \"height_map\"\nheight_map = \"a.npy\"\n"
                "height_map_size_mm = [9, 9]\nheight_map_depth_mm = 1\n" +
                at}) {
     const auto beside = keys_beside(text);

@@ -20,7 +20,7 @@ Scene parsed_scene(const std::string& text) { return parse_scene(text, "folder/s
 TEST(IndenterOfAScene, EveryKeyIsRead) {
   const Scene scene = parsed_scene(
       "[skin]\nsize_mm = [40, 40]\nmodulus_kpa = 250\n"
-      "[[indenter]]\nshape = \"height_map\"\nheight_map = \"maps/key.png\"\n"
+      "[[indenter]]\nshape = \"height_map\"\nheight_map = \"maps/key.npy\"\n"
       "height_map_size_mm = [30, 10]\nheight_map_depth_mm = 2\nroughness_um = 12\n"
       "roughness_exponent = 0.7\nroughness_length_mm = 6\nfriction = 0.9\n"
       "friction_variation = 0.2\nfriction_variation_length_mm = 3\nsubsteps = 4\n"
@@ -34,7 +34,7 @@ TEST(IndenterOfAScene, EveryKeyIsRead) {
   ASSERT_EQ(scene.indenters.size(), 3U);
   const Indenter& key = scene.indenters[0];
   EXPECT_EQ(key.shape, IndenterShape::height_map);
-  EXPECT_EQ(key.height_map, "folder/maps/key.png");
+  EXPECT_EQ(key.height_map, "folder/maps/key.npy");
   EXPECT_EQ(key.height_map_size_mm[0], 30);
   EXPECT_EQ(key.height_map_size_mm[1], 10);
   EXPECT_EQ(key.height_map_depth_mm, 2);
@@ -112,9 +112,8 @@ TEST(WrongIndenter, IsRefusedInOneLine) {
        file + "7: key 'time_s' in path of [[indenter]] is 1; allowed: more than that of the key "
               "before, 1"},
       {"shape = \"height_map\"\nheight_map = \"/etc/passwd\"\nfriction = 1\n" + still,
-       file +
-           "4: key 'height_map' in [[indenter]] is \"/etc/passwd\"; allowed: the path of a .npy or "
-           ".png file, from the scene's folder"},
+       file + "4: key 'height_map' in [[indenter]] is \"/etc/passwd\"; allowed: the path of a .npy "
+              "file, from the scene's folder"},
       {"shape = \"height_map\"\nheight_map = \"a.npy\"\nheight_map_size_mm = [300, 9]\n"
        "height_map_depth_mm = 1\nfriction = 1\n" +
            still,

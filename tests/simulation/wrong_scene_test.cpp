@@ -77,8 +77,8 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:4: key 'radius_mm' in [surface] is unknown here; allowed: shape, "
        "bend_spread_counts_mm"},
       {"[surface]\nshape = \"height_map\"\nheight_map = \"a.bmp\"",
-       "s.toml:4: key 'height_map' in [surface] is \"a.bmp\"; allowed: the path of a .npy or .png "
-       "file, from the scene's folder"},
+       "s.toml:4: key 'height_map' in [surface] is \"a.bmp\"; allowed: the path of a .npy file, "
+       "from the scene's folder"},
       {"[sensor]\nadc_bits = 8\nfull_scale_counts = 256",
        "s.toml:4: key 'full_scale_counts' in [sensor] is 256; allowed: a whole number from 1 to "
        "255"},

@@ -39,8 +39,8 @@ struct Indenter {
   double length_mm = 20;                          ///< cylinder, end to end
   double edge_radius_mm = 0;                      ///< cylinder, punch; 0: sharp
 
-  /// A .npy (two-dimensional, integers or floats) or .png (grey, 8 or 16 bits) file. Row 0 is at
-  /// the top (+y); the largest value touches first. The constructor of Simulator reads it.
+  /// A .npy file (two-dimensional, integers or floats). Row 0 is at the top (+y); the largest value
+  /// touches first. The constructor of Simulator reads it.
   std::filesystem::path height_map;
   std::array<double, 2> height_map_size_mm = {20, 20};  ///< along x, y; empty beyond
   double height_map_depth_mm = 1;  ///< between its largest and its smallest value

@@ -71,7 +71,7 @@ struct Bending {
 
 /// Height map of the surface under the skin.
 struct SurfaceMap {
-  std::filesystem::path path;              ///< .npy or .png, as Indenter::height_map
+  std::filesystem::path path;              ///< .npy, as Indenter::height_map
   std::array<double, 2> size_mm = {0, 0};  ///< along x and y; it must cover the skin
   double depth_mm = 0;                     ///< height of its highest point above its lowest
 };

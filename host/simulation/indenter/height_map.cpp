@@ -22,8 +22,7 @@ std::vector<std::byte> bytes_of_height_map(const std::filesystem::path& path) {
   return bytes;
 }
 
-}  // namespace
-
+/// Scales values to [0, 1]. Throws Error if one is not finite.
 HeightMap height_map_of(std::size_t rows, std::size_t cols, std::vector<double> values,
                         const std::string& name) {
   const auto bad = std::find_if_not(values.begin(), values.end(),
@@ -41,11 +40,12 @@ HeightMap height_map_of(std::size_t rows, std::size_t cols, std::vector<double> 
   return {rows, cols, std::move(values)};
 }
 
+}  // namespace
+
 HeightMap read_height_map(const std::filesystem::path& path) {
   const std::string name = path.string();
   if (path.extension() == ".npy") return parse_npy(bytes_of_height_map(path), name);
-  if (path.extension() == ".png") return parse_png(bytes_of_height_map(path), name);
-  throw Error(name, "is not a height map", "name a file that ends in .npy or .png");
+  throw Error(name, "is not a height map", "name a file that ends in .npy");
 }
 
 namespace {

@@ -17,17 +17,12 @@ struct HeightMap {
 /// Largest number of rows or columns of a height map.
 inline constexpr std::size_t kMaxHeightMapSide = 4096;
 
-/// Reads a relief from a file of NumPy (.npy, two dimensions, whole numbers or floats) or a picture
-/// (.png, grey, 8 or 16 bits). Files are untrusted: opens only regular files of at most 160 MiB and
-/// checks the header strictly. Throws Error.
+/// Reads a relief from a file of NumPy (.npy, two dimensions, whole numbers or floats). Files are
+/// untrusted: opens only regular files of at most 160 MiB and checks the header strictly. Throws
+/// Error.
 [[nodiscard]] HeightMap read_height_map(const std::filesystem::path& path);
 
-/// As above, from the bytes of a .npy or .png file; `name` is its name in messages.
+/// As above, from the bytes of the file; `name` is its name in messages.
 [[nodiscard]] HeightMap parse_npy(const std::vector<std::byte>& bytes, const std::string& name);
-[[nodiscard]] HeightMap parse_png(const std::vector<std::byte>& bytes, const std::string& name);
-
-/// Scales values to [0, 1]. Throws Error if one is not finite.
-[[nodiscard]] HeightMap height_map_of(std::size_t rows, std::size_t cols,
-                                      std::vector<double> values, const std::string& name);
 
 }  // namespace pillarfield

@@ -89,10 +89,10 @@ IndenterKey read_indenter_key(TomlSection& section) {
 
 std::filesystem::path read_height_map_path(TomlSection& section,
                                            const std::filesystem::path& folder) {
-  constexpr std::string_view kAllowed = "the path of a .npy or .png file, from the scene's folder";
+  constexpr std::string_view kAllowed = "the path of a .npy file, from the scene's folder";
   const auto path = section.text("height_map");
   if (!path) section.fail_missing("height_map", kAllowed);
-  if (!path->ends_with(".npy") && !path->ends_with(".png")) {
+  if (!path->ends_with(".npy")) {
     section.fail("height_map", fmt::format("is \"{:.40}\"", *path), kAllowed);
   }
   return folder / *path;

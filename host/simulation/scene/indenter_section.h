@@ -13,7 +13,7 @@ namespace pillarfield {
 [[nodiscard]] Indenter read_indenter(TomlSection& section, const std::filesystem::path& folder,
                                      SkinLayout layout);
 
-/// Reads the key `height_map`: a .npy or .png file, relative to `folder`. Throws Error.
+/// Reads the key `height_map`: a .npy file, relative to `folder`. Throws Error.
 [[nodiscard]] std::filesystem::path read_height_map_path(TomlSection& section,
                                                          const std::filesystem::path& folder);
 
