@@ -161,7 +161,8 @@ struct LiveSession::State final : FrameStream, ForceSink {
   SessionClock::time_point last_report = last_arrival;
   std::uint64_t received_at_report = 0;
   double replay_hz = 0;         ///< over the last report
-  double share_in_contact = 0;  ///< of the elements that exist, over about the last second
+  double share_in_contact = 0;  ///< of the elements that exist
+  double covered = 0;           ///< part of about the last second in which contact covers the array
   SessionClock::time_point next_look = last_arrival;
 };
 
@@ -214,7 +215,7 @@ LiveEvent LiveSession::State::pass_tare_on(const SolverPlan& plan) {
   LiveEvent event = {.note = live_tare.note()};
   const std::scoped_lock lock(mutex);
   set_plan(info, plan);
-  share_in_contact = 0;
+  covered = 0;
   if (recording == nullptr) return event;
   if (std::exchange(recording_awaits_tare, false)) {
     recording->set_tare(info);
@@ -241,8 +242,8 @@ void LiveSession::State::look_at_contact(std::span<const std::uint8_t> status,
   next_look = now + std::chrono::milliseconds(50);
   const auto present = static_cast<double>(info.skin.elements() -
                                            count_absent_elements(info.calibration, info.skin));
-  const double share = static_cast<double>(count_in_contact(status)) / std::max(present, 1.0);
-  share_in_contact += (share - share_in_contact) / 10;
+  share_in_contact = static_cast<double>(count_in_contact(status)) / std::max(present, 1.0);
+  covered += ((share_in_contact >= kCovered ? 1 : 0) - covered) / 10;
 }
 
 void LiveSession::State::complete(Completion& completion) {
@@ -270,7 +271,7 @@ HealthReport LiveSession::State::health_now() const {
   health.dead = sensels.dead;
   health.stuck = sensels.stuck;
   health.drifting = sensels.drifting;
-  if (share_in_contact >= kCovered) {
+  if (covered > 0.8 && share_in_contact >= kCovered) {
     health.coverage =
         coverage_words(share_in_contact, has_tare(info.calibration), info.skin.layout);
   }
