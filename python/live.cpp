@@ -26,17 +26,21 @@ constexpr const char* kLiveSource = "Frames of a sensor as they come.";
 constexpr const char* kLiveResults = "Results that another program writes, as they come.";
 constexpr const char* kLiveSink = "Passes forces on without ever waiting for who receives them.";
 
+/// Seconds to wait; NaN is as long as can be.
+std::chrono::nanoseconds nanoseconds_of(double timeout_s) {
+  constexpr double kMostSeconds = 1e9;
+  const double seconds =
+      std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+}
+
 /// Waits for next_within(patience) to give something, at most for `timeout_s`; None if nothing
 /// came.
 template <class Next>
 py::object wait_for_next(double timeout_s, Next next_within) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::nanoseconds kPatience = std::chrono::milliseconds(100);
-  constexpr double kMostSeconds = 1e9;
-  const double seconds =
-      std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
-  const auto end =
-      Clock::now() + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+  const auto end = Clock::now() + nanoseconds_of(timeout_s);
   for (;;) {
     const std::chrono::nanoseconds left = end - Clock::now();
     py::object next = next_within(std::clamp(left, std::chrono::nanoseconds(0), kPatience));
@@ -97,11 +101,13 @@ class SharedStream {
 /// A live source, used by one thread at a time.
 class LiveFrames {
  public:
-  LiveFrames(const std::string& source, const Skin& skin, std::uint32_t serial_baud) {
+  LiveFrames(const std::string& source, const Skin& skin, std::uint32_t serial_baud,
+             std::optional<double> timeout_s) {
     const py::gil_scoped_release unlocked;
     LiveSourceOptions options;
     options.skin = skin;
     options.serial_baud = serial_baud;
+    if (timeout_s) options.most_wait = nanoseconds_of(*timeout_s);
     SignalCheck check_signals;
     options.stop = [&] { return check_signals(), false; };
     auto stream = open_live_source(source, options);
@@ -267,8 +273,8 @@ class Sink {
 
 void bind_live(py::module_& module) {
   py::class_<LiveFrames>(module, "LiveFrames", kLiveSource)
-      .def(py::init<const std::string&, const Skin&, std::uint32_t>(), py::arg("source"),
-           py::arg("skin"), py::arg("serial_baud"))
+      .def(py::init<const std::string&, const Skin&, std::uint32_t, std::optional<double>>(),
+           py::arg("source"), py::arg("skin"), py::arg("serial_baud"), py::arg("timeout_s"))
       .def("next", &LiveFrames::next, py::arg("timeout_s"))
       .def_property_readonly("health", &LiveFrames::health,
                              "What came and what did not: frames, lost, incomplete, late, ..., "

@@ -15,6 +15,7 @@
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
+#include "pillarfield/skin_calibration.h"
 #include "pipeline/missing_pillars.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
@@ -106,8 +107,18 @@ class Ring {
   }
 
   void set_tare(const py::object& tare) {
-    const auto values = plane_from<float>(tare, plan_.skin.rows, plan_.skin.cols, "set_tare");
-    with_processor([&](Processor& processor) { processor.set_tare(values); });
+    const py::object given = py::getattr(tare, "calibration", tare);  // of a step
+    SolverPlan plan = plan_;
+    if (py::isinstance<SkinCalibration>(given)) {
+      apply(given.cast<SkinCalibration>(), plan.skin, plan.calibration);
+    } else {
+      plan.calibration.tare = plane_from<float>(given, plan.skin.rows, plan.skin.cols, "set_tare");
+    }
+    with_processor([&](Processor& processor) {
+      processor.set_plan(plan);
+      if (tracker_) tracker_->get()->set_sensor(plan);
+    });
+    plan_ = std::move(plan);
   }
 
   py::object tare() {
@@ -231,9 +242,12 @@ void bind_processor(py::module_& module) {
            py::arg("missing"))
       .def("receive_planes", &Ring::receive)
       .def("try_receive_planes", &Ring::try_receive)
-      .def("set_tare", &Ring::set_tare, py::arg("tare"),
-           "Replaces the tare, [R, C], counts, for the frames submitted from now on.\n\nRaises "
-           "Error if the plan has no tare (it may be zero) or the values do not fit.")
+      .def(
+          "set_tare", &Ring::set_tare, py::arg("tare"),
+          "Replaces the tare, [R, C], counts, for the frames submitted from now on; of a "
+          "Calibration, or a step such as pf.calibrate.tare(frames), noise, threshold and all else "
+          "too.\n\nRaises Error if the plan has no tare (it may be zero) or the values do not "
+          "fit.")
       .def_property_readonly("tare", &Ring::tare,
                              "The tare after all frames so far, float32 [R, C], counts, or None.")
       .def("close", &Ring::close, "Frees the device, but no result that is held.")

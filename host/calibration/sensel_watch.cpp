@@ -54,7 +54,7 @@ struct SenselWatch::State {
   std::condition_variable_any changed;
   std::atomic<bool> is_ready = false;  ///< for a frame
   bool is_full = false;
-  std::optional<std::vector<float>> new_tare;
+  std::optional<SolverPlan> new_plan;
   SenselHealth published;
   std::jthread thread;
 };
@@ -66,9 +66,9 @@ void SenselWatch::State::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex);
     is_ready = true;
-    if (!changed.wait(lock, stop, [&] { return is_full || new_tare; })) return;
-    if (new_tare) {
-      plan.calibration.tare = *std::exchange(new_tare, std::nullopt);
+    if (!changed.wait(lock, stop, [&] { return is_full || new_plan; })) return;
+    if (new_plan) {
+      plan = *std::exchange(new_plan, std::nullopt);
       finder.reset();
       continue;
     }
@@ -160,9 +160,9 @@ void SenselWatch::offer(const FrameView& frame) {
   state_->changed.notify_one();
 }
 
-void SenselWatch::set_tare(std::vector<float> tare) {
+void SenselWatch::set_plan(const SolverPlan& plan) {
   const std::scoped_lock lock(state_->mutex);
-  state_->new_tare = std::move(tare);
+  state_->new_plan = plan;
   state_->changed.notify_one();
 }
 

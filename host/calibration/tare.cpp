@@ -112,6 +112,7 @@ class OutlierTest {
 /// pillars.
 void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std::uint8_t>& mask,
                          const OutlierTest& test) {
+  const std::uint32_t side = unloaded.skin().has_pillars() ? 1 : 2;  // in elements
   std::size_t touched = 0;
   std::string first;
   for_each_pillar(unloaded.skin(), [&](auto row, auto col, const auto& sensels) {
@@ -123,13 +124,13 @@ void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std:
       standing_out += test.as_if_touched(i) ? 1 : 0;
     }
     if (tested < kTestedSensels || standing_out < tested) return;
-    if (touched++ == 0) first = fmt::format("row {}, column {}", row, col);
+    if (touched++ == 0) first = fmt::format("row {}, column {}", side * row, side * col);
   });
   if (touched < kTouchedPillars) return;
-  throw Error(
-      unloaded.name(),
-      fmt::format("{} pillars read as if something touched them, the first at {}", touched, first),
-      "record while nothing touches the skin, or declare the skin preloaded");
+  throw Error(unloaded.name(),
+              fmt::format("{} {} read as if something touched them, the first at {}",
+                          side * side * touched, name_of(unloaded.skin().layout), first),
+              "record while nothing touches the skin, or declare the skin preloaded");
 }
 
 /// Fills tare and noise; zero for masked sensels.

@@ -52,14 +52,19 @@ Diagnosis look_at_source(const DoctorOptions& options) {
   LiveSourceOptions live;
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
+  const auto length = std::chrono::duration_cast<SourceClock::duration>(
+      std::chrono::duration<double>(options.seconds));
+  const auto end = SourceClock::now() + length;
+  live.most_wait = length;
+  live.say = [&](const std::string& words) {
+    fmt::print(stderr, "pillarfield: {}: {}\n", printable(options.source), words);
+  };
   const auto stream = open_live_source(options.source, live);
   if (!stream) {
     throw Error(options.source, "was interrupted before a frame came", "start its sender");
   }
   Doctor doctor(options.source, stream->skin(), stream->sensel_type());
   StreamedFrame frame(stream->sensel_type(), stream->skin());
-  const auto end = SourceClock::now() + std::chrono::duration_cast<SourceClock::duration>(
-                                            std::chrono::duration<double>(options.seconds));
   while (SourceClock::now() < end && !is_interrupted()) {
     const Arrival arrival = stream->next(frame, std::chrono::milliseconds(100));
     if (arrival == Arrival::ended) break;

@@ -107,12 +107,19 @@ struct Track {
   SlipTrend trend = {};
 };
 
-/// Adds a frame to the trend of a contact, and sets what it foretells.
+/// Slip margin above which a contact that slides turns about a point within it: its shear cancels.
+constexpr double kSpinMargin = 0.5;
+
+/// Adds a frame to the trend of a contact, and sets its forecast: now, where it slides, and none,
+/// where it spins.
 void set_forecast(ContactQuantities& contact, double time_s, SlipTrend& trend) {
   if (!(contact.normal_n > 0)) return;
   trend.add(time_s, std::hypot(contact.shear_x_n, contact.shear_y_n) / contact.normal_n);
-  if (contact.friction) {
+  if (!contact.friction) return;
+  if (contact.slip != SlipState::sliding) {
     contact.slip_forecast = trend.forecast(*contact.friction, *contact.friction_deviation);
+  } else if (contact.slip_margin.value_or(0) <= kSpinMargin) {
+    contact.slip_forecast = {.time_s = 0, .low_s = 0, .high_s = 0, .probability = {1, 1, 1}};
   }
 }
 
@@ -151,6 +158,12 @@ void check(const ContactOptions& options, const std::string& where) {
 struct ContactTracker::State {
   State(double element_pitch_mm, const ContactOptions& contact_options);
 
+  [[nodiscard]] FrictionEstimator estimator() {
+    return {sensor_of(pitch_mm, options),
+            options.friction,
+            moments.threads(),
+            {.past_pressure = false}};
+  }
   void require_size(const ForceFieldView& forces);
   const FrameContacts& track(const ForceFieldView& forces, double time_s,
                              std::span<const ContactFriction> friction);
@@ -180,8 +193,7 @@ ContactTracker::State::State(double element_pitch_mm, const ContactOptions& cont
     : pitch_mm(element_pitch_mm),
       options(checked(contact_options)),
       moments(options.threads),
-      friction_estimator(sensor_of(pitch_mm, options), options.friction, moments.threads(),
-                         {.past_pressure = false}) {
+      friction_estimator(estimator()) {
   if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
     throw Error(kPlace, fmt::format("a pitch of {} mm", pitch_mm), "it must be above zero");
   }
@@ -333,6 +345,14 @@ const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double
   state_->labels.find(forces.status, forces.rows, forces.cols, idle);
   return state_->track(forces, time_s, {});
 }
+
+void ContactTracker::set_sensor(const SolverPlan& plan) {
+  State& state = *state_;
+  pillarfield::set_sensor(state.options, plan);
+  state.friction_estimator = state.estimator();
+}
+
+const ContactOptions& ContactTracker::options() const { return state_->options; }
 
 const ContactLabels& ContactTracker::labels() const { return state_->labels; }
 

@@ -170,20 +170,4 @@ std::vector<float> CalibrationMemory::tare() const {
   return tare;
 }
 
-void CalibrationMemory::set_tare(const SolverPlan& plan) const {
-  std::vector<std::byte> values(padded_sensels(plan.skin) * sizeof(float));
-  for (std::size_t i = 0; i < planes_.size(); ++i) {
-    if (planes_[i] != CalibrationPlane::tare && planes_[i] != CalibrationPlane::activation) {
-      continue;
-    }
-    if (is_on_host_) {
-      copy_plane(plan, planes_[i], memory_.get() + i * plane_bytes_);
-      continue;
-    }
-    copy_plane(plan, planes_[i], values.data());
-    queue().enqueueWriteBuffer(buffer_, CL_TRUE, i * plane_bytes_, values.size(), values.data());
-  }
-  clear_states();
-}
-
 }  // namespace pillarfield

@@ -46,9 +46,6 @@ class CalibrationMemory {
   [[nodiscard]] std::size_t stride() const { return stride_; }
   /// Sets all states of sensels to rest; no kernel may be running.
   void clear_states() const;
-  /// Replaces tare and activation thresholds by those of a plan and sets states to rest; no kernel
-  /// may be running.
-  void set_tare(const SolverPlan& plan) const;
   /// The tares as they are, [sensel rows, cols]; there must be some.
   [[nodiscard]] std::vector<float> tare() const;
   /// True if there is a tare; it is the first plane.

@@ -122,21 +122,27 @@ LaneSlot::LaneSlot(const SolverPlan& plan, const LaneSettings& settings,
                    const CalibrationMemory& calibration, FrameOrder& order, ThreadPool* pool,
                    const SlotLayout& slot)
     : Slot(plan.skin, order),
-      plan_{lane_stages(plan, settings.whole), settings.whole, places_of(calibration.planes()),
-            activation_of(plan, settings.whole), wires_of(plan)},
       program_(settings.program),
       bands_{1, settings.division.bands},
       tiles_{slot.tiles_across, slot.tiles_down},
-      corrects_(corrects_forces(plan)),
       pool_(pool),
       memory_(slot.results),
       padded_cols_(padded_cols(plan.skin)) {
-  frame_.calibration = reinterpret_cast<unsigned char*>(calibration.bytes());
+  set_plan(plan, settings, calibration);
   frame_.results = reinterpret_cast<unsigned char*>(memory_.bytes());
   frame_.layout = slot.layout;
   const bool in_place =
       plan.sensel_type == SenselType::f32 && padded_sensels(plan.skin) == plan.skin.sensels();
   if (!settings.whole && !in_place) readings_.resize(padded_sensels(plan.skin));
+}
+
+void LaneSlot::set_plan(const SolverPlan& plan, const LaneSettings& settings,
+                        const CalibrationMemory& calibration) {
+  plan_ = {lane_stages(plan, settings.whole), settings.whole, places_of(calibration.planes()),
+           activation_of(plan, settings.whole), wires_of(plan)};
+  corrects_ = corrects_forces(plan);
+  frame_.calibration = reinterpret_cast<unsigned char*>(calibration.bytes());
+  memory_.clear_flags();
 }
 
 template <class Work>

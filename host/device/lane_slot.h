@@ -33,6 +33,10 @@ class LaneSlot final : public Slot {
   LaneSlot(const SolverPlan& plan, const LaneSettings& settings,
            const CalibrationMemory& calibration, FrameOrder& order, ThreadPool* pool);
 
+  /// The next frames are solved by another plan of the same frames and outputs.
+  void set_plan(const SolverPlan& plan, const LaneSettings& settings,
+                const CalibrationMemory& calibration);
+
   void submit(const FrameView& frame, const std::optional<Curvature>& bent,
               const single_precision::Drift& drift) override;
   void wait() override {}

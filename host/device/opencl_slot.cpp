@@ -58,15 +58,20 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
   layout_ = slot.layout;
   memory_ = settings.shares_memory ? shared_memory(device.context, slot.results)
                                    : staged_memory(device.context, queue_, plan, slot.results);
+  if (padded_sensels(plan.skin) != plan.skin.sensels()) {
+    padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
+  }
+  make_kernels(plan, settings, calibration);
+}
+
+void OpenClSlot::make_kernels(const SolverPlan& plan, const SlotSettings& settings,
+                              const CalibrationMemory& calibration) {
   const auto kernel = [&](const char* name) {
     cl::Kernel made(settings.program, name);
     made.setArg(kCalibration, calibration.buffer());
     made.setArg(kResults, memory_->results());
     return made;
   };
-  if (padded_sensels(plan.skin) != plan.skin.sensels()) {
-    padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
-  }
   kernel_ = kernel("solve_frame");
   const SensorEffects& effects = plan.calibration.effects;
   if (effects.wires) wires_ = kernel("find_wires");
@@ -74,9 +79,15 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
   if (effects.pillar_leak) unleak_ = kernel("remove_pillar_leak");
   if (effects.arm_mm) ratios_ = kernel("find_shear_ratios");
   if (corrects_forces(plan)) correct_ = kernel("correct_forces");
-  if (!order.follows_baseline) return;
+  if (!order().follows_baseline) return;
   follow_ = kernel("follow_baseline");
-  follow_.setArg(kInterval, order.interval);
+  follow_.setArg(kInterval, order().interval);
+}
+
+void OpenClSlot::set_plan(const SolverPlan& plan, const SlotSettings& settings,
+                          const CalibrationMemory& calibration) {
+  make_kernels(plan, settings, calibration);
+  memory_->clear_flags(queue_);
 }
 
 OpenClSlot::~OpenClSlot() {

@@ -26,6 +26,10 @@ class OpenClSlot final : public Slot {
              const CalibrationMemory& calibration, FrameOrder& order);
   ~OpenClSlot() override;
 
+  /// The next frames are solved by another plan of the same frames and outputs.
+  void set_plan(const SolverPlan& plan, const SlotSettings& settings,
+                const CalibrationMemory& calibration);
+
   void submit(const FrameView& frame, const std::optional<Curvature>& bent,
               const single_precision::Drift& drift) override;
   void wait() override;
@@ -33,6 +37,8 @@ class OpenClSlot final : public Slot {
   [[nodiscard]] const ResultMemory& memory() const override { return *memory_; }
 
  private:
+  void make_kernels(const SolverPlan& plan, const SlotSettings& settings,
+                    const CalibrationMemory& calibration);
   FrameView padded(const FrameView& frame);
   /// Starts a kernel on the frame.
   void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
 #include <future>
@@ -137,33 +138,38 @@ struct Processor::State {
       : device(opened),
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
+        outputs{wanted.angles, wanted.uncertainty},
         shares_memory(decide_sharing(options.memory, opened)),
         paths(decide_paths(opened, wanted, options, tuning)),
         lanes(lane_settings(opened, wanted, tuning.lanes)),
         calibration(opened.state().context, wanted, planes_of(lanes, wanted, paths)),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
-    order.is_needed = has_memory_on_device(wanted);
-    order.each_writes = wanted.baseline_rate || wanted.calibration.effects.memory;
-    order.follows_baseline = wanted.baseline_rate.has_value();
-    order.interval = static_cast<cl_uint>(wanted.baseline_interval);
+    begin_states(wanted);
     if (lanes) {
       add_lane_slots(wanted, options.frames_in_flight);
     } else {
       add_opencl_slots(wanted, options.frames_in_flight, tuning);
+      warm_up();
     }
-    if (!wanted.calibration.bend_x.empty()) curvature.emplace(wanted);
+    order.rate = static_cast<float>(baseline_turn_rate(wanted));
+    order.frame = 0;
+  }
+
+  /// What frames leave to the next ones, as a plan begins.
+  void begin_states(const SolverPlan& wanted) {
+    order.is_needed = has_memory_on_device(wanted);
+    order.each_writes = wanted.baseline_rate || wanted.calibration.effects.memory;
+    order.follows_baseline = wanted.baseline_rate.has_value();
+    order.interval = static_cast<cl_uint>(wanted.baseline_interval);
+    if (curvature) {
+      curvature->set_plan(wanted);
+    } else if (!wanted.calibration.bend_x.empty()) {
+      curvature.emplace(wanted);
+    }
     if (wanted.baseline_rate) drift.emplace(wanted);
     if (wanted.estimator == Estimator::contact) {
       contacts.emplace(wanted, threads_beside(device.state()));
     }
-    if (!lanes) warm_up();
-    order.rate = static_cast<float>(baseline_turn_rate(wanted));
-    order.frame = 0;
-    if (!calibration.has_tare()) return;
-    retared.emplace(wanted);
-    Calibration& planes = retared->calibration;
-    planes.dead_zone = planes.noise = {};
-    planes.bend_x = planes.bend_y = planes.bend_xy = {};
   }
 
   void add_lane_slots(const SolverPlan& plan, int count) {
@@ -176,7 +182,6 @@ struct Processor::State {
   }
 
   void add_opencl_slots(const SolverPlan& plan, int count, const ProcessorTuning& tuning) {
-    SlotSettings settings;
     const int wanted_lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
     settings.lanes = block_lanes(wanted_lanes, quad_cols(skin));
     settings.paths = paths;
@@ -186,6 +191,27 @@ struct Processor::State {
       slots.push_back(
           std::make_shared<OpenClSlot>(device.state(), plan, settings, calibration, order));
     }
+  }
+
+  /// Waits for the frames in flight, whose results stay as they are.
+  void set_plan(const SolverPlan& plan) {
+    if (!lanes) {
+      settings.program =
+          device.state().program(kernel_source(plan, settings.lanes, settings.paths));
+    }
+    for (const auto& slot : slots) slot->wait();
+    if (lanes) lanes.emplace(plan, *lanes->program);
+    calibration = {device.state().context, plan, planes_of(lanes, plan, paths)};
+    begin_states(plan);
+    for (const auto& slot : slots) {
+      if (lanes) {
+        static_cast<LaneSlot&>(*slot).set_plan(plan, *lanes, calibration);
+      } else {
+        static_cast<OpenClSlot&>(*slot).set_plan(plan, settings, calibration);
+      }
+    }
+    order.rate = static_cast<float>(baseline_turn_rate(plan));
+    order.frame = 0;
   }
 
   void submit(const FrameView& frame);
@@ -202,17 +228,18 @@ struct Processor::State {
   Device device;
   Skin skin;
   SenselType sensel_type;
+  std::array<bool, 2> outputs;  ///< angles, uncertainty
   bool shares_memory;
   SpeedPaths paths;
   std::optional<LaneSettings> lanes;  ///< of the host
+  SlotSettings settings;              ///< of an OpenCL device
   std::unique_ptr<ThreadPool> pool;   ///< of the host, for large frames
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
   std::optional<DriftFollower> drift;          ///< of a followed baseline
   std::optional<ContactStage> contacts;        ///< of the estimator `contact`
-  std::optional<SolverPlan> retared;         ///< of a plan with a tare: what set_tare() needs of it
-  std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
+  std::vector<std::shared_ptr<Slot>> slots;    ///< a pinned one outlives the processor
   SlotScheduler scheduler;
   const Slot* last = nullptr;  ///< of the frame received last
 };
@@ -381,28 +408,19 @@ std::optional<ForceFieldView> Processor::try_receive() {
   return receive();
 }
 
-void Processor::set_tare(std::span<const float> tare) {
-  constexpr const char* kWhere = "Processor::set_tare";
+void Processor::set_plan(const SolverPlan& plan) {
+  constexpr const char* kWhere = "Processor::set_plan";
   await_kernels();
-  if (!state_->retared) {
-    throw Error(kWhere, "the plan has no tare",
-                "give it one in its calibration, for instance zero");
+  check(plan, kWhere);
+  const Skin& skin = state_->skin;
+  if (plan.skin.rows != skin.rows || plan.skin.cols != skin.cols ||
+      plan.skin.layout != skin.layout || plan.sensel_type != state_->sensel_type ||
+      plan.calibration.tare.empty() || !state_->calibration.has_tare() ||
+      state_->outputs != std::array{plan.angles, plan.uncertainty}) {
+    throw Error(kWhere, "the plan has other frames or outputs, or no tare",
+                "make another processor for it");
   }
-  if (tare.size() != state_->skin.sensels()) {
-    throw Error(kWhere, fmt::format("the tare has {} values", tare.size()),
-                fmt::format("the skin has {} x {} sensels", state_->skin.rows, state_->skin.cols));
-  }
-  Calibration given;
-  given.tare.assign(tare.begin(), tare.end());
-  check(given, state_->skin, kWhere, state_->sensel_type);
-  state_->retared->calibration.tare = std::move(given.tare);
-  with_opencl_errors(state_->device.info().name, [&] {
-    for (const auto& slot : state_->slots) slot->wait();
-    state_->calibration.set_tare(*state_->retared);
-  });
-  state_->order.frame = 0;  // as states that begin anew have it
-  if (state_->curvature) state_->curvature->set_tare(tare);
-  if (state_->drift) state_->drift->set_tare(tare);
+  with_opencl_errors(state_->device.info().name, [&] { state_->set_plan(plan); });
 }
 
 Processor::PinnedResult Processor::pin() {

@@ -30,6 +30,14 @@ class SharedMemory final : public SlotMemory {
     mapped_ = true;
   }
 
+  void clear_flags(const cl::CommandQueue& queue) override {
+    const bool was_mapped = mapped_;
+    release(queue);
+    SlotMemory::clear_flags(queue);
+    if (was_mapped) download(queue);
+    queue.finish();
+  }
+
   void release(const cl::CommandQueue& queue) override {
     if (mapped_) queue.enqueueUnmapMemObject(results_, pages_);
     mapped_ = false;

@@ -27,6 +27,12 @@ void ResultMemory::hold_flags() {
   idle_ = {{flags, layout_.idle_flags}, layout_.flag_stride, layout_.lanes};
 }
 
+void SlotMemory::clear_flags(const cl::CommandQueue& queue) {
+  if (layout_.idle_flags == 0) return;
+  queue.enqueueFillBuffer(results_, cl_uchar{0}, layout_.bytes, layout_.idle_flags);
+  queue.finish();
+}
+
 HostMemory::HostMemory(const ResultLayout& layout)
     : ResultMemory(layout), memory_(allocate_large_pages(layout.all_bytes())) {
   pages_ = memory_.get();

@@ -80,7 +80,7 @@ class ResultMemory {
  protected:
   explicit ResultMemory(const ResultLayout& layout) : layout_(layout) {}
 
-  /// Clears the flags of idle blocks, which follow the pages.
+  /// Clears the flags of idle blocks, which follow the pages: none is idle.
   void hold_flags();
 
   ResultLayout layout_;
@@ -95,6 +95,7 @@ class HostMemory final : public ResultMemory {
 
   /// Results, idle flags and scratch memory.
   [[nodiscard]] std::byte* bytes() const { return pages_; }
+  void clear_flags() { hold_flags(); }
 
  private:
   LargePages memory_;
@@ -110,6 +111,9 @@ class SlotMemory : public ResultMemory {
 
   /// Starts the transfer of the results to the host.
   virtual void download(const cl::CommandQueue& queue) = 0;
+
+  /// Clears the flags of idle blocks while no command runs; what the host reads stays.
+  virtual void clear_flags(const cl::CommandQueue& queue);
 
   /// Returns the memory to the device, before both end: PoCL leaks a buffer that is still mapped.
   virtual void release(const cl::CommandQueue& queue) { static_cast<void>(queue); }

@@ -53,9 +53,7 @@ class StagedMemory final : public SlotMemory {
         results_on_host_(context, queue, layout.bytes + kPageSize) {
     pages_ = results_on_host_.first_page();
     results_ = {context, CL_MEM_READ_WRITE, layout.all_bytes()};
-    if (layout.idle_flags == 0) return;
-    queue.enqueueFillBuffer(results_, cl_uchar{0}, layout.bytes, layout.idle_flags);
-    queue.finish();
+    clear_flags(queue);
   }
 
   DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {

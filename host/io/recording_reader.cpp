@@ -67,6 +67,10 @@ Recording::Recording(hdf5::File file, const ReadOptions& options)
   read_size();
   take_skin(options);
   calibration_ = read_planes(file_, skin_, type_);
+  // A live recording without a tare keeps room for its noise.
+  if (std::ranges::all_of(calibration_.noise, [](float noise) { return noise == 0; })) {
+    calibration_.noise.clear();
+  }
   if (options.falling && !read_skin(file_).falling && !calibration_.tare.empty()) {
     throw Error(path_.string(), "its tare is that of readings that rise under load",
                 "leave out --falling");

@@ -238,17 +238,15 @@ void RecordingWriter::append_incomplete(const FrameView& frame, double time_s,
                nullptr, sensels);
 }
 
-void RecordingWriter::set_tare(const std::vector<float>& tare) {
+void RecordingWriter::set_tare(const Calibration& calibration, double threshold_counts) {
   const hdf5::QuietErrors quiet;
   state_->require_open();
   if (!state_->has_tare) {
     throw Error(state_->path.string(), "was created without a tare", "give one, of zeros");
   }
-  Calibration calibration;
-  calibration.tare = tare;
   check(calibration, state_->skin, state_->path.string(), state_->type);
-  if (tare.empty()) return;
-  hdf5::rewrite_plane(state_->file, recording_format::kTare, H5T_NATIVE_FLOAT, tare.data());
+  if (calibration.tare.empty()) return;
+  rewrite_tare(state_->file, calibration, threshold_counts);
 }
 
 void RecordingWriter::flush() {

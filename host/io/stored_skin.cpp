@@ -141,6 +141,17 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
                     skin.cols, calibration.mask.data());
 }
 
+void rewrite_tare(const hdf5::File& file, const Calibration& calibration, double threshold_counts) {
+  hdf5::rewrite_attribute(file, open_skin(file).get(), recording_format::kThreshold,
+                          threshold_counts);
+  for (const auto& [name, member] : kFloatPlanes) {
+    if (member != &Calibration::tare && member != &Calibration::noise) continue;
+    const std::vector<float>& plane = calibration.*member;
+    if (plane.empty() || !hdf5::exists(file, name)) continue;
+    hdf5::rewrite_plane(file, name, H5T_NATIVE_FLOAT, plane.data());
+  }
+}
+
 Calibration read_planes(const hdf5::File& file, const Skin& skin, std::optional<SenselType> type) {
   const auto plane = [&](const char* name) {
     if (!hdf5::exists(file, name)) return std::vector<float>();

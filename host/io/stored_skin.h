@@ -40,6 +40,9 @@ void write_effects(const hdf5::File& file, const char* place, const SensorEffect
 /// there are any; no group if the calibration is empty.
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration);
 
+/// Replaces the threshold in /skin and the planes tare and noise that the file has.
+void rewrite_tare(const hdf5::File& file, const Calibration& calibration, double threshold_counts);
+
 /// Reads the planes and effects in the file, one value per sensel of `skin`; `type` is that of its
 /// readings, unset if unknown. Throws Error if a plane has another size or a value is out of range.
 [[nodiscard]] Calibration read_planes(const hdf5::File& file, const Skin& skin,

@@ -9,10 +9,13 @@
 #include <future>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/live_tare.h"
+#include "pillarfield/reading_check.h"
 #include "pillarfield/sensel_watch.h"
 #include "pillarfield/solve_range.h"
 
@@ -66,8 +69,8 @@ double session_seconds(SessionClock::duration time) {
   return std::chrono::duration<double>(time).count();
 }
 
-bool has_tare(const LiveSinkInfo& info) {
-  return std::ranges::any_of(info.calibration.tare, [](float tare) { return tare != 0; });
+bool has_tare(const Calibration& calibration) {
+  return std::ranges::any_of(calibration.tare, [](float tare) { return tare != 0; });
 }
 
 struct TareRequest {
@@ -85,25 +88,34 @@ struct Completion {
 
 }  // namespace
 
+namespace {
+
+void set_plan(LiveSinkInfo& info, const SolverPlan& plan) {
+  if (info.forces.contacts) set_sensor(*info.forces.contacts, plan);
+  info.skin = plan.skin;
+  info.sensel_type = plan.sensel_type;
+  info.calibration = plan.calibration;
+}
+
+}  // namespace
+
 LiveSinkInfo live_sink_info(const SolverPlan& plan, const std::string& device,
                             const std::string& source,
                             const std::optional<ContactOptions>& contacts) {
   LiveSinkInfo info;
   info.forces = file_info(plan, device, source);
   info.forces.contacts = contacts;
-  if (contacts) set_sensor(*info.forces.contacts, plan);
-  info.skin = plan.skin;
-  info.sensel_type = plan.sensel_type;
-  info.calibration = plan.calibration;
+  set_plan(info, plan);
   return info;
 }
 
 /// The source and the sink that the pipeline sees.
 struct LiveSession::State final : FrameStream, ForceSink {
-  State(FrameStream& from, const SolverPlan& plan, Processor& solver, LiveSinkInfo described)
+  State(FrameStream& from, const SolverPlan& plan, Processor& solver, LiveSinkInfo described,
+        bool keeps_threshold)
       : source(from),
         processor(solver),
-        live_tare(plan.skin, plan.sensel_type),
+        live_tare(plan, keeps_threshold),
         watch(plan),
         info(std::move(described)) {}
 
@@ -112,15 +124,17 @@ struct LiveSession::State final : FrameStream, ForceSink {
   [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) override;
   void append(const SolvedFrame& frame) override;
   void take_tare(const StreamedFrame& frame);
-  [[nodiscard]] LiveEvent pass_tare_on(const std::vector<float>& tare);
+  [[nodiscard]] LiveEvent pass_tare_on(const SolverPlan& plan);
   void complete(Completion& completion);
+  void look_at_contact(std::span<const std::uint8_t> status, SessionClock::time_point now);
   [[nodiscard]] HealthReport health_now() const;
 
   FrameStream& source;
   Processor& processor;
   // Of the thread of run().
   std::optional<std::uint64_t> most_frames;
-  std::uint64_t taken = 0;  ///< frames that the pipeline got
+  ContactTracker* contacts = nullptr;  ///< of the run
+  std::uint64_t taken = 0;             ///< frames that the pipeline got
   LiveTare live_tare;
   std::uint64_t tare_tag = 0;
   bool started = false;
@@ -146,7 +160,10 @@ struct LiveSession::State final : FrameStream, ForceSink {
   SessionClock::time_point last_arrival = SessionClock::now();
   SessionClock::time_point last_report = last_arrival;
   std::uint64_t received_at_report = 0;
-  double replay_hz = 0;  ///< over the last report
+  double replay_hz = 0;         ///< over the last report
+  double share_in_contact = 0;  ///< of the elements that exist
+  double covered = 0;           ///< part of about the last second in which contact covers the array
+  SessionClock::time_point next_look = last_arrival;
 };
 
 Arrival LiveSession::State::next(StreamedFrame& frame, std::chrono::nanoseconds timeout) {
@@ -172,18 +189,19 @@ void LiveSession::State::take_tare(const StreamedFrame& frame) {
   {
     const std::scoped_lock lock(mutex);
     if (const auto request = std::exchange(tare_request, {})) {
-      live_tare.start(request->duration, request->preloaded);
+      live_tare.start(request->duration, request->preloaded, processor.tare());
       tare_tag = request->tag;
     }
   }
   if (!live_tare.is_running()) return;
   LiveEvent event;
   try {
-    const std::vector<float>* const tare = live_tare.add(frame.readings, frame.arrived);
-    if (tare == nullptr) return;
-    processor.set_tare(*tare);
-    watch.set_tare(*tare);
-    event = pass_tare_on(*tare);
+    const SolverPlan* const plan = live_tare.add(frame.readings, frame.arrived);
+    if (plan == nullptr) return;
+    processor.set_plan(*plan);
+    watch.set_plan(*plan);
+    if (contacts != nullptr) contacts->set_sensor(*plan);
+    event = pass_tare_on(*plan);
   } catch (const Error& error) {
     event.error = error.what();
   }
@@ -193,13 +211,14 @@ void LiveSession::State::take_tare(const StreamedFrame& frame) {
   events.push_back(std::move(event));
 }
 
-LiveEvent LiveSession::State::pass_tare_on(const std::vector<float>& tare) {
-  LiveEvent event;
+LiveEvent LiveSession::State::pass_tare_on(const SolverPlan& plan) {
+  LiveEvent event = {.note = live_tare.note()};
   const std::scoped_lock lock(mutex);
-  info.calibration.tare = tare;
+  set_plan(info, plan);
+  covered = 0;
   if (recording == nullptr) return event;
   if (std::exchange(recording_awaits_tare, false)) {
-    recording->set_tare(tare);
+    recording->set_tare(info);
   } else {
     event.recording = recording->name();
   }
@@ -209,10 +228,22 @@ LiveEvent LiveSession::State::pass_tare_on(const std::vector<float>& tare) {
 void LiveSession::State::append(const SolvedFrame& frame) {
   const std::scoped_lock lock(mutex);
   for (const auto& sink : sinks) sink->append(frame);
-  const auto latency = SessionClock::now().time_since_epoch() - frame.arrived;
+  const auto now = SessionClock::now();
+  look_at_contact(frame.forces.status, now);
+  const auto latency = now.time_since_epoch() - frame.arrived;
   all_latencies.add(latency);
   recent_latencies.add(latency);
   ++solved;
+}
+
+void LiveSession::State::look_at_contact(std::span<const std::uint8_t> status,
+                                         SessionClock::time_point now) {
+  if (now < next_look) return;
+  next_look = now + std::chrono::milliseconds(50);
+  const auto present = static_cast<double>(info.skin.elements() -
+                                           count_absent_elements(info.calibration, info.skin));
+  share_in_contact = static_cast<double>(count_in_contact(status)) / std::max(present, 1.0);
+  covered += ((share_in_contact >= kCovered ? 1 : 0) - covered) / 10;
 }
 
 void LiveSession::State::complete(Completion& completion) {
@@ -240,12 +271,16 @@ HealthReport LiveSession::State::health_now() const {
   health.dead = sensels.dead;
   health.stuck = sensels.stuck;
   health.drifting = sensels.drifting;
+  if (covered > 0.8 && share_in_contact >= kCovered) {
+    health.coverage =
+        coverage_words(share_in_contact, has_tare(info.calibration), info.skin.layout);
+  }
   return health;
 }
 
 LiveSession::LiveSession(FrameStream& source, const SolverPlan& plan, Processor& processor,
-                         LiveSinkInfo info)
-    : state_(std::make_unique<State>(source, plan, processor, std::move(info))) {}
+                         LiveSinkInfo info, bool keeps_threshold)
+    : state_(std::make_unique<State>(source, plan, processor, std::move(info), keeps_threshold)) {}
 
 LiveSession::~LiveSession() = default;
 
@@ -256,11 +291,11 @@ void LiveSession::add(std::unique_ptr<LiveSink> sink) {
 
 PipelineStatistics LiveSession::run(const Run& options) {
   if (!std::exchange(state_->started, true)) {
-    state_->source.discard_waiting();
     const std::scoped_lock lock(state_->mutex);
     state_->last_arrival = state_->last_report = SessionClock::now();
   }
   state_->most_frames = options.frames;
+  state_->contacts = options.contacts;
   std::vector<ForceSink*> sinks = {state_.get()};
   if (options.sink != nullptr) sinks.push_back(options.sink);
   Pipeline pipeline(*state_, state_->processor, std::move(sinks),
@@ -306,7 +341,7 @@ void LiveSession::record(const std::filesystem::path& path) {
   std::unique_ptr<LiveSink> sink = create_live_recording(path.string(), info);
   const std::scoped_lock lock(state_->mutex);
   state_->recording = sink.get();
-  state_->recording_awaits_tare = state_->taring || !has_tare(state_->info);
+  state_->recording_awaits_tare = state_->taring || !has_tare(state_->info.calibration);
   state_->sinks.push_back(std::move(sink));
 }
 
@@ -325,6 +360,11 @@ bool LiveSession::stop_recording(std::uint64_t tag) {
   Completion& last = state_->completions.back();
   last.done = std::async(std::launch::async, [to = last.sink.get()] { to->finish(); });
   return true;
+}
+
+LiveSinkInfo LiveSession::info() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->info;
 }
 
 std::vector<LiveEvent> LiveSession::take_events() {

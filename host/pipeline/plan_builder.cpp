@@ -7,6 +7,7 @@
 
 #include "base/quantile.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tare.h"
 #include "pillarfield/tuning.h"
 
 namespace pillarfield {
@@ -59,6 +60,20 @@ void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
   plan.pressure = std::ranges::find(outputs, "pressure") != outputs.end();
 }
 
+/// Where the noise is known and nothing states a threshold: that of a tare.
+void set_default_threshold(SolverPlan& plan) {
+  const bool has_noise = plan.noise_counts || !plan.calibration.noise.empty();
+  if (!has_noise || plan.skin.threshold_counts > 0) return;
+  SkinCalibration calibration = blank_calibration(plan.skin);
+  calibration.planes = plan.calibration;
+  calibration.power_law = plan.skin.power_law;
+  if (calibration.planes.noise.empty()) {
+    calibration.planes.noise.assign(plan.skin.sensels(), static_cast<float>(reading_noise(plan)));
+  }
+  set_threshold(calibration, TareOptions{}.threshold_factor);
+  plan.skin.threshold_counts = *calibration.threshold_counts;
+}
+
 /// Enables all outputs, and of pillars the parity test; an earlier tolerance stays.
 void enable_everything(SolverPlan& plan) {
   plan.uncertainty = plan.pressure = true;
@@ -101,6 +116,7 @@ SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::strin
   }
   if (settings.layout) plan.skin.layout = *settings.layout;
   apply_numbers(settings, plan);
+  if (!settings.threshold_counts) set_default_threshold(plan);
   if (settings.baseline_time_s) baseline_time_s = settings.baseline_time_s;
   if (settings.estimator) plan.estimator = *settings.estimator;
   apply_friction(settings, plan.friction);

@@ -10,20 +10,34 @@
 namespace pillarfield {
 namespace {
 
-constexpr double kNearlyAll = 0.95;
 constexpr double kHardlyAny = 0.01;
 
 }  // namespace
+
+std::uint64_t count_in_contact(std::span<const std::uint8_t> status) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(
+      status, [](std::uint8_t bits) { return (bits & status::kUsable) != 0; }));
+}
+
+std::string coverage_words(double share, bool has_tare, SkinLayout layout) {
+  return fmt::format("{:.1f} % of all {} are in contact{}", 100 * share, name_of(layout),
+                     has_tare
+                         ? ": a load covers the array, or its tare has drifted. Take it anew "
+                           "while nothing touches it, or let it follow with --follow-baseline (in "
+                           "Python baseline_time_s=)."
+                         : " and there is no tare; measure one with 'pillarfield calibrate tare', "
+                           "in frames without load with --tare-frames (in Python tare_frames=), "
+                           "or live with --tare or the viewer's key Z.");
+}
 
 ReadingCheck::ReadingCheck(const SolverPlan& plan)
     : plan_(plan),
       present_(plan.skin.elements() - count_absent_elements(plan.calibration, plan.skin)) {}
 
 void ReadingCheck::append(const SolvedFrame& frame) {
-  std::uint64_t touched = 0;
+  const std::uint64_t touched = count_in_contact(frame.forces.status);
   std::uint64_t faulty = 0;
   for (const std::uint8_t status : frame.forces.status) {
-    touched += (status & status::kUsable) != 0 ? 1 : 0;
     faulty += (status & status::kInconsistent) != 0 ? 1 : 0;
   }
   ++frames_;
@@ -78,12 +92,8 @@ std::vector<std::string> ReadingCheck::warnings() const {
         "of missing sensels.",
         blank_frames_, frames_));
   }
-  if (share >= kNearlyAll && plan_.calibration.tare.empty()) {
-    sentences.push_back(fmt::format(
-        "{:.1f} % of all {} are in contact and there is no tare; measure one with "
-        "'pillarfield calibrate tare', or in frames without load with --tare-frames (in Python "
-        "tare_frames=).",
-        100 * share, name_of(plan_.skin.layout)));
+  if (share >= kCovered) {
+    sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));
   }
   if (share <= kHardlyAny && blank_frames_ < frames_) warn_of_no_contact(sentences);
   return sentences;

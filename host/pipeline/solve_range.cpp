@@ -177,7 +177,11 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
     const std::uint64_t warm = first - std::min(first, checkpoints.warm_up);
     const auto stream = file_stream(source, warm, end);
     Processor processor(device, plan, options.processor);
-    if (survey && warm > 0) processor.set_tare(survey->tare_at(warm, options.stop));
+    if (survey && warm > 0) {
+      SolverPlan drifted = plan;
+      drifted.calibration.tare = survey->tare_at(warm, options.stop);
+      processor.set_plan(drifted);
+    }
     std::optional<ContactTracker> tracker;
     if (options.contacts) tracker.emplace(plan.skin.element_pitch_mm(), *options.contacts);
     SegmentSink segment(first, done.contacts, sinks);

@@ -46,7 +46,10 @@ CurvatureFollower::CurvatureFollower(const SolverPlan& plan) : cols_(plan.skin.c
   limit_ = std::max(kUntouchedDeviations * noise_, plan.skin.threshold_counts);
 }
 
-void CurvatureFollower::set_tare(std::span<const float> tare) {
+void CurvatureFollower::set_plan(const SolverPlan& plan) {
+  const std::vector<float>& tare = plan.calibration.tare;
+  noise_ = reading_noise_n(plan) * plan.skin.counts_per_newton;
+  limit_ = std::max(kUntouchedDeviations * noise_, plan.skin.threshold_counts);
   for (Sample& sample : samples_) {
     const PatternTriple& pattern = sample.pattern;
     sample.tare = tare[sample.row * cols_ + sample.col] -

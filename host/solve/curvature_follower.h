@@ -24,8 +24,8 @@ class CurvatureFollower {
   /// less than a tenth of the noise.
   std::optional<Curvature> follow(const FrameView& frame);
 
-  /// Follows from a new tare on, measured at the curvature applied so far.
-  void set_tare(std::span<const float> tare);
+  /// Follows from a plan with a new tare on, measured at the curvature applied so far.
+  void set_plan(const SolverPlan& plan);
 
   /// The curvature applied so far.
   [[nodiscard]] const Curvature& curvature() const { return applied_; }

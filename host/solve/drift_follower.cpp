@@ -69,16 +69,6 @@ double DriftFollower::mean(const Tile& tile, Value value) const {
   return sum / static_cast<double>(tile.end - tile.first);
 }
 
-void DriftFollower::set_tare(std::span<const float> tare) {
-  for (Tile& tile : tiles_) {
-    tile.tare = mean(tile, [&](Sensel at) { return tare[at.row * cols_ + at.col]; });
-    tile.trusted_from = 0;
-  }
-  drift_ = sum_ = {};
-  std::ranges::fill(turns_, PatternTriple{});
-  frames_ = 0;
-}
-
 /// Whether a tile is as far off its tare as untouched ones were in the last frame.
 bool DriftFollower::is_near(const Tile& tile) const {
   const auto sensels = static_cast<double>(tile.end - tile.first);

@@ -27,10 +27,7 @@ class DriftFollower {
   /// depend on loads.
   single_precision::Drift follow(const FrameView& frame, const std::optional<Curvature>& bent = {});
 
-  /// Follows from a new tare on.
-  void set_tare(std::span<const float> tare);
-
-  /// Number of frames since the start, or the new tare.
+  /// Number of frames since the start.
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,9 +12,10 @@ namespace pillarfield {
 
 /// A kind of live sink, defined beside its class and listed in live_sink.cpp.
 struct LiveSinkKind {
-  std::string_view prefix;    ///< "udp:", or an extension ".mcap"
-  const char* form = "";      ///< for messages: "udp:ADDRESS:PORT"
-  bool stands_alone = false;  ///< the prefix without its colon is a whole target
+  std::string_view prefix;             ///< "udp:", or an extension ".mcap"
+  const char* form = "";               ///< for messages: "udp:ADDRESS:PORT"
+  bool stands_alone = false;           ///< the prefix without its colon is a whole target
+  std::optional<int> least_port = {};  ///< an address with a port from this on follows the prefix
   /// Creates the sink for the whole target.
   std::unique_ptr<LiveSink> (*create)(const std::string& target,
                                       const LiveSinkInfo& info) = nullptr;

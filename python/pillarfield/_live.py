@@ -36,8 +36,8 @@ class LiveSource(_core.LiveFrames):
     """Frames of a sensor as they come, an iterator of Frame; live() opens one."""
 
     def __init__(self, source: str, *, skin: Optional[_core.Skin] = None,
-                 serial_baud: int = 2_000_000) -> None:
-        super().__init__(source, skin or _core.Skin(2, 2), serial_baud)
+                 serial_baud: int = 2_000_000, timeout: Optional[float] = None) -> None:
+        super().__init__(source, skin or _core.Skin(2, 2), serial_baud, timeout)
 
     def receive(self, timeout_s: float) -> Optional[Frame]:
         """The next frame, or None if none comes in time; raises StopIteration at the end."""
@@ -60,8 +60,8 @@ class LiveSource(_core.LiveFrames):
         self.close()
 
 
-def live(source: str, *, skin: Optional[_core.Skin] = None,
-         serial_baud: int = 2_000_000) -> LiveSource:
+def live(source: str, *, skin: Optional[_core.Skin] = None, serial_baud: int = 2_000_000,
+         timeout: Optional[float] = None) -> LiveSource:
     """Opens a live source and waits for its first frame; Ctrl+C gives up.
 
     source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'
@@ -69,8 +69,9 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
     skin: constants of the skin; rows and columns come from the frames; without its layout 'sensels',
         or that of a FlexiTac board, 2 x 2 sensels are a pillar
     serial_baud: of 'serial:'
+    timeout: of the wait for the first frame, s; None: it has no end
 
-    Raises Error for another source or one that cannot be opened. What a sensor sends never raises:
+    Raises Error for another source, one that cannot be opened, or no frame in time. What a sensor sends never raises:
     invalid packets are counted in health.
 
     >>> import pillarfield as pf
@@ -78,7 +79,7 @@ def live(source: str, *, skin: Optional[_core.Skin] = None,
     Traceback (most recent call last):
     pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]
     """
-    return LiveSource(source, skin=skin, serial_baud=serial_baud)
+    return LiveSource(source, skin=skin, serial_baud=serial_baud, timeout=timeout)
 
 
 class LiveForces(_core.LiveResults):

@@ -64,23 +64,43 @@ class Frames {
   std::uint64_t index_ = 0;
 };
 
+SolverPlan plan_of(const Skin& skin) {
+  SolverPlan plan;
+  plan.skin = skin;
+  plan.calibration.tare.assign(skin.sensels(), 0);
+  return plan;
+}
+
+/// The plan with the tare of frames at 1 kHz over 20 ms, where `spoil` changes each.
+SolverPlan tared(LiveTare& tare, Frames& frames, bool preloaded = false,
+                 const std::function<void(FrameBuffer&)>& spoil = {}) {
+  tare.start(milliseconds(20), preloaded);
+  for (nanoseconds now(0);; now += milliseconds(1)) {
+    FrameBuffer& frame = frames.next();
+    if (spoil) spoil(frame);
+    if (const SolverPlan* const found = tare.add(frame.view(), now)) return *found;
+  }
+}
+
 /// A tare at 1 kHz over 200 ms: 50 of the frames, so that its error is that of 50 readings.
 TEST(LiveTare, IsTheMeanOfFramesOverItsDuration) {
   PressedSkin skin(20, 20, live_sensor());
   Frames frames(skin.scene());
   const Calibration truth = skin.truth();
-  LiveTare tare(skin.skin(), SenselType::u8);
+  LiveTare tare(plan_of(skin.skin()));
   EXPECT_EQ(tare.add(frames.next().view(), nanoseconds(0)), nullptr) << "before start()";
   tare.start(milliseconds(200));
-  const std::vector<float>* found = nullptr;
+  const SolverPlan* found = nullptr;
   int count = 0;
   for (nanoseconds now(5'000'000'000); found == nullptr; now += milliseconds(1), ++count) {
     found = tare.add(frames.next().view(), now);
     EXPECT_EQ(tare.is_running(), found == nullptr);
   }
   EXPECT_EQ(count, 201);
-  for (std::size_t i = 0; i < found->size(); ++i) {
-    EXPECT_LT(std::abs((*found)[i] - truth.tare[i]), 5.2 * std::sqrt((1 + 1 / 12.0) / 50)) << i;
+  for (std::size_t i = 0; i < truth.tare.size(); ++i) {
+    EXPECT_LT(std::abs(found->calibration.tare[i] - truth.tare[i]),
+              5.2 * std::sqrt((1 + 1 / 12.0) / 50))
+        << i;
   }
 }
 
@@ -88,7 +108,7 @@ TEST(LiveTare, IsTheMeanOfFramesOverItsDuration) {
 TEST(LiveTare, WaitsForEnoughFrames) {
   PressedSkin skin(10, 10, live_sensor());
   Frames frames(skin.scene());
-  LiveTare tare(skin.skin(), SenselType::u8);
+  LiveTare tare(plan_of(skin.skin()));
   tare.start(milliseconds(1));
   std::uint32_t count = 1;
   for (nanoseconds now(0); tare.add(frames.next().view(), now) == nullptr;
@@ -101,23 +121,88 @@ TEST(LiveTare, WaitsForEnoughFrames) {
 TEST(LiveTare, RefusesATouchedSkinUnlessPreloaded) {
   Scene scene = swaying_ball();
   std::get<std::vector<ClosedFormContact>>(scene.load).front().contact_radius_mm = 5;
-  LiveTare tare(scene.skin, SenselType::u8);
-  for (const bool preloaded : {false, true}) {
+  LiveTare tare(plan_of(scene.skin));
+  Frames frames(scene);
+  EXPECT_NE(message_of([&] { tared(tare, frames); }).find("touched"), std::string::npos);
+  EXPECT_FALSE(tare.is_running());
+  tared(tare, frames, true);
+  EXPECT_FALSE(tare.is_running());
+}
+
+/// As `calibrate tare` has it; a threshold that the user stated stays.
+TEST(LiveTare, TakesNoiseAndThresholdToo) {
+  PressedSkin skin(20, 20, live_sensor());
+  for (const bool keeps : {false, true}) {
+    Frames frames(skin.scene());
+    SolverPlan plan = plan_of(skin.skin());
+    plan.skin.threshold_counts = 50;
+    LiveTare tare(plan, keeps);
+    const SolverPlan found = tared(tare, frames);
+    ASSERT_EQ(found.calibration.noise.size(), plan.skin.sensels());
+    EXPECT_NEAR(found.calibration.noise[7], 1.04, 0.7);
+    EXPECT_NEAR(found.skin.threshold_counts, keeps ? 50 : 6, keeps ? 0 : 1.5);
+    EXPECT_NE(tare.note().find("would not have been seen"), std::string::npos) << tare.note();
+  }
+}
+
+/// After a tare, another one is refused where readings changed by more than noise and drift
+/// explain; drift, and a load that is gone, are not refused.
+TEST(LiveTare, ComparesWithTheTareBefore) {
+  struct Case {
+    const char* name;
+    const char* refused;  ///< part of the message; null: taken
+    void (*spoil)(std::uint8_t* readings);
+  };
+  const Case cases[] = {
+      {"nothing", nullptr, [](std::uint8_t*) {}},
+      {"drift of all", nullptr,
+       [](std::uint8_t* readings) {
+         for (int i = 0; i < 1600; ++i) readings[i] = static_cast<std::uint8_t>(readings[i] + 25);
+       }},
+      {"unlike drift", nullptr,
+       [](std::uint8_t* readings) {
+         for (int i = 0; i < 1600; ++i) {
+           readings[i] = static_cast<std::uint8_t>(readings[i] + i * 7 % 13);
+         }
+       }},
+      {"a load that is gone", nullptr,
+       [](std::uint8_t* readings) {
+         for (int i = 0; i < 30; ++i) readings[i] = 0;
+       }},
+      {"a finger on one sensel", "1 sensel changed since the tare before",
+       [](std::uint8_t* readings) {
+         readings[405] = static_cast<std::uint8_t>(readings[405] + 40);
+       }},
+      {"a light finger", "4 sensels changed since the tare before",
+       [](std::uint8_t* readings) {
+         for (const int i : {405, 406, 445, 446}) {
+           readings[i] = static_cast<std::uint8_t>(readings[i] + 15);
+         }
+       }},
+      {"a hand on half of it", " sensels changed",
+       [](std::uint8_t* readings) {
+         for (int i = 0; i < 900; ++i) {
+           readings[i] = static_cast<std::uint8_t>(readings[i] + i * 31 % 97);
+         }
+       }},
+  };
+  Scene scene = swaying_ball();
+  scene.load = std::vector<ClosedFormContact>{};
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.name);
     Frames frames(scene);
-    tare.start(milliseconds(20), preloaded);
-    const std::vector<float>* found = nullptr;
-    const auto run = [&] {
-      for (nanoseconds now(0); found == nullptr; now += milliseconds(1)) {
-        found = tare.add(frames.next().view(), now);
-      }
-    };
-    if (preloaded) {
-      run();
-      EXPECT_NE(found, nullptr);
-    } else {
-      EXPECT_NE(message_of(run).find("touched"), std::string::npos);
+    LiveTare tare(plan_of(scene.skin));
+    tared(tare, frames);
+    const std::string message = message_of([&] {
+      tared(tare, frames, false,
+            [&](FrameBuffer& frame) { each.spoil(frame.readings<std::uint8_t>().data()); });
+    });
+    if (each.refused == nullptr) {
+      EXPECT_EQ(message, "");
+      continue;
     }
-    EXPECT_FALSE(tare.is_running());
+    EXPECT_NE(message.find(each.refused), std::string::npos) << message;
+    EXPECT_NE(message.find("would not be seen"), std::string::npos) << message;
   }
 }
 
@@ -173,9 +258,9 @@ TEST(SenselWatch, CountsSenselsThatLeaveTheirTareUntilItIsTakenAnew) {
   EXPECT_EQ(
       watched(watch, frames, spoil, [](const auto& found) { return found.drifting > 0; }).drifting,
       3);
-  std::vector<float> tare = plan.calibration.tare;
-  for (const std::size_t i : {5U, 77U, 500U}) tare[i] += 3;
-  watch.set_tare(tare);
+  SolverPlan retared = plan;
+  for (const std::size_t i : {5U, 77U, 500U}) retared.calibration.tare[i] += 3;
+  watch.set_plan(retared);
   EXPECT_EQ(
       watched(watch, frames, spoil, [](const auto& found) { return found.drifting == 0; }).drifting,
       0);

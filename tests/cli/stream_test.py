@@ -301,6 +301,69 @@ class Network(StreamTest):
         self.assertIn("refused the web page https://evil.example", process.stderr.readline())
 
 
+def packet(reading, number, side=8):
+    return struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, side, side, 0, number, 10**7 * (number + 1), 0, 1, 0, 0, 0,
+                       side**2) + bytes([reading]) * side**2
+
+
+class FirstFrames(StreamTest):
+    def udp(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            return free.getsockname()
+
+    def test_limits_hold_where_no_frame_comes(self):
+        silent = f"udp:127.0.0.1:{self.udp()[1]}"
+        for words in (("stream", silent, "--seconds", 0.3), ("stream", silent, "--end-when-idle", 0.3),
+                      ("stream", "shm:pillarfield_not_there", "--seconds", 0.3),
+                      ("doctor", silent, "--seconds", 0.3)):
+            self.assert_fails(*words, names=("no frame came in 0.3 s",))
+
+    def test_outputs_are_checked_before_a_frame_comes(self):
+        silent = f"udp:127.0.0.1:{self.udp()[1]}"
+        for words, names in ((("--to", "foo:9"), ("foo:9", "shm:NAME")), (("--to", "udp:1.2.3.4:x"), ("'x'",)),
+                             (("--to", "web:nowhere:80"), ("nowhere",)), (("--relay", "foo"), ("shm:NAME",))):
+            self.assert_fails("stream", silent, *words, names=names)
+
+    def test_bytes_without_packets_are_named(self):
+        device, terminal = os.openpty()
+        self.addCleanup(os.close, device)
+        self.addCleanup(os.close, terminal)
+        process = self.started(f"serial:{os.ttyname(terminal)}", "--seconds", 2)
+        wait_for(lambda: "Waiting" in process.stderr.readline(), "the program")
+        frames = bytes(range(64)) * 16
+        while process.poll() is None:
+            os.write(device, frames)
+            time.sleep(0.02)
+        errors = process.stderr.read()
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(errors, r" kB came, no packet: a FlexiTac board\? 'serial:/dev/pts/\d+\?protocol=flexitac")
+
+    def test_the_first_frames_are_solved(self):
+        host, port = self.udp()
+        process = self.started(f"udp:{host}:{port}", "--end-when-idle", 3, "--json")
+        wait_for(lambda: f":{port:04X} " in open("/proc/net/udp").read(), "the socket")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            for number in range(100):
+                out.sendto(packet(40, number), (host, port))
+                time.sleep(0.002)
+        summary = json.loads(process.communicate(timeout=PATIENCE_S)[0].splitlines()[-1])["summary"]
+        self.assertEqual((summary["solved"], summary["lost"]), (100, 0))
+
+    def test_an_untared_array_is_named_once(self):
+        process = self.started("-", "--json", "--health-interval", 0.1, stdin=subprocess.PIPE)
+        number = 0
+        while not json.loads(process.stdout.readline())["health"]["coverage"]:
+            for _ in range(20):
+                process.stdin.buffer.write(packet(40, number))
+                process.stdin.flush()
+                number += 1
+                time.sleep(0.01)
+        errors = process.communicate(timeout=PATIENCE_S)[1]
+        self.assertEqual(errors.count("100.0 % of all"), 1, errors)
+        self.assertIn("there is no tare", errors)
+
+
 class ControlLines(StreamTest):
     def test_every_line(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
@@ -316,7 +379,9 @@ class ControlLines(StreamTest):
         control.say("resume")
         wait_for(lambda: control.say("health")["health"]["solved"] > solved + 5, "further frames")
         self.assertIn("touched", control.say("tare 0.1")["error"])
-        self.assertEqual(control.say("tare 0.1 preloaded"), {"ok": True, "done": "tare"})
+        answer = control.say("tare 0.1 preloaded")
+        self.assertTrue(answer["ok"], answer)
+        self.assertIn("would not have been seen", answer["note"])
         for line in ("tare -1", "tare nan", "tare 61", "record", "record stop", "hold", "pause now"):
             self.assertFalse(control.say(line)["ok"], line)
         copy = self.folder / "copy.h5"

@@ -217,6 +217,31 @@ TEST(Slip, IsForetoldFromTheFourthFrameOfATrack) {
   }
 }
 
+/// A contact that slides slips now, from its first frame on; one that spins has no forecast.
+TEST(Slip, IsNowWhereTheContactSlides) {
+  ContactTracker tracker(kPitchMm, {.friction = {.given = 0.5}});
+  for (int frame = 0; frame < 12; ++frame) {
+    ForceField field(3, 100);
+    for (std::uint32_t col = 0; col < 100; ++col) {
+      // Its ratio swings, and falls for a while, as that of the sliding bodies of demo.toml does.
+      load(field, 0, col, 0.48F + 0.02F * std::sin(static_cast<float>(frame)), 0, 1);
+      load(field, 2, col, 0, col < 50 ? 0.5F : -0.5F, 1);
+    }
+    const auto& contacts = tracker.update(field.view(), 0.01 * frame).contacts;
+    ASSERT_EQ(contacts.size(), 2U);
+    const ContactQuantities& slides = contacts[0].quantities;
+    EXPECT_EQ(slides.slip, SlipState::sliding);
+    ASSERT_TRUE(slides.slip_forecast) << frame;
+    EXPECT_EQ(slides.slip_forecast->time_s, 0);
+    EXPECT_EQ(slides.slip_forecast->low_s, 0);
+    EXPECT_EQ(slides.slip_forecast->high_s, 0);
+    EXPECT_EQ(slides.slip_forecast->probability, (std::array<double, 3>{1, 1, 1}));
+    const ContactQuantities& spins = contacts[1].quantities;
+    EXPECT_EQ(spins.slip, SlipState::sliding);
+    EXPECT_FALSE(spins.slip_forecast) << frame;
+  }
+}
+
 /// Force of a pillar over that of the middle under a rounded body.
 double rounded(std::uint32_t i, std::uint32_t count) {
   const double place = (2.0 * i + 1) / count - 1;

@@ -414,6 +414,45 @@ TEST(SetTare, EqualsAPlanWithThatTare) {
   }
 }
 
+/// Frames after a new plan solve as on a processor that has it from the start; one in flight keeps
+/// the plan before, and so does a pinned one.
+TEST(SetPlan, EqualsAProcessorOfThatPlan) {
+  for (const SenselType type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    SolverPlan before = bare_plan(64, 94, type);
+    before.calibration.tare.assign(before.skin.sensels(), 0);
+    before.uncertainty = true;
+    before.noise_counts = 1;
+    SolverPlan after = before;
+    after.skin.threshold_counts = 7.25;
+    after.calibration.tare.assign(before.skin.sensels(), 9.5F);
+    after.calibration.noise.assign(before.skin.sensels(), 2.5F);
+    after.calibration.mask.assign(before.skin.sensels(), kGood);
+    after.calibration.mask[5] = after.calibration.mask[3000] = kMissing;
+    for (const char* const device : {"host", "opencl"}) {
+      Processor changed(open_device(device), before);
+      Processor first(open_device(device), before);
+      Processor second(open_device(device), after);
+      const FrameBuffer idle(type, 64, 94);
+      for (int i = 0; i < 2; ++i) {  // Both slots have idle blocks.
+        changed.submit(idle.view());
+        static_cast<void>(changed.receive());
+      }
+      for (std::uint32_t seed = 1; seed < 5; ++seed) {
+        const RandomFrame random(before, 0, seed);
+        const FrameView frame = seed == 3 ? idle.view() : random.view();
+        Processor& expected = seed == 1 ? first : second;
+        changed.submit(frame);
+        if (seed == 1) changed.set_plan(after);
+        expected.submit(frame);
+        expect_same_bits(changed.receive(), expected.receive());
+      }
+      after.skin.cols -= 2;
+      EXPECT_THROW(changed.set_plan(after), Error);
+      after.skin.cols += 2;
+    }
+  }
+}
+
 TEST(SetTare, RefusesWhatIsNoTare) {
   SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   EXPECT_THROW(Processor(test_device(), plan).set_tare(std::vector<float>(64)), Error);

@@ -152,6 +152,7 @@ void expect_incomplete_frames(SenselType type) {
   skin.cols = 12;
   Calibration calibration;
   calibration.tare.assign(skin.sensels(), 0);
+  calibration.noise.assign(skin.sensels(), 0);
   const auto path = directory / "recording.h5";
   RecordingWriter writer(path, skin, type, calibration, {.missing = true});
   FrameBuffer frame(type, skin.rows, skin.cols);
@@ -162,13 +163,16 @@ void expect_incomplete_frames(SenselType type) {
   const std::array<SenselBlock, 1> beyond = {{{18, 3, 0, 1}}};
   EXPECT_THROW(writer.append_incomplete(frame.view(), 2, beyond), Error);
   calibration.tare.assign(skin.sensels(), 3);
-  writer.set_tare(calibration.tare);
-  EXPECT_THROW(writer.set_tare({1}), Error);
+  calibration.noise.assign(skin.sensels(), 0.5F);
+  writer.set_tare(calibration, 2.5);
+  EXPECT_THROW(writer.set_tare({.tare = {1}}, 2.5), Error);
   writer.finish();
 
   const auto source = open_frames(path);
   ASSERT_EQ(source->frames(), 2);
   EXPECT_EQ(source->calibration().tare, calibration.tare);
+  EXPECT_EQ(source->calibration().noise, calibration.noise);
+  EXPECT_EQ(source->skin().threshold_counts, 2.5);
   FrameBuffer read(type, skin.rows, skin.cols);
   source->read(0, read);
   EXPECT_TRUE(std::ranges::equal(read.bytes(), frame.bytes()));
@@ -198,7 +202,7 @@ TEST(RecordingRoundTrip, StatesFramesThatArrivedIncompleteAndATareThatCameLater)
   Skin skin;
   skin.rows = skin.cols = 4;
   RecordingWriter writer(directory / "r.h5", skin, SenselType::u8, {}, {});
-  EXPECT_THROW(writer.set_tare(std::vector<float>(16, 1)), Error);
+  EXPECT_THROW(writer.set_tare({.tare = std::vector<float>(16, 1)}, 0), Error);
 }
 
 TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {

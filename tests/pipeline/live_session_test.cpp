@@ -129,6 +129,36 @@ TEST_F(LiveSessionTest, ATareBeingMeasuredIsThatOfTheRecording) {
   EXPECT_EQ(recorded_tare(), plane_of(40));
 }
 
+/// Readings of 20 counts and a threshold of 0: a tare brings threshold and noise to solver, tracker
+/// and recordings.
+TEST_F(LiveSessionTest, ATareSetsTheThreshold) {
+  ContactTracker tracker(plan_.skin.element_pitch_mm());
+  std::size_t contacts = 0;
+  const auto count =
+      callback_sink([&](const SolvedFrame& frame) { contacts = frame.contacts->contacts.size(); });
+  const auto run_on = [&](std::uint64_t frames) {
+    const std::uint64_t end = sensor_.sent + frames;
+    session_.run({.contacts = &tracker, .sink = count.get(), .stop = [this, end] {
+                    return sensor_.sent >= end;
+                  }});
+  };
+  run_on(5);
+  EXPECT_EQ(contacts, 1U);
+  session_.record(path_);
+  session_.start_tare(milliseconds(100));
+  run_on(200);
+  EXPECT_NE(session_.take_events().at(0).note, "");
+  sensor_.reading = 21;  // within the noise of rounding
+  run_on(5);
+  EXPECT_EQ(contacts, 0U);
+  EXPECT_GT(session_.info().skin.threshold_counts, 1);
+  EXPECT_GT(tracker.options().noise_n.value_or(0), 0);
+  recorded_tare();
+  const auto recorded = open_frames(path_);
+  EXPECT_EQ(recorded->skin().threshold_counts, session_.info().skin.threshold_counts);
+  EXPECT_EQ(recorded->calibration().noise, session_.info().calibration.noise);
+}
+
 TEST_F(LiveSessionTest, PausedFramesAreCountedButNotSolved) {
   run(10);
   const HealthReport before = session_.report();

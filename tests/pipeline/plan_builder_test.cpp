@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace pillarfield {
 namespace {
 
@@ -43,6 +45,37 @@ TEST(BaselineOfPlans, KeepsAGivenInterval) {
   for (const bool everything : {false, true}) {
     settings.everything = everything;
     EXPECT_EQ(built({.scene = &scene, .settings = settings}).baseline_interval, 3);
+  }
+}
+
+TEST(ThresholdOfPlans, IsFourDeviationsWhereTheNoiseAloneIsKnown) {
+  SkinCalibration calibration;
+  calibration.planes.noise = {1, 1, 2, 1};
+  calibration.planes.gain = {1, 1, 1.5, 1};
+  calibration.rows = calibration.cols = 2;
+  Scene scene;
+  scene.sensor.noise_counts = 0.5;
+  const double rounding = 1.0 / 12;  // of readings of 8 bits
+  struct Case {
+    const char* name;
+    PlanSources from;
+    double threshold;
+  };
+  const Case cases[] = {
+      {"nothing", {}, 0},
+      {"--noise", {.settings = {.noise_counts = 1}}, 4 * std::sqrt(1 + rounding)},
+      {"a scene", {.scene = &scene}, 4 * std::sqrt(0.25 + rounding)},
+      {"a calibration", {.calibration = &calibration}, 12},
+      {"a given threshold", {.calibration = &calibration, .settings = {.threshold_counts = 0}}, 0},
+      {"a given threshold above zero", {.settings = {.threshold_counts = 3, .noise_counts = 1}}, 3},
+  };
+  for (const Case& each : cases) {
+    SolverPlan plan;
+    plan.skin.rows = plan.skin.cols = 2;
+    plan.sensel_type = SenselType::u8;
+    if (each.from.scene != nullptr) plan.skin = scene.skin;
+    plan = build_plan(plan, each.from, "a test", [] { return kIntervalS; });
+    EXPECT_NEAR(plan.skin.threshold_counts, each.threshold, 1e-6) << each.name;
   }
 }
 

@@ -133,6 +133,11 @@ class Live(unittest.TestCase):
         np.testing.assert_array_equal(forces.normal == 0, lost)
         self.assertEqual(float(forces.times), 3.0)
 
+    def test_a_silent_source(self):
+        for source in (f"udp:127.0.0.1:{free_port()}", "shm:pillarfield-not-there"):
+            with self.assertRaisesRegex(pf.Error, "no frame came in 0.2 s"):
+                pf.live(source, timeout=0.2)
+
     def test_time_without_frames(self):
         port = free_port()
         with Sender(port) as sender:

@@ -121,6 +121,17 @@ class Ring(unittest.TestCase):
                 processor.set_tare(np.full((8, 12), np.nan))
         self.assertEqual(normals, [1.0, 0.5])
 
+    def test_a_new_tare_with_noise_and_threshold(self):
+        random = np.random.default_rng(1)
+        idle = (50 + random.normal(0, 2, (60, 8, 12))).astype(np.float32)
+        skin = pf.Skin(8, 12, counts_per_newton=100, layout="sensels")
+        plan = pf.Plan(skin, sensel_type="float32", calibration=pf.Calibration(8, 12, tare=np.zeros((8, 12))))
+        with pf.Processor(plan, contacts=True) as processor:
+            processor.set_tare(pf.calibrate.tare(idle[:50], skin=skin))
+            self.assertAlmostEqual(processor.plan.skin.threshold_counts, 9, delta=2)
+            for forces in processor.stream(idle[50:]):
+                self.assertEqual(len(forces.contacts), 0)
+
     def test_threads_take_turns(self):
         done = []
         with pf.Processor(self.plan, frames_in_flight=8) as processor:

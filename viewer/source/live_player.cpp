@@ -22,6 +22,8 @@ namespace {
 using LiveTime = std::chrono::nanoseconds;
 
 constexpr auto kTareTime = std::chrono::milliseconds(500);
+/// Time after a refused tare in which the next one is taken as it is.
+constexpr LiveTime kInsistTime = std::chrono::seconds(10);
 /// Points of the curves of a sensor: two minutes at 1 kHz.
 constexpr std::size_t kMostLivePoints = 120'000;
 
@@ -84,7 +86,7 @@ struct LivePlayer::State final : ForceSink {
   const std::unique_ptr<FrameStream> stream;
   const SolverPlan plan;
   Processor processor;
-  const SourceInfo info;
+  SourceInfo info;  ///< of the display's thread
   const std::shared_ptr<Curves> curves;
   LiveSession session;
   // Of the thread.
@@ -103,6 +105,7 @@ struct LivePlayer::State final : ForceSink {
   mutable std::mutex mutex;  ///< guards `message` and `messages`
   std::string message;
   std::uint64_t messages = 0;
+  LiveTime refused_at = -kInsistTime;  ///< the last tare
 
   NewestField& newest;
   std::thread thread;  ///< last: uses the other members
@@ -147,7 +150,7 @@ void LivePlayer::State::run() {
 /// Runs until the player ends, or contacts are switched.
 void LivePlayer::State::run_pipeline() {
   tracks = wanted.contacts;
-  if (tracks) tracker = ContactTracker(plan.skin.element_pitch_mm(), info.contacts);
+  if (tracks) tracker = ContactTracker(plan.skin.element_pitch_mm(), tracker.options());
   const PipelineStatistics done =
       session.run({.contacts = tracks ? &tracker : nullptr, .sink = this, .stop = [this] {
                      return stopping || tracks != wanted.contacts;
@@ -159,15 +162,20 @@ std::string words_of(const LiveEvent& event) {
   if (event.kind == LiveEvent::Kind::recording) {
     return fmt::format("recorded {}: {}", recorded_words(event.recorded), event.recording);
   }
-  if (!event.error.empty()) return event.error;
-  return event.recording.empty() ? "tare taken"
-                                 : "tare taken; the recording keeps that of its start";
+  if (!event.error.empty()) return event.error + "; press it again within 10 s to insist";
+  return fmt::format("tare taken: {}{}", event.note,
+                     event.recording.empty() ? "" : "; the recording keeps that of its start");
 }
 
 void LivePlayer::State::take_events() {
   for (const LiveEvent& event : session.take_events()) {
     message = words_of(event);
     ++messages;
+    if (event.kind != LiveEvent::Kind::tare) continue;
+    if (!event.error.empty()) refused_at = live_now();
+    const LiveSinkInfo now = session.info();
+    info.skin = now.skin;
+    info.calibration = now.calibration;
   }
 }
 
@@ -216,7 +224,7 @@ void LivePlayer::State::publish(const SolvedFrame& frame) {
   field.keep_alive = owner;
   if (tracks) {
     field.contacts = std::make_shared<const ShownContacts>(
-        with_extents(*frame.contacts, tracker.labels(), info.contacts.noise_n));
+        with_extents(*frame.contacts, tracker.labels(), tracker.options().noise_n));
   }
   if (wanted.peak) field.peak = peak.field(field);
   newest.set(std::move(field));
@@ -235,7 +243,10 @@ PlayerState LivePlayer::state() const {
   return state_after(state_->solved, state_->session.health().stream.rate_hz);
 }
 
-void LivePlayer::tare() { state_->session.start_tare(kTareTime); }
+void LivePlayer::tare() {
+  const std::scoped_lock lock(state_->mutex);
+  state_->session.start_tare(kTareTime, live_now() - state_->refused_at < kInsistTime);
+}
 
 void LivePlayer::record(const std::filesystem::path& path) {
   stop_recording();

@@ -24,10 +24,6 @@ namespace {
 constexpr double kTareSeconds = 0.5;
 constexpr double kMostTareSeconds = 60;
 
-std::chrono::nanoseconds nanoseconds_of(double seconds) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
-}
-
 double seconds_of(std::chrono::nanoseconds time) {
   return 1e-9 * static_cast<double>(time.count());
 }
@@ -66,13 +62,17 @@ nlohmann::ordered_json sink_json(const LiveSession::Sink& sink) {
 
 }  // namespace
 
+std::chrono::nanoseconds nanoseconds_of(double seconds) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+}
+
 StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
                              const SolverPlan& plan, Processor& processor, const LiveSinkInfo& info)
     : options_(options),
       skin_(plan.skin),
       device_(info.forces.device),
       tracker_(plan.skin.element_pitch_mm(), *info.forces.contacts),
-      live_(source, plan, processor, info),
+      live_(source, plan, processor, info, options.plan.settings.threshold_counts.has_value()),
       control_(options.control),
       cost_(plan) {
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
@@ -85,9 +85,9 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
   if (!options.record.empty()) live_.record(options.record);
 }
 
-void StreamSession::run() {
-  start_ = Clock::now();
-  next_report_ = start_ + nanoseconds_of(options_.health_interval_s);
+void StreamSession::run(std::chrono::nanoseconds waited) {
+  start_ = Clock::now() - waited;
+  next_report_ = Clock::now() + nanoseconds_of(options_.health_interval_s);
   const auto counter = callback_sink([this](const SolvedFrame& frame) { count(frame); });
   live_.run({.frames_in_flight = options_.frames_in_flight,
              .contacts = &tracker_,
@@ -139,12 +139,18 @@ void StreamSession::tell_tare(const LiveEvent& event) {
     if (event.tag == 0) fmt::print(stderr, "pillarfield: {}\n", printable(event.error));
     return control_.answer(event.tag, failed_line(event.error));
   }
-  if (event.recording.empty()) return control_.answer(event.tag, done_line("tare"));
-  const std::string warning =
-      fmt::format("{} keeps the tare of its start; record another file for the new one",
-                  printable(event.recording));
-  fmt::print(stderr, "pillarfield: {}\n", warning);
-  control_.answer(event.tag, json_text({{"ok", true}, {"done", "tare"}, {"warning", warning}}));
+  if (event.tag == 0 && !options_.quiet) {
+    fmt::print(stderr, "pillarfield: tare taken: {}\n", event.note);
+  }
+  nlohmann::ordered_json answer = {{"ok", true}, {"done", "tare"}, {"note", event.note}};
+  if (!event.recording.empty()) {
+    const std::string warning =
+        fmt::format("{} keeps the tare of its start; record another file for the new one",
+                    printable(event.recording));
+    fmt::print(stderr, "pillarfield: {}\n", warning);
+    answer["warning"] = warning;
+  }
+  control_.answer(event.tag, json_text(answer));
 }
 
 void StreamSession::tell_failure(const std::string& sink, const std::string& failure) {
@@ -167,10 +173,12 @@ void StreamSession::report_health() {
   cost_.look();
   next_report_ = Clock::now() + nanoseconds_of(options_.health_interval_s);
   tell_of_sinks();
-  const std::string& mismatch = last_health_.stream.mismatch;
-  if (!mismatch.empty() && !std::exchange(mismatch_told_, true)) {
-    fmt::print(stderr, "pillarfield: {}: {}\n", printable(options_.source), mismatch);
-  }
+  const auto tell_once = [&](const std::string& words, bool& told) {
+    if (words.empty() || std::exchange(told, true)) return;
+    fmt::print(stderr, "pillarfield: {}: {}\n", printable(options_.source), words);
+  };
+  tell_once(last_health_.stream.mismatch, mismatch_told_);
+  tell_once(last_health_.coverage, coverage_told_);
   show(last_health_);
 }
 

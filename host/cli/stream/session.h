@@ -19,6 +19,8 @@ namespace pillarfield::cli {
 /// The files that a stream reads, which it never writes; empty paths among them.
 [[nodiscard]] std::vector<std::filesystem::path> files_read(const StreamOptions& options);
 
+[[nodiscard]] std::chrono::nanoseconds nanoseconds_of(double seconds);
+
 /// A run of `pillarfield stream`: a LiveSession, its limits, control lines and reports of health.
 class StreamSession {
  public:
@@ -27,8 +29,8 @@ class StreamSession {
                 Processor& processor, const LiveSinkInfo& info);
 
   /// Runs until the source ends, a limit of the options is reached, `quit` or an interrupt; then
-  /// completes the sinks.
-  void run();
+  /// completes the sinks. StreamOptions::seconds began when the source was opened, `waited` ago.
+  void run(std::chrono::nanoseconds waited);
 
   void print_summary() const;
 
@@ -68,6 +70,7 @@ class StreamSession {
   std::vector<std::string> noticed_;  ///< sinks whose notice was told
   bool line_drawn_ = false;
   bool mismatch_told_ = false;
+  bool coverage_told_ = false;
 };
 
 }  // namespace pillarfield::cli

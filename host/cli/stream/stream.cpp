@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <optional>
@@ -47,6 +49,10 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   LiveSourceOptions live;
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
+  if (options.seconds || options.most_idle_s) {
+    live.most_wait =
+        nanoseconds_of(std::min(options.seconds.value_or(1e9), options.most_idle_s.value_or(1e9)));
+  }
   live.size = stated_size(options.plan);
   live.skin.falling = options.plan.read.falling;
   live.say = [&](const std::string& words) {
@@ -58,7 +64,9 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
 /// Throws Error if a file that is written is one that is read, or may not be replaced.
 void check_files(const StreamOptions& options) {
   std::vector<PlannedOutput> outputs;
+  if (!options.relay.empty()) check_live_relay(options.relay);
   for (const std::string& sink : options.sinks) {
+    check_live_sink(sink);
     const std::string ending = extension_of(sink);
     if (ending == ".mcap") outputs.push_back({sink, OutputKind::messages});
     if (ending == ".h5" || ending == ".hdf5" || ending == ".csv" || ending == ".npy") {
@@ -110,17 +118,23 @@ void stream(const StreamOptions& options) {
   // A reader of standard output that ends, as `head` does, must not end the recording.
   std::signal(SIGPIPE, SIG_IGN);
   check_files(options);
+  const auto began = std::chrono::steady_clock::now();
   const std::unique_ptr<FrameStream> source = opened_source(options);
+  const auto waited = std::chrono::steady_clock::now() - began;
   if (!source) return;  // Interrupted before a frame came.
   const SolverPlan plan = plan_of(options, *source);
   tell_layout(options, *source, plan.skin);
   const Device device = open_device(options.device).for_plan(plan);
+  const auto opened = std::chrono::steady_clock::now();
   Processor processor(device, plan,
                       {.frames_in_flight = options.frames_in_flight,
                        .start_on_host = !options.summary,
                        .on_compiling = terminal_line(options.quiet)});
+  // Frames that waited for kernels would count as late.
+  const auto prepared = std::chrono::steady_clock::now() - opened;
+  if (options.summary && prepared > std::chrono::milliseconds(500)) source->discard_waiting();
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
-  session.run();
+  session.run(is_live_source(options.source) ? waited : std::chrono::nanoseconds(0));
   session.print_summary();
 }
 

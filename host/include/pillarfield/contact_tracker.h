@@ -99,6 +99,12 @@ class ContactTracker {
   const FrameContacts& update(const ForceFieldView& forces, double time_s,
                               const FoundContacts& found = {});
 
+  /// Takes the properties of the sensor of another plan, as set_sensor() does, for the next frames;
+  /// contacts keep their track_id, and what was seen of their friction is forgotten.
+  void set_sensor(const SolverPlan& plan);
+
+  [[nodiscard]] const ContactOptions& options() const;
+
   /// The pillars of the contacts of the last frame, small contacts included.
   [[nodiscard]] const ContactLabels& labels() const;
 

@@ -27,6 +27,8 @@ struct LiveSourceOptions {
   std::function<void(const std::string&)> say = {};
   /// Called about ten times a second while no frame has arrived yet; true gives up.
   std::function<bool()> stop = {};
+  /// Time after which an Error ends the wait for the first frame; unset: the wait has no end.
+  std::optional<std::chrono::nanoseconds> most_wait = {};
   std::uint32_t serial_baud = 2'000'000;  ///< of `serial:`
 };
 
@@ -40,7 +42,7 @@ struct LiveSourceOptions {
 /// sensor that stops and starts again. next() never throws for what a sensor sends: invalid packets
 /// are counted in health(). Returns null if LiveSourceOptions::stop gave up. Throws Error if the
 /// name is none of a live source, the source cannot be opened (a ring that does not exist yet is
-/// waited for), or the calibration or the size does not fit the frames.
+/// waited for), no frame came in time, or the calibration or the size does not fit the frames.
 [[nodiscard]] std::unique_ptr<FrameStream> open_live_source(const std::string& source,
                                                             const LiveSourceOptions& options);
 
@@ -64,7 +66,10 @@ struct HealthReport {
   std::uint64_t dead = 0;        ///< sensels that do not respond where the others do
   std::uint64_t stuck = 0;       ///< sensels whose reading is constant and out of place
   std::uint64_t drifting = 0;    ///< untouched sensels whose reading left their tare
+  std::string coverage = {};     ///< a sentence while contact covers the array
 };
+
+struct LiveSinkInfo;
 
 /// A sink that never delays its stream: append() copies what the sink needs, and drops the frame if
 /// the sink is behind. It never throws after construction: a sink that fails stops, and
@@ -75,8 +80,9 @@ class LiveSink : public ForceSink {
   [[nodiscard]] virtual LiveSinkStatistics statistics() const = 0;
   /// Passes the health of the run on, where the sink has a place for it; called between frames.
   virtual void report(const HealthReport& health) { static_cast<void>(health); }
-  /// Replaces the tare that a recording states, for all of its frames; other sinks have none.
-  virtual void set_tare(const std::vector<float>& tare) { static_cast<void>(tare); }
+  /// Replaces tare, noise and threshold that a recording states, for all of its frames; other sinks
+  /// have none.
+  virtual void set_tare(const LiveSinkInfo& info) { static_cast<void>(info); }
 };
 
 /// What a live sink says of the stream that it passes on.
@@ -90,6 +96,11 @@ struct LiveSinkInfo {
   /// pages of this computer always may.
   std::vector<std::string> allowed_origins = {};
 };
+
+/// Throws Error unless a target is one of create_live_sink(), with a valid address; opens nothing.
+void check_live_sink(const std::string& target);
+/// The same of create_live_relay().
+void check_live_relay(const std::string& target);
 
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON
 /// of contacts and total), `foxglove:[ADDRESS:]PORT` (a WebSocket server), `web:[ADDRESS:]PORT`

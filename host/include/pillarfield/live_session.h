@@ -29,6 +29,7 @@ struct LiveEvent {
   std::string error = {};  ///< why it failed; empty: done
   /// The recording that was completed, or the one that keeps the tare of its start; empty: none.
   std::string recording = {};
+  std::string note = {};  ///< what a tare that was taken says of itself: LiveTare::note()
   LiveSinkStatistics recorded = {};  ///< of a recording that was completed
 };
 
@@ -48,23 +49,26 @@ class LiveSession {
 
   /// All arguments but `info` must outlive the session. The plan, for which `processor` is made,
   /// has a tare, if of zeros, so that one can be measured. `info` describes recordings.
-  LiveSession(FrameStream& source, const SolverPlan& plan, Processor& processor, LiveSinkInfo info);
+  /// `keeps_threshold`: the user stated the threshold, so that a tare leaves it as it is.
+  LiveSession(FrameStream& source, const SolverPlan& plan, Processor& processor, LiveSinkInfo info,
+              bool keeps_threshold = false);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
 
   void add(std::unique_ptr<LiveSink> sink);
 
-  /// Runs until the source ends, `stop` returns true or `frames` have come, beginning at the first
-  /// call without frames that wait. May be called again to continue. Throws what Pipeline::run()
+  /// Runs until the source ends, `stop` returns true or `frames` have come, beginning with those
+  /// that wait. May be called again to continue. Throws what Pipeline::run()
   /// throws.
   PipelineStatistics run(const Run& options);
 
   /// Completes all sinks, and waits for recordings that are being completed.
   void finish();
 
-  /// Measures the tare of the untouched skin over this time, for all frames after it; `preloaded`
-  /// as LiveTare has it. An event tells the end. Returns false where one is being measured.
+  /// Measures tare, noise and threshold of the untouched skin over this time, for all frames after
+  /// it; `preloaded` as LiveTare has it. An event tells the end. Returns false where one is being
+  /// measured.
   bool start_tare(std::chrono::nanoseconds duration, bool preloaded = false, std::uint64_t tag = 0);
   [[nodiscard]] bool is_taring() const;
 
@@ -81,6 +85,9 @@ class LiveSession {
   /// Ends the recording; it is completed in a thread, and an event tells the end. Returns false
   /// where none runs.
   bool stop_recording(std::uint64_t tag = 0);
+
+  /// What sinks say of frames by the plan of now: constructor's, or with the tare taken last.
+  [[nodiscard]] LiveSinkInfo info() const;
 
   /// What was done since the last call, in this order.
   [[nodiscard]] std::vector<LiveEvent> take_events();

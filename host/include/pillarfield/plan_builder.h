@@ -57,8 +57,9 @@ struct PlanSources {
 
 /// Applies the scene, the calibration and the settings, in this order, to the plan of frames.
 /// Messages name them `where`. Calls `frame_interval_s` if the plan needs the time from frame to
-/// frame and no setting gives it: for a followed baseline, hysteresis and creep. Throws Error where
-/// the calibration does not fit.
+/// frame and no setting gives it: for a followed baseline, hysteresis and creep. Where the noise is
+/// known and no threshold above zero, the threshold becomes that of take_tare(), four standard
+/// deviations, unless a setting gives it. Throws Error where the calibration does not fit.
 [[nodiscard]] SolverPlan build_plan(SolverPlan plan, const PlanSources& from,
                                     const std::string& where,
                                     const std::function<double()>& frame_interval_s);

@@ -109,7 +109,7 @@ class Processor {
     int frames_in_flight = 2;  ///< slots, 1 to 64
     /// While the kernels of an OpenCL device are compiled, which takes seconds where the driver's
     /// cache does not hold them, submit() solves on the host instead, with the same bits, so that
-    /// forces come at once; pin() finds no frame, and set_tare() waits for the kernels. Has no
+    /// forces come at once; pin() finds no frame, and set_plan() waits for the kernels. Has no
     /// effect with angles, estimators other than `direct`, and plans whose frames leave
     /// something to the next ones (a followed baseline, a bent skin, hysteresis, creep).
     bool start_on_host = false;
@@ -181,11 +181,13 @@ class Processor {
   /// plan has none of these and no tare.
   [[nodiscard]] std::vector<float> tare() const;
 
-  /// Replaces the tare, [sensel rows, cols], counts, for the frames submitted from now on; waits
-  /// for those in flight. The skin must be untouched: hysteresis and creep begin at rest. Throws
-  /// Error if the plan has no tare (it may be zero), or `tare` has another size or a value that is
-  /// not finite.
-  void set_tare(std::span<const float> tare);
+  /// Solves the frames submitted from now on by another plan, such as that of a LiveTare; waits for
+  /// those in flight. The skin must be untouched: hysteresis and creep begin at rest, what the
+  /// estimator `contact` has learnt is forgotten, and the tare of a bent skin is that at the
+  /// present curvature. Compiles kernels where more changes than planes of the calibration. Throws
+  /// Error if the plan is out of range, has other frames or outputs, or one of both plans has no
+  /// tare.
+  void set_plan(const SolverPlan& plan);
 
   /// The curvature of the skin in the frame submitted last, 1/mm, if the plan has the planes
   /// bend_x, bend_y and bend_xy: Processor follows it through the readings of untouched sensels.

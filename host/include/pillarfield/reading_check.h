@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,15 @@
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
+
+/// Share of the elements that exist from which on contact covers the array.
+inline constexpr double kCovered = 0.8;
+
+/// Elements with a usable sensel.
+[[nodiscard]] std::uint64_t count_in_contact(std::span<const std::uint8_t> status);
+
+/// The sentence for a user where contact covers this share of the array.
+[[nodiscard]] std::string coverage_words(double share, bool has_tare, SkinLayout layout);
 
 /// Notices solved frames whose readings were probably not what the plan takes them for: no tare,
 /// readings that fall under load, a threshold above all readings, frames without readings.

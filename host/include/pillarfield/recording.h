@@ -88,9 +88,10 @@ class RecordingWriter {
   void append_incomplete(const FrameView& frame, double time_s,
                          std::span<const SenselBlock> missing);
 
-  /// Replaces the tare of the file, counts, [rows, cols]. Throws Error if the recording was created
-  /// without one, or a value is out of range.
-  void set_tare(const std::vector<float>& tare);
+  /// Replaces the threshold of the file and the planes tare and noise, of which the calibration has
+  /// those with which the recording was created. Throws Error if that was without a tare, or a
+  /// value is out of range.
+  void set_tare(const Calibration& calibration, double threshold_counts);
 
   /// Writes all frames so far to the file, so that they survive the death of the process.
   void flush();

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "pillarfield/frame.h"
 #include "pillarfield/solver_plan.h"
@@ -34,8 +33,8 @@ class SenselWatch {
   /// frames without missing readings. Calls come from one thread.
   void offer(const FrameView& frame);
 
-  /// Begins anew with another tare, [sensel rows, cols], counts.
-  void set_tare(std::vector<float> tare);
+  /// Begins anew with another plan of the same frames, which has a new tare.
+  void set_plan(const SolverPlan& plan);
 
   /// As of the last whole window; zero before.
   [[nodiscard]] SenselHealth health() const;

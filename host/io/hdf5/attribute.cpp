@@ -113,6 +113,12 @@ void write_attribute(const File& file, hid_t object, const char* name,
   write(file, object, name, space, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data());
 }
 
+void rewrite_attribute(const File& file, hid_t object, const char* name, double value) {
+  const auto attribute = open(file, object, name);
+  if (!attribute) throw Error(file.path.string(), fmt::format("has no attribute '{}'", name), "");
+  require(H5Awrite(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file.path, attribute->failure);
+}
+
 std::optional<double> read_number(const File& file, hid_t object, const char* name) {
   const auto attribute = open_single(file, object, name);
   if (!attribute) return std::nullopt;

@@ -15,6 +15,9 @@ void write_attribute(const File& file, hid_t object, const char* name, int value
 void write_attribute(const File& file, hid_t object, const char* name, double value);
 void write_attribute(const File& file, hid_t object, const char* name, const std::string& value);
 
+/// Replaces the value of an attribute of numbers, also while frames are appended.
+void rewrite_attribute(const File& file, hid_t object, const char* name, double value);
+
 /// Writes an attribute of a list of 64-bit floats.
 void write_attribute(const File& file, hid_t object, const char* name,
                      const std::vector<double>& values);

@@ -19,7 +19,8 @@ nlohmann::ordered_json health_json(const HealthReport& health) {
       {"overrun", stream.overrun},
       {"since_frame_s", health.since_frame_s},
       {"latency_ms", {{"median", health.latency_ms_median}, {"worst", health.latency_ms_worst}}},
-      {"sensels", {{"dead", health.dead}, {"stuck", health.stuck}, {"drifting", health.drifting}}}};
+      {"sensels", {{"dead", health.dead}, {"stuck", health.stuck}, {"drifting", health.drifting}}},
+      {"coverage", health.coverage}};
 }
 
 }  // namespace pillarfield

@@ -31,11 +31,17 @@ class FileConsumer final : public SinkConsumer {
   FrameParts parts_;
 };
 
+/// A live tare may bring the noise, for which the file needs a plane from the start.
+Calibration with_room_for_noise(Calibration calibration) {
+  if (calibration.noise.empty()) calibration.noise.assign(calibration.tare.size(), 0);
+  return calibration;
+}
+
 /// Records the raw frames, and flushes them once a second.
 class RecordingConsumer final : public SinkConsumer {
  public:
   RecordingConsumer(const std::string& path, const LiveSinkInfo& info)
-      : writer_(path, info.skin, info.sensel_type, info.calibration,
+      : writer_(path, info.skin, info.sensel_type, with_room_for_noise(info.calibration),
                 {.flush_every = std::numeric_limits<std::uint32_t>::max(),
                  .replace = info.replace,
                  .missing = true}) {}
@@ -59,7 +65,9 @@ class RecordingConsumer final : public SinkConsumer {
     flushed_ = now;
     has_unflushed_ = false;
   }
-  void set_tare(const std::vector<float>& tare) override { writer_.set_tare(tare); }
+  void set_tare(const LiveSinkInfo& info) override {
+    writer_.set_tare(info.calibration, info.skin.threshold_counts);
+  }
   void finish() override { writer_.finish(); }
 
  private:

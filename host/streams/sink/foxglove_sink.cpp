@@ -88,6 +88,7 @@ LiveSinkKind foxglove_sink_kind() {
   return {.prefix = kFoxglovePrefix,
           .form = "foxglove[:[ADDRESS:]PORT]",
           .stands_alone = true,
+          .least_port = 0,
           .create = create_foxglove_sink};
 }
 

@@ -80,10 +80,10 @@ void QueuedSink::report(const HealthReport& health) {
   changed_.notify_one();
 }
 
-void QueuedSink::set_tare(const std::vector<float>& tare) {
+void QueuedSink::set_tare(const LiveSinkInfo& info) {
   {
     const std::scoped_lock lock(mutex_);
-    tare_ = tare;
+    tare_ = info;
   }
   changed_.notify_one();
 }
@@ -136,7 +136,7 @@ void QueuedSink::work() {
     const bool has_work = changed_.wait_for(
         lock, kIdle, [&] { return !waiting_.empty() || health_ || tare_ || end_ != End::none; });
     if (tare_) {
-      const std::vector<float> tare = *std::exchange(tare_, std::nullopt);
+      const LiveSinkInfo tare = *std::exchange(tare_, std::nullopt);
       lock.unlock();
       consumer_->set_tare(tare);
       lock.lock();

@@ -32,7 +32,7 @@ class SinkConsumer {
   [[nodiscard]] virtual bool consume(const SolvedFrame& frame) = 0;
 
   virtual void report(const HealthReport& health) { static_cast<void>(health); }
-  virtual void set_tare(const std::vector<float>& tare) { static_cast<void>(tare); }
+  virtual void set_tare(const LiveSinkInfo& info) { static_cast<void>(info); }
   /// Called about ten times a second while no frame arrives.
   virtual void idle() {}
   /// Completes the output after the last frame.
@@ -62,7 +62,7 @@ class QueuedSink final : public LiveSink {
   /// Consumes the frames that wait, and completes the output.
   void finish() override;
   void report(const HealthReport& health) override;
-  void set_tare(const std::vector<float>& tare) override;
+  void set_tare(const LiveSinkInfo& info) override;
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] LiveSinkStatistics statistics() const override;
@@ -95,7 +95,7 @@ class QueuedSink final : public LiveSink {
   std::deque<Slot*> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::optional<HealthReport> health_;
-  std::optional<std::vector<float>> tare_;
+  std::optional<LiveSinkInfo> tare_;
   End end_ = End::none;
   std::uint64_t frames_ = 0;
   std::uint64_t dropped_ = 0;

@@ -24,9 +24,7 @@ class RelaySink final : public LiveSink {
       : name_(target),
         layout_{PILLARFIELD_RING_FRAMES, info.skin.rows, info.skin.cols,
                 type_in_ring(info.sensel_type)} {
-    if (!target.starts_with(kRelayPrefix)) {
-      throw Error(printable(target), "frames are relayed into shared memory", "give shm:NAME");
-    }
+    check_live_relay(target);
     writer_.emplace(target.substr(kRelayPrefix.size()), layout_, slots_for(layout_));
   }
 
@@ -79,6 +77,11 @@ void RelaySink::append(const SolvedFrame& frame) {
 }
 
 }  // namespace
+
+void check_live_relay(const std::string& target) {
+  if (target.starts_with(kRelayPrefix)) return;
+  throw Error(printable(target), "frames are relayed into shared memory", "give shm:NAME");
+}
 
 std::unique_ptr<LiveSink> create_live_relay(const std::string& target, const LiveSinkInfo& info) {
   return std::make_unique<RelaySink>(target, info);

@@ -70,6 +70,7 @@ class UdpConsumer final : public SinkConsumer {
 LiveSinkKind udp_sink_kind() {
   return {.prefix = kUdpPrefix,
           .form = "udp:ADDRESS:PORT",
+          .least_port = 1,
           .create = [](const std::string& target,
                        const LiveSinkInfo& info) -> std::unique_ptr<LiveSink> {
             return std::make_unique<QueuedSink>(target,

@@ -132,6 +132,7 @@ LiveSinkKind web_sink_kind() {
   return {.prefix = kWebPrefix,
           .form = "web[:[ADDRESS:]PORT]",
           .stands_alone = true,
+          .least_port = 0,
           .create = create_web_sink};
 }
 

@@ -1,5 +1,7 @@
 #include "streams/source/packet_parser.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -52,6 +54,13 @@ std::string_view PacketParser::text() const {
 void PacketParser::skip(std::size_t bytes) {
   if (bytes > 0 && !std::exchange(in_rubbish_, true)) ++invalid_;
   begin_ += bytes;
+  rubbish_ += bytes;
+}
+
+std::string PacketParser::complaint() const {
+  constexpr std::uint64_t kMany = 2000;
+  if (rubbish_ < kMany) return {};
+  return fmt::format("{:.3g} kB came, no packet", 1e-3 * static_cast<double>(rubbish_));
 }
 
 bool PacketParser::find_magic() {
@@ -125,6 +134,7 @@ bool PacketParser::next(Packet& packet) {
     switch (find_packet(packet)) {
       case Found::packet:
         packet.arrived = arrived_;
+        rubbish_ = 0;
         return true;
       case Found::more_needed:
         return false;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +31,7 @@ class PacketParser final : public ByteParser {
   [[nodiscard]] std::uint64_t invalid() const override { return invalid_; }
   void clear_counts() override { invalid_ = 0; }
   [[nodiscard]] std::optional<FrameShape> other() const override { return other_; }
+  [[nodiscard]] std::string complaint() const override;
 
  private:
   enum class Found : std::uint8_t { packet, more_needed, rubbish, cut_short };
@@ -55,6 +57,7 @@ class PacketParser final : public ByteParser {
   bool finished_ = false;
   bool in_rubbish_ = false;
   std::uint64_t invalid_ = 0;
+  std::uint64_t rubbish_ = 0;  ///< bytes since the last packet that are none
 };
 
 }  // namespace pillarfield

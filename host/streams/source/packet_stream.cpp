@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <ctime>
 #include <utility>
@@ -189,10 +191,13 @@ Arrival PacketStream::next(StreamedFrame& frame, nanoseconds timeout) {
 bool receive_first(const std::string& name, PacketSource& source, const LiveSourceOptions& options,
                    FirstPackets& first) {
   constexpr nanoseconds kPoll = 100ms;
+  const nanoseconds began = steady_now();
   Packet packet;
   bool said = false;
-  for (nanoseconds polled = steady_now();;) {
-    const Arrival arrival = source.receive(packet, kPoll);
+  for (nanoseconds polled = began;;) {
+    const nanoseconds left =
+        options.most_wait ? *options.most_wait - (steady_now() - began) : kPoll;
+    const Arrival arrival = source.receive(packet, std::clamp<nanoseconds>(left, 0ns, kPoll));
     if (arrival == Arrival::ended) {
       throw Error(name, "ended before its first frame", "docs/streams.md describes the packets");
     }
@@ -202,8 +207,16 @@ bool receive_first(const std::string& name, PacketSource& source, const LiveSour
       said = true;
       options.say(words);
     }
-    if (steady_now() - polled < kPoll) continue;
-    polled = steady_now();
+    const nanoseconds now = steady_now();
+    if (options.most_wait && now - began >= *options.most_wait) {
+      throw Error(name,
+                  fmt::format("no frame came in {:.3g} s{}{}",
+                              std::chrono::duration<double>(*options.most_wait).count(),
+                              words.empty() ? "" : ": ", words),
+                  "start its sender, or wait longer");
+    }
+    if (now - polled < kPoll) continue;
+    polled = now;
     if (options.stop && options.stop()) return false;
   }
 }

@@ -61,7 +61,7 @@ class SerialSource final : public PacketSource {
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   void prepare(const FrameShape& shape) override { parser_->prepare(shape); }
-  [[nodiscard]] std::string complaint() const override { return parser_->complaint(); }
+  [[nodiscard]] std::string complaint() const override;
   [[nodiscard]] Counts counts() const override { return {parser_->invalid(), 0, parser_->other()}; }
   void clear_counts() override { parser_->clear_counts(); }
 
@@ -73,6 +73,13 @@ class SerialSource final : public PacketSource {
   std::uint32_t baud_;
   int descriptor_;
 };
+
+std::string SerialSource::complaint() const {
+  const std::string words = parser_->complaint();
+  if (!words.ends_with("no packet")) return words;
+  return fmt::format("{}: a FlexiTac board? 'serial:{}?protocol=flexitac&rows=ROWS&cols=COLS'",
+                     words, printable(device_));
+}
 
 void SerialSource::leave() {
   if (descriptor_ >= 0) close(descriptor_);

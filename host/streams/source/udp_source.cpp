@@ -33,6 +33,11 @@ class UdpSource final : public PacketSource {
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   [[nodiscard]] bool is_open_to_all() const override { return true; }
   [[nodiscard]] Counts counts() const override { return counts_; }
+  [[nodiscard]] std::string complaint() const override {
+    constexpr std::uint64_t kMany = 10;
+    if (counts_.invalid < kMany) return {};
+    return fmt::format("{} datagrams came, no packet", counts_.invalid);
+  }
   void clear_counts() override;
 
  private:

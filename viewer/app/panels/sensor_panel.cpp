@@ -53,7 +53,7 @@ void sensor_buttons(const Command& command, LiveControl& live, const LiveStatus&
   ImGui::SameLine();
   if (ImGui::Button(status.taring ? "Measuring ..." : "Tare", ImVec2(half, 0))) live.tare();
   if (ImGui::IsItemHovered()) {
-    ImGui::SetTooltip("The mean of the next half second becomes zero; touch nothing (Z)");
+    ImGui::SetTooltip("Tare, noise and threshold from the next half second; touch nothing (Z)");
   }
 }
 
@@ -108,8 +108,9 @@ void sensor_panel(const Command& command) {
     const std::string name = std::filesystem::path(status.recording).filename().string();
     faint_text(style, fmt::format("{}: {}", name, recorded_words(status.recorded)).c_str());
   }
-  if (!status.health.stream.mismatch.empty())
-    faint_text(style, status.health.stream.mismatch.c_str());
+  for (const std::string& words : {status.health.stream.mismatch, status.health.coverage}) {
+    if (!words.empty()) faint_text(style, words.c_str());
+  }
   value_table(style, health_lines(status));
 }
 
