@@ -14,7 +14,6 @@
  * The last are the vectors of g++ and clang++; with PF_WHOLE Counts and Mask are vectors of short.
  *
  *   PF_REAL(x)    the constant x in every lane, of Real's own precision
- *   PF_INFINITY   infinity in every lane, of Real
  *   PF_COUNTS(x)  the whole constant x in every lane
  *   PF_BITS(x)    the integer x in every lane
  *   PF_WORD(x)    the unsigned constant x in every lane
@@ -130,7 +129,6 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 #define PF_CONSTANT(type, x) ((type)(x))
 #define PF_REAL(x) ((Real)(x##f))
-#define PF_INFINITY ((Real)(INFINITY))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
 #define PF_WORD(x) ((Word)(x##u))
@@ -141,7 +139,6 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 #define PF_UNROLL
 #undef PF_CONSTANT
 #undef PF_REAL
-#undef PF_INFINITY
 #undef PF_COUNTS
 #undef PF_BITS
 #undef PF_WORD
@@ -169,7 +166,6 @@ PF_INLINE To in_lanes(From x) {
 }
 #define PF_CONSTANT(type, x) in_lanes<type>(x)
 #define PF_REAL(x) in_lanes<Real>(x##f)
-#define PF_INFINITY in_lanes<Real>(__builtin_inff())
 #define PF_COUNTS(x) in_lanes<Counts>(x)
 #define PF_BITS(x) in_lanes<Bits>(x)
 #define PF_WORD(x) in_lanes<Word>(x##u)
@@ -227,11 +223,9 @@ PF_INLINE Real atan2(Real y, Real x) {
 #define PF_UNROLL
 #define PF_CONSTANT(type, x) static_cast<type>(x)
 #undef PF_REAL
-#undef PF_INFINITY
 #undef PF_COUNTS
 #undef PF_BITS
 #undef PF_WORD
-#define PF_INFINITY (std::numeric_limits<Real>::infinity())
 #if PF_PRECISION == 64
 using Real = double;
 #define PF_REAL(x) (x)

@@ -54,6 +54,13 @@ template std::vector<float> plane_from<float>(const py::object&, std::uint32_t, 
 template std::vector<std::uint8_t> plane_from<std::uint8_t>(const py::object&, std::uint32_t,
                                                             std::uint32_t, std::string_view);
 
+void refuse_type(const py::handle& value, const std::string& name, const char* words) {
+  constexpr std::size_t kLongest = 60;
+  std::string text = py::repr(value).cast<std::string>();
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  throw py::type_error(fmt::format("{} is {}; give {}", name, text, words));
+}
+
 void refuse(const std::string& function, const py::dict& unknown,
             const std::vector<std::string>& known) {
   if (unknown.empty()) return;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "pillarfield/frame.h"
@@ -55,13 +56,27 @@ template <class T>
 std::vector<T> plane_from(const py::object& plane, std::uint32_t rows, std::uint32_t cols,
                           std::string_view place);
 
+/// The type of an argument in words.
+template <class T>
+constexpr const char* words_of() {
+  if (std::is_same_v<T, bool>) return "True or False";
+  if (std::is_integral_v<T>) return "a whole number";
+  if (std::is_floating_point_v<T>) return "a number";
+  if (std::is_same_v<T, std::string>) return "text";
+  if (std::is_same_v<T, std::vector<std::string>>) return "a list of texts";
+  return "numbers";
+}
+
+/// Throws TypeError: an argument is of a wrong type.
+[[noreturn]] void refuse_type(const py::handle& value, const std::string& name, const char* words);
+
 /// An argument as T. Throws TypeError, naming it, if it is of another type.
 template <class T>
 T argument(const py::handle& value, const std::string& name) {
   try {
     return value.cast<T>();
   } catch (const py::cast_error&) {
-    throw py::type_error(name + " has a wrong type");
+    refuse_type(value, name, words_of<T>());
   }
 }
 

@@ -1,8 +1,12 @@
 // The compiled half of the package: values and calls, NumPy arrays in and out.
 
+#include <string>
+
+#include "base/reworded.h"
 #include "pillarfield/error.h"
 #include "pillarfield/pressure_unit.h"
 #include "pillarfield/version.h"
+#include "pipeline/plan_settings.h"
 #include "python/bindings.h"
 
 namespace {
@@ -11,10 +15,38 @@ namespace py = pybind11;
 
 py::str part_text(std::string_view part) { return py::str(part.data(), part.size()); }
 
+/// The arguments of Python by the options of the command line.
+const pillarfield::Rewording& arguments() {
+  static const pillarfield::Rewording words = [] {
+    pillarfield::Rewording pairs = {{"--rate HZ", "rate_hz="},
+                                    {"--rate", "rate_hz="},
+                                    {"--shape ROWSxCOLS", "frame_size=(ROWS, COLS)"},
+                                    {"--shape", "frame_size="},
+                                    {"--axes", "axes="},
+                                    {"--dataset", "dataset="},
+                                    {"--times", "times="},
+                                    {"--layout", "layout="},
+                                    {"--falling", "falling=True"},
+                                    {"--tare-frames", "tare_frames="},
+                                    {"--trust-input", "trust=True"},
+                                    {"--overwrite", "overwrite=True"},
+                                    {"--contacts", "contacts=True"},
+                                    {"--device", "device="}};
+    for (const pillarfield::PlanSetting& setting : pillarfield::kPlanSettings) {
+      if (setting.option != nullptr) {
+        pairs.emplace_back(setting.option, setting.name + std::string("="));
+      }
+    }
+    return pairs;
+  }();
+  return words;
+}
+
 void translate(std::exception_ptr pointer) {
   try {
     std::rethrow_exception(std::move(pointer));
-  } catch (const pillarfield::Error& error) {
+  } catch (const pillarfield::Error& thrown) {
+    const pillarfield::Error error = reworded(thrown, arguments());
     const py::object type = py::module_::import("pillarfield._error").attr("Error");
     const py::object raised =
         type(part_text(error.place()), part_text(error.failure()), part_text(error.mend()));

@@ -15,7 +15,7 @@ void main() {
   const uint pillar = index.y * scene.grid.y + index.x;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // Outside: no sector.
   if (!is_ambiguous(status_of(pillar))) return;
-  if (isinf(plane_value(scene.span.y, pillar))) return;  // Saturated sensels leave it open.
+  if (plane_value(scene.span.y, pillar) > 9e37) return;  // Saturated sensels leave it open.
 
   const float pi = 3.14159265358979;
   const float low = plane_value(scene.span.x, pillar) * sin(plane_value(scene.incline.x, pillar));

@@ -38,7 +38,10 @@ def draw_readme(folder):
     """Draws the README's picture, which moves: an animated PNG with one palette."""
     run("pillarfield-viewer scenes/hand.toml --headless --frames 1:36 --contacts --range 0:0.2 --size 720x540 "
         "--png hand.png", folder)
-    frames = [Image.open(path).convert("RGB") for path in sorted(folder.glob("hand_*.png"))]
+    pictures = sorted(folder.glob("hand_*.png"))
+    # Mail, search and print show the first frame: the fullest, which compresses least.
+    fullest = pictures.index(max(pictures, key=lambda path: path.stat().st_size))
+    frames = [Image.open(path).convert("RGB") for path in pictures[fullest:] + pictures[:fullest]]
     width, height = frames[0].size
     sheet = Image.new("RGB", (width, height * len(frames)))
     for index, frame in enumerate(frames):

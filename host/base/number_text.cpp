@@ -6,6 +6,13 @@
 
 namespace pillarfield {
 
+std::string json_number(double number) {
+  if (!std::isfinite(number)) return "null";
+  std::string text = fmt::format("{}", number);
+  const bool is_whole = text.find_first_of(".e") == std::string::npos;
+  return is_whole ? text + ".0" : text;
+}
+
 std::string grouped(std::uint64_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");

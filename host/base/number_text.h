@@ -3,8 +3,11 @@
 #include <cstdint>
 #include <string>
 
-/// Rounded numbers for text output.
+/// Numbers in text output; those for people are rounded.
 namespace pillarfield {
+
+/// A number of JSON that readers with types take for floating point, "0.0", or null.
+[[nodiscard]] std::string json_number(double number);
 
 /// "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t number);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "pillarfield/pressure_unit.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
+#include "pillarfield/skin_calibration.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
@@ -23,7 +25,12 @@ struct PlanOptions {
   std::string scene;
   std::string calibration;
   PlanSettings settings;
+  mutable std::shared_ptr<const SkinCalibration> read_calibration;  ///< of calibration_of()
 };
+
+/// The calibration of the options, whose file is read once; null without one. Throws Error where it
+/// cannot be read.
+[[nodiscard]] const SkinCalibration* calibration_of(const PlanOptions& options);
 
 /// The options of opening the frames: `read`, and the constants that the others, the calibration
 /// and the scene give. Throws Error where one of these cannot be read.

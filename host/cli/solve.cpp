@@ -98,7 +98,7 @@ class Counter final : public ForceSink {
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
 
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Device& device,
-                const SolveSummary& summary, const std::vector<std::string>& warnings) {
+                const SolveSummary& summary, const FrameSource& source) {
   nlohmann::ordered_json json = {{"input", options.input},
                                  {"output", options.output},
                                  {"estimator", name_of(plan.estimator)},
@@ -124,7 +124,8 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
   json["inconsistent"] = summary.regions.inconsistent;
   json["startup_seconds"] = summary.startup_seconds;
   json["seconds"] = summary.seconds;
-  json["warnings"] = warnings;
+  json["warnings"] = source.warnings();
+  json["notes"] = source.notes();
   if (!options.part.part.empty()) {
     json["part"] = options.part.part;
     json["was_whole"] = summary.skipped;
@@ -297,9 +298,9 @@ void solve(const SolveOptions& given) {
     summary.regions = counter.regions();
   }
   summary.seconds = watch.seconds() - summary.startup_seconds;
-  if (!source->has_truth()) print_file_warnings(options.input, check.warnings());
+  if (!source->has_truth()) print_about(options.input, "warning", check.warnings());
   if (options.json) {
-    print_json(options, plan, device, summary, source->warnings());
+    print_json(options, plan, device, summary, *source);
   } else if (!options.quiet) {
     print_text(options, plan, device, summary);
   }

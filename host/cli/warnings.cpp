@@ -6,24 +6,24 @@
 
 namespace pillarfield::cli {
 
-void print_file_warnings(const std::string& file, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    fmt::print(stderr, "{}\n", printable(fmt::format("{}: {}", file, warning)));
+void print_about(const std::string& file, const char* kind,
+                 const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) {
+    fmt::print(stderr, "{}\n", printable(fmt::format("{}: {}: {}", file, kind, sentence)));
   }
 }
 
 std::unique_ptr<FrameSource> open_frames_with_warnings(const std::string& file,
                                                        const ReadOptions& options, bool quiet) {
   std::unique_ptr<FrameSource> source = open_frames(file, options);
-  print_file_warnings(file, source->warnings());
-  const std::string read_as = source->read_as();
-  if (!quiet && !read_as.empty()) print_file_warnings(file, {fmt::format("Read {}", read_as)});
+  print_about(file, "warning", source->warnings());
+  if (!quiet) print_about(file, "note", source->notes());
   return source;
 }
 
 Scene load_scene_with_warnings(const std::string& file) {
   Scene scene = load_scene(file);
-  print_file_warnings(file, scene.warnings);
+  print_about(file, "warning", scene.warnings);
   return scene;
 }
 

@@ -9,11 +9,11 @@
 
 namespace pillarfield::cli {
 
-/// Prints the warnings of a file to standard error, one per line.
-void print_file_warnings(const std::string& file, const std::vector<std::string>& warnings);
+/// Prints sentences about a file to standard error, one per line, each after "warning" or "note".
+void print_about(const std::string& file, const char* kind,
+                 const std::vector<std::string>& sentences);
 
-/// Opens frames, prints the warnings about their file and, unless `quiet`, what plain data was read
-/// as.
+/// Opens frames, prints the warnings about their file and, unless `quiet`, the notes.
 [[nodiscard]] std::unique_ptr<FrameSource> open_frames_with_warnings(const std::string& file,
                                                                      const ReadOptions& options,
                                                                      bool quiet);

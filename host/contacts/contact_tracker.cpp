@@ -17,6 +17,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/surface.h"
+#include "skin/limits.h"
 #include "skin/vectors.h"
 #include "solve/idle_blocks.h"
 
@@ -51,7 +52,6 @@ Wrench wrench_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
 
 constexpr const char* kPlace = "ContactTracker";
 constexpr double kMostNoiseN = 1e6;
-constexpr double kMostReachMm = 1000;
 constexpr std::uint32_t kMostThreads = 1024;
 
 void require_planes(const ForceFieldView& forces, SkinLayout layout) {
@@ -145,9 +145,9 @@ void check(const ContactOptions& options, const std::string& where) {
     throw Error(where, fmt::format("a hidden normal force of {} N", options.hidden_n),
                 fmt::format("it must be 0 to {}", kMostNoiseN));
   }
-  if (!(options.reach_mm >= 0 && options.reach_mm <= kMostReachMm)) {
+  if (!kReachMm.contains(options.reach_mm)) {
     throw Error(where, fmt::format("a reach of {} mm", options.reach_mm),
-                fmt::format("it must be 0 to {}", kMostReachMm));
+                "it must be " + kReachMm.text());
   }
   if (options.threads > kMostThreads) {
     throw Error(where, fmt::format("{} threads", options.threads),

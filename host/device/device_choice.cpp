@@ -9,7 +9,6 @@
 
 #include "device/device_state.h"
 #include "device/kernel_cache.h"
-#include "device/lane_slot.h"
 #include "lanes/lane_plan.h"
 #include "skin/quads.h"
 #include "solve/whole_numbers.h"
@@ -255,8 +254,7 @@ const DeviceInfo& Device::info() const { return state().info; }
 Device Device::for_plan(const SolverPlan& plan) const {
   if (best_ == nullptr) return *this;
   const std::size_t most = is_whole(plan) ? kMostWholeQuadsOnHost : kMostQuadsOnHost;
-  const bool is_small = quads(plan.skin) <= most && host_solves(plan.skin);
-  return Device(is_small ? std::make_shared<State>() : best_->opened());
+  return Device(quads(plan.skin) <= most ? std::make_shared<State>() : best_->opened());
 }
 
 }  // namespace pillarfield

@@ -4,14 +4,13 @@
 #include <mutex>
 #include <utility>
 
-#include "device/lane_slot.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
 
 bool starts_on_host(const SolverPlan& plan) {
   return plan.estimator == Estimator::direct && !plan.angles && !has_memory_on_device(plan) &&
-         plan.calibration.bend_x.empty() && host_solves(plan.skin);
+         plan.calibration.bend_x.empty();
 }
 
 LateCall::LateCall(std::chrono::milliseconds delay, std::function<void()> function) {

@@ -101,8 +101,6 @@ void convert_row(const FrameView& frame, std::size_t row, float* to) {
 
 }  // namespace
 
-bool host_solves(const Skin& skin) { return lane_program(quad_cols(skin), 0) != nullptr; }
-
 LaneSettings::LaneSettings(const SolverPlan& plan, const LaneProgram& chosen)
     : program(&chosen),
       whole(is_whole(plan) &&

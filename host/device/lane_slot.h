@@ -8,9 +8,6 @@
 
 namespace pillarfield {
 
-/// Whether rows of the skin are long enough for the host's vectors: two blocks of 2 x 2 sensels.
-[[nodiscard]] bool host_solves(const Skin& skin);
-
 /// How the host solves the frames of a plan with vectors.
 struct LaneSettings {
   /// A row must have as many blocks of 2 x 2 sensels as the program has lanes.

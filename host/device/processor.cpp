@@ -18,6 +18,7 @@
 #include "device/kernel_source.h"
 #include "device/lane_slot.h"
 #include "device/opencl_slot.h"
+#include "device/scalar_slot.h"
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
@@ -112,15 +113,13 @@ std::size_t threads_beside(const Device::State& device) {
   return std::max<std::size_t>(threads, 1);
 }
 
-/// How the host solves a plan; nothing on an OpenCL device.
+/// How the host solves a plan with vectors; nothing on an OpenCL device, or for a skin with a
+/// single column of pillars.
 std::optional<LaneSettings> lane_settings(const Device& device, const SolverPlan& plan, int lanes) {
   if (!device.state().is_host()) return std::nullopt;
   const int most = lanes != 0 ? lanes : device.info().lanes;
   const LaneProgram* const program = lane_program(quad_cols(plan.skin), most);
-  if (program == nullptr) {
-    throw Error(device.info().name, "it does not solve a skin with a single column of pillars",
-                "solve it on an OpenCL device: --device opencl");
-  }
+  if (program == nullptr) return std::nullopt;
   return LaneSettings(plan, *program);
 }
 
@@ -147,6 +146,12 @@ struct Processor::State {
     begin_states(wanted);
     if (lanes) {
       add_lane_slots(wanted, options.frames_in_flight);
+    } else if (device.state().is_host()) {
+      const auto sequence =
+          std::make_shared<ScalarSlot::Sequence>(ScalarSlot::Sequence{wanted, {}});
+      for (int i = 0; i < options.frames_in_flight; ++i) {
+        slots.push_back(std::make_shared<ScalarSlot>(sequence, calibration, order));
+      }
     } else {
       add_opencl_slots(wanted, options.frames_in_flight, tuning);
       warm_up();

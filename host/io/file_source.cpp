@@ -111,7 +111,7 @@ void FileSource::measure_tare(const ReadOptions& options) {
   const TareResult tare = take_tare(before, unloaded, {});
   apply(tare.calibration, skin_, calibration_);
   if (options.threshold_counts) skin_.threshold_counts = *options.threshold_counts;
-  warnings_.push_back(fmt::format(
+  notes_.push_back(fmt::format(
       "Tare and noise are those of the first {} frames; readings above {:.4g} counts are usable.",
       options.tare_frames, skin_.threshold_counts));
   if (tare.findings.empty()) return;

@@ -25,6 +25,7 @@ class FileSource : public FrameSource {
   [[nodiscard]] bool has_truth() const override { return false; }
   void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
+  [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
   void read_truth(std::uint64_t index, ForceField& truth) override;
 
   /// ReadOptions::tare_frames. Throws Error if the file has fewer, or as take_tare() does.
@@ -60,6 +61,7 @@ class FileSource : public FrameSource {
   std::uint64_t frames_ = 0;
   Calibration calibration_;
   std::vector<std::string> warnings_;
+  std::vector<std::string> notes_;
 
  private:
   std::optional<double> rate_hz_;

@@ -1,5 +1,7 @@
 #include "io/frame_source.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <string>
 
@@ -28,6 +30,11 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
     return read_hdf5_frames(hdf5::open_to_read(file), options);
   }
   if (detected.frames != nullptr) return detected.frames->open(path, options);
+  if (path.extension() == ".toml") {
+    throw Error(path.string(), "is a scene, and this needs frames",
+                fmt::format("simulate it first: pillarfield simulate {0} -o {1}.h5", path.string(),
+                            path.stem().string()));
+  }
   std::string known = "an HDF5 recording";
   for (const SourceFormat& format : source_formats()) known += std::string(" nor a ") + format.name;
   throw Error(path.string(), "is neither " + known, "docs/formats.md describes them");

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "base/range.h"
+#include "pillarfield/calibration.h"
 #include "pillarfield/plan_builder.h"
+#include "pillarfield/skin.h"
 #include "skin/limits.h"
 
 namespace pillarfield {
@@ -23,16 +25,18 @@ struct PlanSetting {
   const char* help = "";  ///< one sentence, with the default in brackets
 };
 
-inline constexpr Range kAnyNumber = {-1e300, 1e300};
+inline constexpr Range kReadings = {0, kMaxCounts};
+inline constexpr Range kNoises = {0, kMaxNoiseCounts};
+inline constexpr Range kCountsOfNewton = {kMinCountsPerNewton, kMaxCountsPerNewton};
 
 inline constexpr PlanSetting kPlanSettings[] = {
     {"threshold_counts", &PlanSettings::threshold_counts, "--threshold", "Sensor", "COUNTS",
-     kAnyNumber, false, "Readings above this are usable [the file's]"},
+     kReadings, false, "Readings above this are usable [the file's]"},
     {"counts_per_newton", &PlanSettings::counts_per_newton, "--counts-per-newton", "Sensor",
-     "COUNTS", kAnyNumber, false, "Counts per newton and pillar [the file's]"},
+     "COUNTS", kCountsOfNewton, false, "Counts per newton and pillar [the file's]"},
     {"full_scale_counts", &PlanSettings::full_scale_counts, "--full-scale", "Sensor", "COUNTS",
-     kAnyNumber, false, "Readings of this or more are saturated [the file's]"},
-    {"noise_counts", &PlanSettings::noise_counts, "--noise", "Sensor", "COUNTS", kAnyNumber, false,
+     kReadings, false, "Readings of this or more are saturated [the file's]"},
+    {"noise_counts", &PlanSettings::noise_counts, "--noise", "Sensor", "COUNTS", kNoises, false,
      "Standard deviation of a reading [the calibration's or scene's]"},
     {"baseline_time_s", &PlanSettings::baseline_time_s, "--follow-baseline", "Sensor", "SECONDS",
      kBaselineTimeS, false,
@@ -45,9 +49,9 @@ inline constexpr PlanSetting kPlanSettings[] = {
      {1, 1024},
      true,
      "Follow it in one of N pillar rows per frame, at 1/N of the cost [a hundredth of SECONDS]"},
-    {"frame_interval_s", &PlanSettings::frame_interval_s, nullptr, "", "", kAnyNumber, false, ""},
+    {"frame_interval_s", &PlanSettings::frame_interval_s, nullptr, "", "", {}, false, ""},
     {"parity_tolerance_counts", &PlanSettings::parity_tolerance_counts, "--parity-tolerance",
-     "Solver", "COUNTS", kAnyNumber, false,
+     "Solver", "COUNTS", kReadings, false,
      "Flag pillars whose parity residual is larger [not tested]"},
     {"friction", &PlanSettings::friction, "--friction", "Friction", "RATIO", kFrictions, false,
      "Friction coefficient of all contacts, known to 3 % [estimated]"},

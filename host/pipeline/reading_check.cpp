@@ -88,7 +88,7 @@ std::vector<std::string> ReadingCheck::warnings() const {
   const double share = static_cast<double>(in_contact_) / all;
   if (blank_frames_ > 0) {
     sentences.push_back(fmt::format(
-        "In {} of {} frames no sensel has a reading (NaN); their forces are zero, with the status "
+        "In {} of {} frames no sensel has a reading (NaN or infinite); their forces are zero, with the status "
         "of missing sensels.",
         blank_frames_, frames_));
   }

@@ -17,6 +17,8 @@ inline constexpr Range kCurveCounts = {0, 1e9, true};
 
 inline constexpr Range kBaselineTimeS = {1e-6, 1e9};  ///< of a followed baseline
 
+inline constexpr Range kReachMm = {0, 1000};  ///< of ContactOptions
+
 // Of FrictionKnowledge.
 inline constexpr Range kFrictions = {0.1, 9.9};
 inline constexpr Range kPriorSpread = {0.01, 3};

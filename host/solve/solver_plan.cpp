@@ -76,6 +76,11 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
   refuse(plan.estimator != Estimator::direct,
          plan.estimator == Estimator::paper ? "the paper's estimator" : "the estimator contact");
   refuse(plan.parity_tolerance_counts.has_value(), "a parity test");
+  const FrictionKnowledge& friction = plan.friction;
+  const FrictionKnowledge unknown;
+  refuse(friction.given || friction.bound || friction.median != unknown.median ||
+             friction.spread != unknown.spread,
+         "a friction coefficient");
   refuse(plan.angles, "magnitude and angles of shear force");
   refuse(effects.shear_coefficient.has_value(), "a shear coefficient");
   refuse(effects.pillar_leak.has_value(), "a leak between pillars");

@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
 
+#include "base/nearest_word.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 
@@ -34,6 +38,15 @@ std::string forms_of_sources() {
   return forms;
 }
 
+/// "; did you mean 'udp:'?" for a misspelt kind, else empty.
+std::string suggested_source(std::string_view source) {
+  const std::size_t colon = source.find(':');
+  if (colon == std::string_view::npos || kind_of_source(source) != nullptr) return {};
+  std::vector<std::string> prefixes;
+  for (const LiveSourceKind& kind : live_source_kinds()) prefixes.emplace_back(kind.prefix);
+  return suggestion(source.substr(0, colon + 1), prefixes);
+}
+
 }  // namespace
 
 std::span<const LiveSourceKind> live_source_kinds() {
@@ -41,14 +54,17 @@ std::span<const LiveSourceKind> live_source_kinds() {
   return kinds;
 }
 
-bool is_live_source(std::string_view source) { return kind_of_source(source) != nullptr; }
+bool is_live_source(std::string_view source) {
+  return kind_of_source(source) != nullptr ||
+         (!suggested_source(source).empty() && !std::filesystem::exists(source));
+}
 
 std::unique_ptr<FrameStream> open_live_source(const std::string& source,
                                               const LiveSourceOptions& options) {
   const LiveSourceKind* const kind = kind_of_source(source);
   if (kind == nullptr) {
     throw Error(printable(source), "it is not a live source",
-                fmt::format("give one of {}", forms_of_sources()));
+                fmt::format("give one of {}{}", forms_of_sources(), suggested_source(source)));
   }
   return kind->open(source.substr(kind->prefix.size()), options);
 }

@@ -89,6 +89,7 @@ PF_INLINE Solution correct_solution(Solution solution, ShearRatios ratios, Stage
         corrected_interval(solution.interval, solution.force, solution.direction, solution.status,
                            PF_VALUE(Real, segment_point), moved, shear_weights(stages));
     solution.interval = either_interval(loaded, interval, solution.interval);
+    solution = bounded_solution(solution);
   }
 #endif
   return solution;

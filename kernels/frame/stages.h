@@ -323,6 +323,18 @@ PF_INLINE ShearWeights shear_weights(Stages stages) {
 }
 #endif
 
+#ifdef PF_UNCERTAINTY
+/* With finite deviations and bounds of the magnitude, also where their formulas overflow. */
+PF_INLINE Solution bounded_solution(Solution solution) {
+  solution.deviations.shear_x = bounded_n(solution.deviations.shear_x);
+  solution.deviations.shear_y = bounded_n(solution.deviations.shear_y);
+  solution.deviations.normal = bounded_n(solution.deviations.normal);
+  solution.interval.magnitude_low = bounded_n(solution.interval.magnitude_low);
+  solution.interval.magnitude_high = bounded_n(solution.interval.magnitude_high);
+  return solution;
+}
+#endif
+
 /* Solves a pillar from corrected sensels; `noise` is their noise after correction. */
 PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
   const ForceScale scale = {PF_VALUE(Real, shear_scale), PF_VALUE(Real, normal_scale)};
@@ -368,6 +380,7 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
       solution.deviations = with_common_residual(solution.deviations, solution.force, stages);
     }
 #endif
+    solution = bounded_solution(solution);
   }
 #endif
   return solution;

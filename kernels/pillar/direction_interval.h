@@ -285,7 +285,7 @@ PF_INLINE DirectionInterval open_interval(DirectionInterval interval, Open open)
   any.phi_low = -pi;
   any.phi_high = pi;
   any.magnitude_low = interval.magnitude_low;
-  any.magnitude_high = PF_INFINITY;
+  any.magnitude_high = PF_OPEN_N;
   const Mask is_open =
       open.shear_x || open.shear_y || open.normal || open.difference > PF_REAL(0.0);
   return either_interval(is_open, any, interval);

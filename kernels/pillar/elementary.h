@@ -4,6 +4,13 @@
 
 PF_INLINE Real larger_of(Real a, Real b) { return a < b ? b : a; }
 
+/* A deviation or an end of an interval that the readings do not bound, N: finite, so that what is
+ * computed from it is a number. */
+#define PF_OPEN_N PF_REAL(1e38)
+
+/* At most PF_OPEN_N, which it is for NaN too. */
+PF_INLINE Real bounded_n(Real newtons) { return newtons < PF_OPEN_N ? newtons : PF_OPEN_N; }
+
 /* A power of two by which squares of numbers up to `largest` stay in range, and its inverse. */
 typedef struct {
   Real down;

@@ -15,10 +15,10 @@ PF_INLINE Real sensel_force(Sensel sensel, Real newtons_per_count) {
   return (sensel.usable || sensel.saturated) ? sensel.reading * newtons_per_count : PF_REAL(0.0);
 }
 
-/* Standard deviation of the force, N, from that of the corrected reading, counts: infinite where
+/* Standard deviation of the force, N, from that of the corrected reading, counts: PF_OPEN_N where
  * the sensel is saturated or missing, zero where it is inactive or absent. */
 PF_INLINE Real sensel_deviation(Sensel sensel, Real noise, Real newtons_per_count) {
   const Mask open = sensel.saturated || (sensel.missing && !sensel.absent);
   const Real known = sensel.usable ? noise * newtons_per_count : PF_REAL(0.0);
-  return open ? PF_INFINITY : known;
+  return open ? PF_OPEN_N : bounded_n(known);
 }

@@ -62,9 +62,9 @@ PF_INLINE Force open_deviations(Force deviations, Open open, ForceScale scale) {
     deviations.shear_x = is_hidden ? shear_x : deviations.shear_x;
     deviations.shear_y = is_hidden ? shear_y : deviations.shear_y;
   }
-  deviations.shear_x = open.shear_x ? PF_INFINITY : deviations.shear_x;
-  deviations.shear_y = open.shear_y ? PF_INFINITY : deviations.shear_y;
-  deviations.normal = open.normal ? PF_INFINITY : deviations.normal;
+  deviations.shear_x = open.shear_x ? PF_OPEN_N : deviations.shear_x;
+  deviations.shear_y = open.shear_y ? PF_OPEN_N : deviations.shear_y;
+  deviations.normal = open.normal ? PF_OPEN_N : deviations.normal;
   return deviations;
 }
 

@@ -12,6 +12,7 @@
 docs/python.md is the manual.
 """
 
+from . import _arguments as _arguments  # Wraps the functions that the others import.
 from . import _pickle as _pickle  # Registers what it pickles.
 from . import calibrate, distributed
 from ._compare import Comparison, ContactErrors, ResultantErrors, compare

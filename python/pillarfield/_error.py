@@ -4,7 +4,8 @@
 class Error(Exception):
     """The failure of a call: place, failure and how to mend it, as one line.
 
-    >>> raise Error("press.h5", "it has no frames", "record some")
+    >>> import pillarfield as pf
+    >>> raise pf.Error("press.h5", "it has no frames", "record some")
     Traceback (most recent call last):
     pillarfield.Error: press.h5: it has no frames; record some
     """
@@ -20,3 +21,15 @@ class Error(Exception):
     def __str__(self) -> str:
         start = f"{self.place}: " if self.place else ""
         return start + self.failure + (f"; {self.mend}" if self.mend else "")
+
+
+class ArgumentError(Error, TypeError):
+    """An argument of a wrong type."""
+
+
+class MissingError(Error, AttributeError):
+    """A part that the object does not have, so that hasattr() is False."""
+
+
+class FrameError(Error, IndexError):
+    """A frame beyond the last one."""

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._error import Error
-from ._frames import Path
+from ._error import ArgumentError, Error, FrameError, MissingError
+from ._frames import Path, range_of
 from ._lerobot import Columns, Features, columns_and_features
 from ._picture import picture
 from ._status import REGIONS, Status
@@ -28,13 +28,21 @@ _FORCES = ("shear_x", "shear_y", "normal")
 _ANGLES = ("magnitude", "theta", "phi")
 
 
-@dataclasses.dataclass(frozen=True)
+def _short(planes: Any) -> str:
+    """Names and shapes of the arrays of a dataclass."""
+    given = {field.name: getattr(planes, field.name) for field in dataclasses.fields(planes)}
+    arrays = {name: plane for name, plane in given.items() if plane is not None}
+    shape = " x ".join(map(str, next(iter(arrays.values())).shape))
+    return f"<{type(planes).__name__}: {', '.join(arrays)}, {shape}>"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
 class Uncertainty:
     """Uncertainty of the forces, float32 arrays of their shape.
 
     shear_x, shear_y and normal are standard deviations, N. The others bound direction (rad) and
     magnitude (N) over the segment of an ambiguous pillar, without noise; phi runs counter-clockwise
-    from low to high. What saturated sensels leave open is infinite. Valid for pillars without
+    from low to high. What saturated sensels leave open is 1e38. Valid for pillars without
     missing sensels. Without pillars, all but normal is None.
     """
 
@@ -48,8 +56,11 @@ class Uncertainty:
     magnitude_low: Optional[Floats] = None
     magnitude_high: Optional[Floats] = None
 
+    def __repr__(self) -> str:
+        return _short(self)
 
-@dataclasses.dataclass(frozen=True)
+
+@dataclasses.dataclass(frozen=True, repr=False)
 class Intervals:
     """Ends of the 95 % intervals of the forces, N, float32 arrays of their shape.
 
@@ -64,8 +75,11 @@ class Intervals:
     shear_y_low: Optional[Floats] = None
     shear_y_high: Optional[Floats] = None
 
+    def __repr__(self) -> str:
+        return _short(self)
 
-@dataclasses.dataclass(frozen=True)
+
+@dataclasses.dataclass(frozen=True, repr=False)
 class Points:
     """Forces as vectors at points, for simulators and learning.
 
@@ -77,6 +91,9 @@ class Points:
     force_n: Floats
     position_m: Doubles
     normal: Doubles
+
+    def __repr__(self) -> str:
+        return _short(self)
 
 
 class ForceField:
@@ -141,11 +158,11 @@ class ForceField:
         try:
             plane: Floats = self._planes[name]
         except KeyError:
-            if not self.has_pillars:
-                raise Error("ForceField", f"without pillars there is no {name}",
-                            "give the skin the layout 'pillars', if it has some") from None
-            raise Error("ForceField", f"it has no {name}",
-                        f"solve with outputs=['{output}']") from None
+            if output != "uncertainty" and not self.has_pillars:
+                raise MissingError("ForceField", f"without pillars there is no {name}",
+                                   "give the skin the layout 'pillars', if it has some") from None
+            raise MissingError("ForceField", f"it has no {name.removesuffix('_normal')}",
+                               f"solve with outputs=['{output}']") from None
         return plane
 
     @property
@@ -167,7 +184,7 @@ class ForceField:
         unit: 'kPa', 'psi' or 'mmHg'. Raises Error without a skin.
         """
         if self._skin is None:
-            raise Error("ForceField.pressure", "the skin is unknown", "solve with skin=Skin(...)")
+            raise MissingError("ForceField.pressure", "the skin is unknown", "solve with skin=Skin(...)")
         kpa: Optional[float] = _core.pressure_units.get(unit)
         if kpa is None:
             raise Error("ForceField.pressure", f"'{unit}' is not a unit of pressure",
@@ -251,7 +268,7 @@ class ForceField:
     def contacts(self) -> Any:
         """FrameContacts of one frame, or a list of them; with contacts=True."""
         if self._contacts is None:
-            raise Error("ForceField", "it has no contacts", "solve with contacts=True")
+            raise MissingError("ForceField", "it has no contacts", "solve with contacts=True")
         return self._contacts if self.normal.ndim == 3 else self._contacts[0]
 
     def contact_records(self) -> npt.NDArray[Any]:
@@ -310,15 +327,20 @@ class ForceField:
     def __getitem__(self, frames: Union[int, slice]) -> ForceField:
         """One frame, or a slice of frames, over the same memory."""
         if len(self.shape) != 3:
-            raise TypeError("this ForceField is one frame; index its arrays")
+            raise ArgumentError("ForceField", "it is one frame", "index its planes, such as forces.normal")
         if not isinstance(frames, slice):
-            frames = range(len(self))[frames]
+            frames = range_of(frames, len(self))[0]
         contacts = self._contacts
         if contacts is not None:
             contacts = contacts[frames] if isinstance(frames, slice) else [contacts[frames]]
         planes = {name: plane[frames] for name, plane in self._planes.items()}
         return self._of(planes, np.asarray(self._times[frames]), contacts, self._skin,
                         self._solved_by)
+
+    def __array__(self, *_: Any, **__: Any) -> Any:
+        """Raises Error: several planes are no array."""
+        raise ArgumentError("ForceField", f"it has the planes {', '.join(self._planes)}",
+                            "give one, such as forces.normal")
 
     def __iter__(self) -> Iterator[ForceField]:
         """The frames."""

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._error import Error
+from ._error import ArgumentError, Error, FrameError
 
 Readings = npt.NDArray[Any]
 Path = Union[str, os.PathLike[str]]
@@ -20,6 +20,20 @@ Axes = Union[str, Iterable[str]]
 Blocks = list[tuple[int, int, int, int]]
 
 _TYPES = (np.uint8, np.uint16, np.float32)
+
+
+def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
+    """First index, step and number of the frames that an index or a slice takes of `count`."""
+    try:
+        chosen = range(count)[frames]
+    except IndexError:
+        raise FrameError("frames", f"there are {count}, and none has the index {frames}",
+                         f"give {-count} to {count - 1}" if count else "index none") from None
+    except TypeError:
+        raise ArgumentError("frames", f"{frames!r:.60} is not an index", "give a whole number or a slice") from None
+    if isinstance(chosen, int):
+        return chosen, 1, 1
+    return chosen.start, chosen.step, len(chosen)
 
 
 def warn(sentences: Iterable[str]) -> None:
@@ -108,6 +122,10 @@ def times_of(count: int, times: Optional[npt.ArrayLike], rate_hz: Optional[float
     given = np.asarray(times, np.float64)
     if given.shape != (count,):
         raise Error("frames", f"there are {given.size} times for {count} frames", "give one a frame")
+    wrong = np.flatnonzero(~np.isfinite(given) | (np.diff(given, prepend=given[:1]) < 0))
+    if wrong.size:
+        raise Error("frames", f"frame {wrong[0]} has the time {given[wrong[0]]:g}",
+                    "give finite times, s, that do not fall")
     return given
 
 

@@ -22,7 +22,8 @@ class Processor(_core.Processor):
     frames_in_flight: frames that may be submitted and not yet received, 1..64
     lent: results that may be held at a time without a copy, 0..63; further ones are copied
     contacts: track contacts too
-    device: OpenCL device, by its index or a part of its name; '': the best one
+    device: 'host', 'opencl', or an OpenCL device by its index or a part of its name; '': the host for
+        small skins, else the best of OpenCL
 
     Results are read-only arrays in the device's memory; ForceField.copy() is writeable. They stay
     right as long as they are held, also after close(). Python's lock is released while solving, and

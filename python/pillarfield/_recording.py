@@ -12,16 +12,8 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Axes, Path, Readings, axis_words, frames_first, readings_of, times_of
+from ._frames import Axes, Path, Readings, axis_words, frames_first, range_of, readings_of, times_of
 from ._scene import Simulation
-
-
-def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
-    """First index, step and number of the frames that an index or a slice takes of `count`."""
-    chosen = range(count)[frames]
-    if isinstance(chosen, int):
-        return chosen, 1, 1
-    return chosen.start, chosen.step, len(chosen)
 
 
 class Recording(_core.FrameSource):

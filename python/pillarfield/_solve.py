@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
+import numbers
 import os
 from collections.abc import Iterable
 from typing import Any, Optional, TypeGuard, Union
@@ -12,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._error import Error
+from ._error import ArgumentError, Error
 from ._field import ForceField
 from ._frames import Axes, Path, array_of, readings_of, timed, warn
 from ._recording import Recording, skin_of, source_of
@@ -41,7 +42,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     axes: order of the axes of an array, such as 'rows,columns,frames' or ('rows', 'columns'); by
         default frames, rows, columns, and an array that more likely has another order is refused
     contacts: find and track the contacts too
-    device: OpenCL device, by its index or a part of its name; '': the best one
+    device: 'host', 'opencl', or an OpenCL device by its index or a part of its name; '': the host for
+        small skins, else the best of OpenCL
     options: those of Plan: layout, estimator, outputs, noise_counts, threshold_counts, ...
 
     Returns the forces of all frames, planes [T, R, C], or with pillars (layout='pillars')
@@ -71,6 +73,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     if isinstance(frames, (list, tuple)):
         frames = array_of(frames)
     source = source_of(frames, skin, times, rate_hz, axes=axes)
+    if not isinstance(tare_frames, numbers.Integral):
+        raise ArgumentError("tare_frames", f"it is {tare_frames!r:.60}", "give a whole number of frames")
     if tare_frames:
         if not 10 <= tare_frames < len(source):
             raise Error("tare_frames", f"{tare_frames} of {len(source)} frames cannot be the unloaded ones",

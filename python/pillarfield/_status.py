@@ -10,7 +10,8 @@ from . import _core
 class Status(enum.IntFlag):
     """Bits of a status byte: usable readings of a pillar and the reliability of its force.
 
-    >>> Status(17)
+    >>> import pillarfield as pf
+    >>> pf.Status(17)
     <Status.SENSEL_1|AMBIGUOUS: 17>
     """
 

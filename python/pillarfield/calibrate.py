@@ -20,7 +20,10 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import Any, Optional, Union
 
+import numpy as np
+
 from . import _core
+from ._error import ArgumentError
 from ._frames import Axes, warn
 from ._recording import source_of
 
@@ -70,7 +73,14 @@ def _run(step: str, all_frames: Iterable[Any], before: Before, skin: Skin, axes:
 
 
 def _pairs(known: Sequence[tuple[Any, Any]]) -> tuple[list[Any], list[Any]]:
-    return [frames for frames, _ in known], [value for _, value in known]
+    try:
+        frames, values = zip(*known) if len(known) else ((), ())
+    except (TypeError, ValueError):
+        values = None
+    if values is None or any(np.ndim(value) > 1 for value in values):
+        raise ArgumentError("calibrate", "the known loads are not pairs",
+                            "give a list of pairs of frames and load, such as [(frames, 25.0)]")
+    return list(frames), list(values)
 
 
 def tare(unloaded: Any, before: Before = None, *, skin: Skin = None, axes: Axes = "",

@@ -83,7 +83,8 @@ def solve_part(recording: Path, output: Path, part: int, parts: int, *,
     warm_up: frames before each of them that are solved first; by default a tenth of the distance
     contacts: find and track the contacts too
     calibration: path of its file
-    device: OpenCL device, by its index or a part of its name; '': the best one
+    device: 'host', 'opencl', or an OpenCL device by its index or a part of its name; '': the host for
+        small skins, else the best of OpenCL
     reading: options of Recording
     options: those of Plan, with paths for files
 

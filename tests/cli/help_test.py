@@ -9,6 +9,8 @@ import shutil
 import subprocess
 import unittest
 
+import numpy as np
+
 from command import PROGRAM, SOURCE, CommandTest, datasets, on_terminal, run, run_json
 
 STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "weight", "apply"]
@@ -100,7 +102,7 @@ class WrongCommandLines(CommandTest):
                 ("--threshold", *solve, "--thresold=3"), ("--rate", "stream", "a", "--rat", 3),
                 ("direct", *solve, "--estimator", "direckt"), ("linear", "calibrate", "load", "a",
                 "--model", "liner"), ("angles", *solve, "--outputs", "forces,angels"),
-                ("bash", "completion", "bsh")):
+                ("bash", "completion", "bsh"), ("solve", "help", "solv"), ("tare", "help", "calibrate", "tar")):
             self.assert_fails(*arguments, status=2, names=[f"; did you mean '{meant}'?"])
         for arguments in (["fly"], [*solve, "--helicopter"], [*solve, "--estimator", "magic"]):
             self.assertNotIn("mean", self.assert_fails(*arguments, status=2, names=[arguments[-1]]))
@@ -131,9 +133,46 @@ class WrongCommandLines(CommandTest):
                  -1), ("SOURCE", "stream"), ("fast", "stream", "a", "--rate", "fast"),
                 ("--rate", "stream", "a", "--rate", 0), ("'nan'", "stream", "a", "--rate", "nan"),
                 ("--rate", "stream", "a", "--rate", 1e6),
-                ("--summary requires --rate", "stream", "a", "--summary")):
+                ("--summary requires --rate", "stream", "a", "--summary"),
+                *((f"{option}: '-5'", command, "a", *output, *more, option, -5)
+                  for command, output in (("solve", ("-o", "b", "--contacts", "c")), ("stream", ()))
+                  for option, *more in (("--counts-per-newton", ), ("--threshold", ), ("--full-scale", ),
+                                        ("--noise", ), ("--parity-tolerance", ), ("--contact-reach", ),
+                                        ("--pitch-mm", )))):
             line = self.assert_fails(*arguments, status=2, names=[fault])
             self.assertRegex(line, r"; see 'pillarfield.* --help'$|; did you mean")
+
+    def test_help_of_a_command_by_every_word(self):
+        for word in ("help", "-h", "--help"):
+            self.assertEqual(run(word, "solve").stdout, run("solve", "--help").stdout)
+            self.assertEqual(run(word).stdout, run("--help").stdout)
+
+    def test_a_remedy_works_as_it_is_typed(self):
+        scene, recording = SOURCE / "scenes/spin.toml", self.folder / "spin.h5"
+        for command in (["solve", scene, "-o", "f.h5"], ["doctor", scene], ["calibrate", "tare", scene, "-o", "t.h5"]):
+            line = self.assert_fails(*command, names=["is a scene"])
+            run(*shlex.split(line.split("simulate it first: pillarfield ")[1]), cwd=self.folder)
+            recording.unlink()
+        run("simulate", scene, "-o", recording, "--uncalibrated")
+        self.assert_fails("solve", recording, "-o", "f.h5", "--outputs", "uncertainty", names=["give --noise, or"])
+        self.assert_fails("solve", recording, "-o", "f.h5", "--layout", "sensels", "--friction", 0.5,
+                          names=["no pillars, but the plan has a friction coefficient"])
+        for command in ("stream", "doctor"):
+            self.assert_fails(command, "upd:127.0.0.1:9870", *(["-q"] if command == "stream" else []),
+                              names=["did you mean 'udp:'?"])
+
+    def test_notes_are_no_warnings_and_quiet_leaves_them_out(self):
+        frames = np.random.default_rng(1).normal(100, 1, (30, 8, 12)).astype("f4")
+        frames[25:, 2:5, 3:7] += 100
+        np.save(self.folder / "mine.npy", frames)
+        solve = ["solve", "mine.npy", "--rate", 50, "--tare-frames", 20, "--counts-per-newton", 300, "--pitch-mm", 5,
+                 "-o", "f.h5", "--overwrite"]
+        said = run(*solve, cwd=self.folder).stderr
+        self.assertRegex(said, r"\Amine.npy: note: Read 30 frames .*\nmine.npy: note: Tare and noise are .*\n\Z")
+        self.assertEqual(run(*solve, "-q", cwd=self.folder).stderr, "")
+        report = json.loads(run(*solve, "--json", cwd=self.folder).stdout)
+        self.assertEqual((len(report["notes"]), report["warnings"]), (2, []))
+        run("calibrate", "tare", "mine.npy", "--rate", 50, "-o", "tared.h5", "-q", cwd=self.folder)
 
     def test_a_former_name_works_with_a_note(self):
         rough = (SOURCE / "scenes/rough_ball.toml").read_text()
@@ -143,7 +182,7 @@ class WrongCommandLines(CommandTest):
         two = [self.folder / "new_name.h5", self.folder / "old_name.h5"]
         run("simulate", SOURCE / "scenes/rough_ball.toml", "-o", two[0], "--frames", 2, "-q")
         messages = run("simulate", old, "-o", two[1], "--frames", 2, "-q").stderr
-        self.assertRegex(messages, r"\A.*old.toml: \[\[body\]\] is now \[\[indenter\]\]; .*\n\Z")
+        self.assertRegex(messages, r"\A.*old.toml: warning: \[\[body\]\] is now \[\[indenter\]\]; .*\n\Z")
         planes = [datasets(path) for path in two]
         for name, plane in planes[0].items():
             self.assertEqual(plane.tobytes(), planes[1][name].tobytes(), name)

@@ -298,6 +298,7 @@ class Network(StreamTest):
                                "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n"
                                "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n".encode())
                 self.assertEqual(client.recv(12)[9:], status)
+        self.assertEqual(process.stderr.readline(), f"Open ws://{sink['name'].split(':', 1)[1]} in Foxglove\n")
         self.assertIn("refused the web page https://evil.example", process.stderr.readline())
 
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "lanes/lane_plan.h"
 #include "pillarfield/error.h"
@@ -10,6 +11,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"
+#include "tests/device/host_reference.h"
 #include "tests/device/same_bits.h"
 
 namespace pillarfield {
@@ -43,6 +45,25 @@ TEST(Lanes, LargeFramesHaveTheBitsOfTheScalarSolve) {
         processor.submit(frame.view());
         expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
       }
+    }
+  }
+}
+
+TEST(Lanes, ASingleColumnOfPillarsHasTheBitsOfTheScalarSolve) {
+  for (const auto& [cols, layout] :
+       {std::pair{2U, SkinLayout::pillars}, {3U, SkinLayout::pillars}, {2U, SkinLayout::sensels}}) {
+    SolverPlan plan = full_plan(16, cols, SenselType::u16, 3);
+    plan.skin.layout = layout;
+    if (layout == SkinLayout::sensels) plan.parity_tolerance_counts.reset();
+    plan.angles = layout == SkinLayout::pillars;
+    plan.baseline_rate = 0.1;
+    HostReference reference(plan);
+    Processor processor(open_device("host"), plan, {.frames_in_flight = 2});
+    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+      const RandomFrame frame(plan, 0, seed);
+      processor.submit(frame.view());
+      expect_same_planes(processor.receive(), reference.solve(frame.view()));
+      EXPECT_EQ(processor.tare(), reference.tare());
     }
   }
 }

@@ -278,13 +278,17 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   const auto refusal = [&] {
     const std::string before = bytes_of(directory / "a.csv.part");
     std::string error =
-        error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces, Replace::anything); });
+        error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces, Replace::results); });
     EXPECT_EQ(bytes_of(directory / "a.csv.part"), before);
     return error;
   };
   write_recording(directory / "a.csv", 3, false);
-  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds 3 frames", "rename or remove"}));
-  fs::remove(directory / "a.csv.part");
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds 3 frames", "rename it", "--overwrite"}));
+  const PlannedOutput planned = {directory / "a.csv", OutputKind::forces};
+  EXPECT_NE(error_of([&] { check_outputs({}, {planned}, Replace::results); }), "");
+  check_outputs({}, {planned}, Replace::anything);
+  write_text(directory / "a.csv", "as asked", Replace::anything);
+  EXPECT_EQ(directory.names(), Names{"a.csv"});
   write_calibration_file(directory / "a.csv.part", small_calibration());
   EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds a calibration"}));
   write_bytes(directory / "a.csv.part", "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
@@ -294,6 +298,18 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   fs::rename(directory / "f.h5", directory / "a.csv.part");
   write_text(directory / "a.csv", "forces can be solved again", Replace::results);
   EXPECT_EQ(directory.names(), Names{"a.csv"});
+}
+
+TEST(OutputFile, KeepsThePermissionsOfTheFileThatItReplaces) {
+  const TemporaryDirectory directory;
+  for (const fs::perms mode : {fs::perms{0600}, fs::perms{0444}, fs::perms{0664}}) {
+    write_text(directory / "a.csv", "before", Replace::anything);
+    fs::permissions(directory / "a.csv", mode);
+    OutputFile file(directory / "a.csv", OutputKind::forces, Replace::anything);
+    EXPECT_EQ(fs::status(directory / "a.csv.part").permissions(), mode | fs::perms{0600});
+    file.commit();
+    EXPECT_EQ(fs::status(directory / "a.csv").permissions(), mode);
+  }
 }
 
 TEST(OutputFile, AFileCreatedMeanwhileIsNotReplaced) {

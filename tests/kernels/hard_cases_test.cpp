@@ -33,12 +33,8 @@ std::string text_of(const Example& example) {
                      example.sensor.counts_per_newton, example.sensor.threshold_counts);
 }
 
-/// A component that saturated sensels leave open has an infinite deviation.
 bool all_finite(const Outcome& outcome) {
-  const bool saturated = (outcome.status & status::kSaturated) != 0;
-  return std::ranges::all_of(outcome.outputs, [saturated](double value) {
-    return std::isfinite(value) || (saturated && value > 0);
-  });
+  return std::ranges::all_of(outcome.outputs, [](double value) { return std::isfinite(value); });
 }
 
 /// The usable bits of the status byte, by the definition of usable.

@@ -273,6 +273,43 @@ class Errors(unittest.TestCase):
             with self.subTest(number), self.assertRaises(kind):
                 call()
 
+    def test_one_line_names_the_argument_and_the_mend_in_words_of_python(self):
+        frames = np.zeros((30, 8, 12), np.uint8)
+        forces, skin = pf.solve(frames, counts_per_newton=320), pf.Skin(8, 12)
+        path = WORK / "untimed.npy"
+        np.save(path, frames)
+        for words, call in (
+                ("tare_frames: it is 10.5; give a whole number", lambda: pf.solve(frames, tare_frames=10.5)),
+                ("Recording: tare_frames is 10.5; give a whole number", lambda: pf.Recording(path, tare_frames=10.5)),
+                ("Skin: rows is 64.0; give a whole number", lambda: pf.Skin(64.0, 64)),
+                ("Skin: cols is not given", lambda: pf.Skin(64)),
+                ("Skin: counts_per_newton is 'many'; give a number", lambda: pf.Skin(8, 12, counts_per_newton="many")),
+                ("outputs is 'angles'; give a list of texts", lambda: pf.solve(frames, outputs="angles")),
+                ("friction is 'high'; give a number", lambda: pf.Plan(skin, friction="high")),
+                ("none has the index 1000; give -30 to 29", lambda: forces[1000]),
+                ("none has the index 1000", lambda: pf.Recording(path, rate_hz=10)[1000]),
+                ("'a' is not an index", lambda: forces["a"]),
+                ("give one, such as forces.normal", lambda: np.asarray(forces)),
+                ("it has no uncertainty; solve with outputs=", lambda: forces.uncertainty),
+                ("without pillars there is no magnitude", lambda: forces.magnitude),
+                ("give a list of pairs", lambda: pf.calibrate.load(frames, 25.0)),
+                ("frame 2 has the time 0.5; give finite times", lambda: pf.solve(frames[:3], times=[0, 1, 0.5])),
+                ("give their rate with rate_hz=", lambda: pf.solve(path)),
+                ("give noise_counts, or", lambda: pf.solve(frames, outputs=["uncertainty"]))):
+            with self.subTest(words), self.assertRaises((pf.Error, TypeError)) as caught:
+                call()
+            self.assertIn(words, str(caught.exception))
+            self.assertNotRegex(str(caught.exception), "\n|--")
+
+    def test_what_is_not_there_is_no_attribute(self):
+        forces = pf.solve(np.zeros((3, 8, 12), np.uint8), counts_per_newton=320)
+        for name in ("magnitude", "theta", "shear_x", "region", "uncertainty", "intervals", "contacts"):
+            self.assertFalse(hasattr(forces, name), name)
+        known = pf.solve(np.zeros((3, 8, 12), np.uint8), counts_per_newton=320, noise_counts=1, outputs=["uncertainty"])
+        self.assertTrue(hasattr(known, "uncertainty"))
+        for part in (known.uncertainty, known.intervals):
+            self.assertRegex(repr(part), r"^<\w+: normal[\w, ]*, 3 x 8 x 12>$")
+
     def test_an_exception_in_an_iterator_is_the_users(self):
         def broken():
             yield np.zeros((8, 12), np.uint8)

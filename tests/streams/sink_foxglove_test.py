@@ -241,6 +241,8 @@ class FoxgloveTest(SinkTest):
         for target in ("foxglove:x:1", "foxglove:99999", "foxglove:1.2.3:5", "foxglove:-1"):
             with self.assertRaisesRegex(AssertionError, "sink_driver: foxglove"):
                 self.start("--to", target)
+        any_address = self.start("--to", "foxglove:0.0.0.0:0", "--linger", 30)
+        self.assertTrue(any_address.sinks[0].startswith("foxglove:127.0.0.1:"))
         process = self.start("--to", "foxglove:[::1]:0", "--linger", 30)
         self.assertTrue(process.sinks[0].startswith("foxglove:[::1]:"))
         with FoxgloveClient(int(process.sinks[0].rsplit(":", 1)[1]), host="::1") as client:

@@ -17,6 +17,22 @@
 
 namespace pillarfield::viewer {
 
+/// One line about the last action: "wrote field.png".
+class Notice : public std::string {
+ public:
+  Notice& operator=(std::string words) {
+    assign(words);
+    is_failure = false;
+    return *this;
+  }
+  void fail(const char* words) {
+    assign(words);
+    is_failure = true;
+  }
+
+  bool is_failure = false;  ///< drawn in the colour of warnings
+};
+
 /// A clicked pillar.
 struct Pin {
   PillarIndex pillar;
@@ -70,7 +86,7 @@ struct AppState {
   bool view_is_fitted = true;      ///< the view follows the window's size until the user moves it
   std::optional<View> other_view;  ///< the hidden one of top view and 3-D view
   bool writing = false;            ///< a FrameWriter is active
-  std::string notice;              ///< one line about the last action: "wrote field.png"
+  Notice notice;
 
   static constexpr std::size_t kMostPins = 6;
 };

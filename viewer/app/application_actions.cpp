@@ -25,7 +25,7 @@ void Application::serve() {
     if (asked.record) toggle_recording();
     if (asked.truth) toggle_truth();
   } catch (const Error& error) {
-    state_.notice = error.what();
+    state_.notice.fail(error.what());
   }
   if (asked.stop && writer_ != nullptr) {
     writer_.reset();
@@ -130,7 +130,7 @@ void Application::continue_frames() {
   try {
     if (writer_->add(pixels())) writer_.reset();
   } catch (const Error& error) {
-    state_.notice = error.what();
+    state_.notice.fail(error.what());
     writer_.reset();
   }
   redraws_.field();

@@ -40,7 +40,7 @@ void Application::take_loaded() {
   } catch (const Error& error) {
     loading_.reset();
     if (state_.player == nullptr && source_was_given_) throw;
-    state_.notice = error.what();
+    state_.notice.fail(error.what());
     redraws_.input(Window::now_s());
   }
 }
@@ -152,7 +152,7 @@ std::optional<ShownField> Application::taken_field() {
     return state_.player->take();
   } catch (const Error& error) {
     if (state_.player->live() == nullptr) throw;
-    state_.notice = error.what();
+    state_.notice.fail(error.what());
     redraws_.input(Window::now_s());
     return std::nullopt;
   }

@@ -73,7 +73,7 @@ std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptio
                     "{} MiB.",
                     fitting, scene.frames, options.memory_bytes / kMiB));
   } else if (wanted < scene.frames) {
-    info.warnings.push_back(
+    info.notes.push_back(
         fmt::format("The first {} of {} frames are shown, as requested.", wanted, scene.frames));
   }
   return std::min(wanted, fitting);
@@ -90,10 +90,10 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   info.rate_hz = scene.rate_hz;
   const std::uint64_t frames = frames_to_simulate(*simulator, options, info);
   if (scene.baseline_time_s) {
-    info.warnings.emplace_back("The baseline is fixed: frames are solved in any order.");
+    info.notes.emplace_back("The baseline is fixed: frames are solved in any order.");
   }
   if (carries_prior(scene.estimator, scene.friction)) {
-    info.warnings.emplace_back(
+    info.notes.emplace_back(
         "Played frames carry friction over from the frame before; a frame that is jumped to is "
         "solved alone.");
   }
@@ -151,9 +151,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   info.name = path.filename().string();
   info.kind = source->format();
   info.warnings = source->warnings();
-  if (const std::string read_as = source->read_as(); !read_as.empty()) {
-    info.warnings.push_back(fmt::format("Read {}.", read_as));
-  }
+  info.notes = source->notes();
   SolverPlan plan = plan_of_frames(*source);
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });

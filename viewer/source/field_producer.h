@@ -32,6 +32,7 @@ struct SourceInfo {
   std::string solver;                 ///< solver_words(), "zero copy"; from a force file its solver
   ContactOptions contacts = {};       ///< for contacts found here
   std::vector<std::string> warnings;  ///< one sentence each
+  std::vector<std::string> notes;     ///< likewise
 };
 
 /// Produces the fields of a source one by one, in any order. Not thread safe.

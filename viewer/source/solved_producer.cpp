@@ -88,6 +88,7 @@ SourceInfo truth_info(SourceInfo info) {
   info.has_uncertainty = false;
   info.solver = "true forces";
   info.warnings.clear();
+  info.notes.clear();
   return info;
 }
 

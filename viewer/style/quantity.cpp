@@ -203,7 +203,7 @@ float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {
       const std::uint8_t status = field.forces.status[first + col];
       if (!is_pressed(status) || is_faulty(status)) continue;
       const float size = std::abs(pressed_value(quantity, field, skin, row, col));
-      if (std::isfinite(size) && size > largest) largest = size;
+      if (size < 0.1F * kOpenN && size > largest) largest = size;
       normal = std::max(normal, field.forces.normal[first + col]);
     }
   }

@@ -8,13 +8,18 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include "base/nearest_word.h"
+#include "base/reworded.h"
 #include "cli/commands.h"
 #include "cli/options/argument_group.h"
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
 #include "cli/part_share.h"
+#include "pillarfield/error.h"
+#include "pipeline/plan_settings.h"
+#include "skin/limits.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -107,7 +112,7 @@ void add_solve(CLI::App& parent, Work& work) {
       ->needs(file);
   contacts
       .number("--contact-reach", found.reach_mm, "MM",
-              "Largest movement of a contact between frames [10]")
+              "Largest movement of a contact between frames [10]", kReachMm.low, kReachMm.high)
       ->needs(file);
   add_pressure_unit(contacts, options->pressure_unit)->needs(file);
   add_parts(command, options->part);
@@ -188,20 +193,40 @@ void add_completion(CLI::App& parent, Work& work) {
   });
 }
 
+/// The command that the words after "help" name.
+const CLI::App& topic_of(const CLI::App& app, std::span<const std::string> words) {
+  if (words.empty() || words.front().starts_with('-')) return app;
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    known.push_back(command->get_name());
+    if (known.back() == words.front()) return topic_of(*command, words.subspan(1));
+  }
+  throw WrongCommandLine(fmt::format("help: '{}' is not a command{}", words.front(),
+                                     suggestion(words.front(), known)));
+}
+
 /// Returns the innermost command of a command line.
 const CLI::App& called_of(const CLI::App& app) {
   const std::vector<CLI::App*> called = app.get_subcommands();
   return called.empty() ? app : called_of(*called.back());
 }
 
+/// The options of a command by the names that the library has for what they set.
+Rewording option_names(const CLI::App& command) {
+  Rewording names;
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (setting.option == nullptr) continue;
+    if (command.get_option_no_throw(setting.option) != nullptr) {
+      names.emplace_back(setting.name, setting.option);
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 Work parse_arguments(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
-  if (!words.empty() && words.front() == "help") {
-    words.erase(words.begin());
-    words.emplace_back("--help");
-  }
   Work work;
   CLI::App app("Turns frames of a high-density artificial skin into fields of three-axis force.",
                "pillarfield");
@@ -229,6 +254,11 @@ Work parse_arguments(int argc, char** argv) {
       general.flag("--version", version, "Print version, build and libraries, and exit");
   general.flag("--json", json, "With --version: print JSON")->needs(version_flag);
   add_help(&app);
+  const std::string first = words.empty() ? "" : words.front();
+  if (first == "help" || first == "-h" || first == "--help") {
+    const std::string text = help_of(topic_of(app, std::span(words).subspan(1)));
+    return [text] { fmt::print("{}", text); };
+  }
   try {
     std::ranges::reverse(words);
     app.parse(words);
@@ -244,7 +274,13 @@ Work parse_arguments(int argc, char** argv) {
     if (&command == &app) throw WrongCommandLine(message);
     throw WrongCommandLine(name.substr(app.get_name().size() + 1) + ": " + message);
   }
-  return work;
+  return [work, words = option_names(called_of(app))] {
+    try {
+      work();
+    } catch (const Error& error) {
+      throw reworded(error, words);
+    }
+  };
 }
 
 }  // namespace pillarfield::cli

@@ -10,7 +10,8 @@ namespace {
 void add_step_options(CLI::App* command, StepOptions& options, const char* output,
                       bool uses_times) {
   add_trust(command, options.read);
-  add_plain_data(command, options.read, uses_times);
+  add_plain_data(command, options.read, true);
+  options.read.untimed = !uses_times;
   add_output(command, options, output);
   add_general(command, options, "Print the summary as JSON", kQuietWriter);
 }

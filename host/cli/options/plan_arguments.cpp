@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -28,8 +29,6 @@ void add_settings(Group& group, const char* heading, PlanSettings& settings) {
     if (setting.whole) {
       group.whole(setting.option, target, setting.unit, setting.help,
                   static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high));
-    } else if (low == kAnyNumber.low) {
-      group.number(setting.option, target, setting.unit, setting.help);
     } else {
       group.number(setting.option, target, setting.unit, setting.help, low, high);
     }
@@ -102,7 +101,15 @@ void add_contacts(CLI::App* command, ContactOptions& options) {
                  "Leave out contacts of fewer pillars [1]", 0,
                  std::numeric_limits<std::uint32_t>::max());
   contacts.number("--contact-reach", options.reach_mm, "MM",
-                  "Largest movement of a contact between frames [10]");
+                  "Largest movement of a contact between frames [10]", kReachMm.low, kReachMm.high);
+}
+
+const SkinCalibration* calibration_of(const PlanOptions& options) {
+  if (!options.read_calibration && !options.calibration.empty()) {
+    options.read_calibration = std::make_shared<const SkinCalibration>(
+        read_calibration_file(options.calibration, options.read));
+  }
+  return options.read_calibration.get();
 }
 
 ReadOptions frame_options(const PlanOptions& options) {
@@ -114,10 +121,9 @@ ReadOptions frame_options(const PlanOptions& options) {
   take(read.threshold_counts, options.settings.threshold_counts);
   take(read.full_scale_counts, options.settings.full_scale_counts);
   std::optional<double> threshold;
-  if (!options.calibration.empty()) {
-    const auto calibration = read_calibration_file(options.calibration, options.read);
-    take(read.counts_per_newton, calibration.counts_per_newton);
-    threshold = calibration.threshold_counts;
+  if (const SkinCalibration* const calibration = calibration_of(options)) {
+    take(read.counts_per_newton, calibration->counts_per_newton);
+    threshold = calibration->threshold_counts;
   }
   if (!options.scene.empty()) {
     const Skin skin = load_scene(options.scene).skin;
@@ -136,12 +142,8 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
   std::optional<Scene> scene;
   const std::string& file = options.scene.empty() && is_scene(source) ? source : options.scene;
   if (!file.empty()) from.scene = &scene.emplace(load_scene_with_warnings(file));
-  std::optional<SkinCalibration> calibration;
-  if (!options.calibration.empty()) {
-    calibration = read_calibration_file(options.calibration, options.read);
-    check_tare(options, calibration->planes.effects);
-    from.calibration = &*calibration;
-  }
+  from.calibration = calibration_of(options);
+  if (from.calibration != nullptr) check_tare(options, from.calibration->planes.effects);
   if (options.read.sensel_pitch_mm) plan.skin.sensel_pitch_mm = *options.read.sensel_pitch_mm;
   return build_plan(std::move(plan), from, source, frame_interval_s);
 }

@@ -147,7 +147,8 @@ void add_constants(CLI::App* command, ReadOptions& options) {
   Group sensor(command, "Sensor");
   const auto add = [&](std::optional<double> PlanSettings::*member, std::optional<double>& target) {
     const auto* const setting = std::ranges::find(kPlanSettings, member, &PlanSetting::member);
-    sensor.number(setting->option, target, setting->unit, setting->help);
+    sensor.number(setting->option, target, setting->unit, setting->help, setting->range.low,
+                  setting->range.high);
   };
   add(&PlanSettings::threshold_counts, options.threshold_counts);
   add(&PlanSettings::counts_per_newton, options.counts_per_newton);

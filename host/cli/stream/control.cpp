@@ -136,7 +136,6 @@ bool ControlChannel::read_from(
     std::string line = client.begun.substr(0, end);
     client.begun.erase(0, end + 1);
     if (line.ends_with('\r')) line.pop_back();
-    if (line.find_first_not_of(" \t") == std::string::npos) continue;
     ++client.awaited;
     if (const std::string said = handle(client.id, line); !said.empty()) answer(client.id, said);
   }

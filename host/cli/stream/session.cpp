@@ -48,6 +48,14 @@ std::string failed_line(const std::string& why) {
   return json_text({{"ok", false}, {"error", why}});
 }
 
+/// Prints where a page or Foxglove finds a server.
+void tell_address(const std::string& sink) {
+  constexpr std::string_view kFoxglove = "foxglove:";
+  if (sink.starts_with("http://")) fmt::print(stderr, "Open {} in a browser\n", printable(sink));
+  if (!sink.starts_with(kFoxglove)) return;
+  fmt::print(stderr, "Open ws://{} in Foxglove\n", printable(sink.substr(kFoxglove.size())));
+}
+
 nlohmann::ordered_json sink_json(const LiveSession::Sink& sink) {
   const LiveSinkStatistics& statistics = sink.statistics;
   nlohmann::ordered_json json = {{"name", sink.name},
@@ -78,8 +86,7 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
   for (const std::string& target : options.sinks) live_.add(create_live_sink(target, info));
   if (!options.relay.empty()) live_.add(create_live_relay(options.relay, info));
   for (const LiveSession::Sink& sink : live_.sinks()) {
-    if (options.quiet || !sink.name.starts_with("http://")) continue;
-    fmt::print(stderr, "Open {} in a browser\n", printable(sink.name));
+    if (!options.quiet) tell_address(sink.name);
   }
   if (options.tare_s > 0) live_.start_tare(nanoseconds_of(options.tare_s));
   if (!options.record.empty()) live_.record(options.record);
@@ -227,8 +234,7 @@ void StreamSession::show(const HealthReport& health) {
 
 std::string StreamSession::obey(std::uint64_t client, std::string_view line) {
   const std::vector<std::string> words = words_of(line);
-  if (words.empty()) return "";
-  const std::string& verb = words.front();
+  const std::string verb = words.empty() ? "" : words.front();
   if (verb == "tare") return start_tare(client, words);
   if (verb == "record") return record(client, rest_of(line, verb));
   if (words.size() == 1) {

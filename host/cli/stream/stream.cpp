@@ -16,7 +16,6 @@
 #include "cli/warnings.h"
 #include "io/file_kind.h"
 #include "io/layout_note.h"
-#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
 #include "pillarfield/printable.h"
@@ -27,9 +26,8 @@ namespace {
 
 /// The size of frames that the calibration or the scene states.
 std::optional<FrameSize> stated_size(const PlanOptions& options) {
-  if (!options.calibration.empty()) {
-    const SkinCalibration calibration = read_calibration_file(options.calibration, options.read);
-    return FrameSize{calibration.rows, calibration.cols};
+  if (const SkinCalibration* const calibration = calibration_of(options)) {
+    return FrameSize{calibration->rows, calibration->cols};
   }
   if (options.scene.empty()) return std::nullopt;
   const Skin skin = load_scene(options.scene).skin;
@@ -94,9 +92,9 @@ void tell_layout(const StreamOptions& options, const FrameStream& source, const 
   const PlanOptions& given = options.plan;
   const bool is_stated = given.read.layout || !given.calibration.empty() || !given.scene.empty();
   if (options.quiet || is_stated || !is_live_source(options.source)) return;
-  print_file_warnings(options.source,
-                      {fmt::format("Read frames of {} x {}, {}; {}", skin.rows, skin.cols,
-                                   name_of(source.sensel_type()), layout_note(skin))});
+  print_about(options.source, "note",
+              {fmt::format("Read frames of {} x {}, {}; {}", skin.rows, skin.cols,
+                           name_of(source.sensel_type()), layout_note(skin))});
 }
 
 LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, const Device& device) {

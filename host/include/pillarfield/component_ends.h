@@ -26,7 +26,7 @@ inline constexpr std::size_t kComponentEnds = 6;
 
 /// The 95 % intervals of one pillar, in the order of ComponentEnd: the estimate ± 1.96 standard
 /// deviations, a normal force clamped at zero (docs/derivations/uncertainty.md, section 3). A
-/// component that saturated sensels leave open ends at infinity.
+/// component that saturated sensels leave open has ends beyond ± kOpenN.
 ///
 /// For ambiguous pillars of Estimator::direct pass its SolverPlan::segment_point as `direct_point`:
 /// their intervals then span the segment, widened by 1.96 standard deviations of the noise. Leave

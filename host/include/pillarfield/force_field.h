@@ -10,11 +10,14 @@
 
 namespace pillarfield {
 
+/// Deviation, or bound of a magnitude, that the readings of an element do not bound, N.
+inline constexpr float kOpenN = 1e38F;
+
 /// Planes that state the uncertainty of a force (docs/derivations/uncertainty.md). The first three
 /// are standard deviations: from sensel noise and, in ambiguous pillars, from the segment that the
 /// readings allow. The others bound direction and magnitude over that segment, without noise; in
-/// other pillars both bounds equal the estimate. What saturated sensels leave open has an infinite
-/// deviation or bound. All are valid for pillars without missing sensels.
+/// other pillars both bounds equal the estimate. What saturated sensels leave open has the
+/// deviation or bound kOpenN. All are valid for pillars without missing sensels.
 enum class Uncertainty : std::uint8_t {
   shear_x,         ///< N
   shear_y,         ///< N

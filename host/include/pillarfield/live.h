@@ -34,7 +34,8 @@ struct LiveSourceOptions {
 
 /// Whether `source` names a live source: `-` (packets on standard input), `shm:NAME` (a ring in
 /// shared memory), `udp:ADDRESS:PORT`, or `serial:DEVICE` (packets) with
-/// `?protocol=flexitac&rows=ROWS&cols=COLS` for a FlexiTac board (docs/streams.md).
+/// `?protocol=flexitac&rows=ROWS&cols=COLS` for a FlexiTac board (docs/streams.md); also one
+/// misspelt, unless a file has this name: open_live_source() names the right one.
 [[nodiscard]] bool is_live_source(std::string_view source);
 
 /// Opens a live source and waits for its first frame, or as many bytes of packets as one has, which

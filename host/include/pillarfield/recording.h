@@ -40,9 +40,9 @@ class FrameSource {
   /// Only if has_truth().
   virtual void read_truth(std::uint64_t index, ForceField& truth) = 0;
 
-  /// Of plain data, which states neither axes nor type, what it was read as: "280 frames of 63 x
-  /// 33, uint8". Empty for other formats.
-  [[nodiscard]] virtual std::string read_as() const { return {}; }
+  /// Notes about the file, one sentence each: what plain data, which states neither axes nor type,
+  /// was read as, or where a tare is from.
+  [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 
   /// Warnings about the file, one sentence each: a row or column without pillars, a file that was
   /// not closed, a constant that is assumed.

@@ -57,7 +57,8 @@ typedef struct PillarfieldPacket {
  *
  * A writer creates the segment with mode 0600, locks it with flock() while it lives, sets `magic`
  * last, and in the end sets `closed`, wakes and unlinks. One that starts where another was killed
- * goes on with a segment of the layout that it needs, from `published` on, and unlinks any other.
+ * goes on with a segment of the layout that it needs, from `published` on, unlinks another ring,
+ * and refuses what is not a ring.
  */
 #define PILLARFIELD_RING_MAGIC 0x31475250u /* "PRG1" */
 

@@ -105,7 +105,7 @@ void check_outputs(const std::vector<std::filesystem::path>& inputs,
                   "give each its own name");
     }
     require_replaceable(place.final_path, output.kind, replace);
-    if (is_part_left_over(place)) require_disposable(place.part_path);
+    if (is_part_left_over(place)) require_disposable(place.part_path, replace);
     require_writable_folder(place);
     taken.add(place.final_path);
     taken.add(place.part_path);

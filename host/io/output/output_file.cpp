@@ -53,6 +53,15 @@ bool is_there(const std::filesystem::path& path) {
   return lstat(path.c_str(), &found) == 0;
 }
 
+/// Gives a part the permissions of the file that it replaces, and `more`; file systems without
+/// permissions refuse that.
+void take_mode(const std::filesystem::path& from, int descriptor, mode_t more = 0) {
+  struct stat found = {};
+  if (stat(from.c_str(), &found) != 0) return;
+  constexpr mode_t kPermissions = S_IRWXU | S_IRWXG | S_IRWXO;
+  static_cast<void>(fchmod(descriptor, (found.st_mode & kPermissions) | more));
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path, OutputKind kind, Replace replace)
@@ -65,7 +74,8 @@ OutputFile::OutputFile(std::filesystem::path path, OutputKind kind, Replace repl
   part_path_ = place.part_path;
   require_replaceable(final_path_, kind, replace);
   auto part = std::make_unique<LockedPart>(place);
-  if (part->was_there()) require_disposable(part_path_);
+  if (part->was_there()) require_disposable(part_path_, replace);
+  take_mode(final_path_, part->descriptor(), S_IRUSR | S_IWUSR);
   if (ftruncate(part->descriptor(), 0) != 0) fail_to_write(part_path_, errno);
   part_ = std::move(part);
 }
@@ -127,6 +137,7 @@ void OutputFile::take_name() {
     kept_ = true;
     throw Error("", error.what(), where_data_are);
   }
+  take_mode(final_path_, descriptor());
   const int reason = rename_to(part_path_, final_path_, is_there(final_path_));
   if (reason == 0) return;
   kept_ = true;

@@ -95,6 +95,8 @@ bool is_result(OutputKind kind) {
          kind != OutputKind::messages && kind != OutputKind::text;
 }
 
+constexpr const char* kKeepOrReplace = "rename it, or replace it with --overwrite";
+
 /// Number of frames in an unfinished recording.
 std::uint64_t frames_in(const std::filesystem::path& part) {
   try {
@@ -102,7 +104,7 @@ std::uint64_t frames_in(const std::filesystem::path& part) {
   } catch (const Error& error) {
     throw Error(part.string(),
                 fmt::format("holds a recording that cannot be read ({})", error.what()),
-                "rename or remove it");
+                kKeepOrReplace);
   }
 }
 
@@ -130,7 +132,7 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
               "choose another name, or replace it with --overwrite");
 }
 
-void require_disposable(const std::filesystem::path& path) {
+void require_disposable(const std::filesystem::path& path, Replace replace) {
   if (is_empty_file(path)) return;
   FoundContent found;
   try {
@@ -138,16 +140,17 @@ void require_disposable(const std::filesystem::path& path) {
   } catch (const Error&) {
     return;  // A writer died before its first flush.
   }
+  if (found.kind && replace == Replace::anything) return;
   if (found.kind == OutputKind::recording) {
     const std::uint64_t frames = frames_in(path);
     if (frames == 0) return;
     throw Error(path.string(), fmt::format("holds {} frames of an unfinished recording", frames),
-                "rename or remove it");
+                kKeepOrReplace);
   }
   const bool is_worth_keeping =
       found.kind ? !is_result(*found.kind) : kind_of(path) != FileKind::other;
   if (!is_worth_keeping) return;
-  throw Error(path.string(), found.words, "rename or remove it");
+  throw Error(path.string(), found.words, found.kind ? kKeepOrReplace : "rename or remove it");
 }
 
 }  // namespace pillarfield

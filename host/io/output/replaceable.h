@@ -10,7 +10,8 @@ namespace pillarfield {
 void require_replaceable(const std::filesystem::path& path, OutputKind kind, Replace replace);
 
 /// Throws Error if the part that an earlier writer left at `path` holds data that cannot be made
-/// again: frames of a recording, a calibration, or an HDF5 file of another program.
-void require_disposable(const std::filesystem::path& path);
+/// again: an HDF5 file or frames of another program, or, unless `replace` is Replace::anything, a
+/// calibration or frames of a recording.
+void require_disposable(const std::filesystem::path& path, Replace replace);
 
 }  // namespace pillarfield

@@ -21,7 +21,7 @@ class ArraySource final : public FileSource {
 
   double time(std::uint64_t index) override;
   double read(std::uint64_t index, FrameBuffer& frame) override;
-  [[nodiscard]] std::string read_as() const override;
+  [[nodiscard]] std::vector<std::string> notes() const override;
 
  private:
   void take_shape(const ReadOptions& options);
@@ -141,9 +141,12 @@ double ArraySource::read(std::uint64_t index, FrameBuffer& frame) {
   return time(index);
 }
 
-std::string ArraySource::read_as() const {
-  return fmt::format("{} frame{} of {} x {}, {}; {}", frames_, frames_ == 1 ? "" : "s", skin_.rows,
-                     skin_.cols, name_of(array_->type()), layout_note(skin_));
+std::vector<std::string> ArraySource::notes() const {
+  std::vector<std::string> notes = {fmt::format("Read {} frame{} of {} x {}, {}; {}.", frames_,
+                                                frames_ == 1 ? "" : "s", skin_.rows, skin_.cols,
+                                                name_of(array_->type()), layout_note(skin_))};
+  notes.insert(notes.end(), notes_.begin(), notes_.end());
+  return notes;
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
   } else {
     take_counts(data.header, options);
   }
-  warnings_.push_back("The export states no pillars: " + layout_note(skin_) + ".");
+  notes_.push_back("The export states no pillars: " + layout_note(skin_) + ".");
   take_times(data, options);
   take_mask(data);
   warn_of_header(data.header);
@@ -114,7 +114,7 @@ void Tekscan::take_counts(const TekscanHeader& header, const ReadOptions& option
 /// Readings are newtons on a sensel, of which four add up to the normal force on a pillar.
 void Tekscan::take_newtons(const TekscanHeader& header) {
   skin_.counts_per_newton = skin_.has_pillars() ? 0.25 : 1;
-  warnings_.push_back(
+  notes_.push_back(
       header.mpa_per_unit
           ? fmt::format("Readings are pressures; times {:.6g} mm² they are newtons on a sensel.",
                         header.area_mm2().value_or(0))
@@ -141,8 +141,7 @@ void Tekscan::take_mask(TekscanExport& data) {
     calibration_.mask.clear();
     return;
   }
-  warnings_.push_back(
-      fmt::format("{} of {} cells have no sensel.", absent, calibration_.mask.size()));
+  notes_.push_back(fmt::format("{} of {} cells have no sensel.", absent, calibration_.mask.size()));
   if (type_ == SenselType::f32 && skin_.has_pillars()) spread_outline();
 }
 

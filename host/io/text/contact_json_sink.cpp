@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/number_text.h"
 #include "base/utf8.h"
 #include "io/contact_columns.h"
 #include "io/force_format.h"
@@ -39,8 +40,11 @@ std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& r
                        const PressureUnit& unit) {
   std::string members;
   for (const auto& column : columns) {
-    const std::string value = text_of(column, row, "null", unit);
+    std::string value = text_of(column, row, "null", unit);
     const bool is_word = column.kind == ColumnKind::word;
+    if (column.kind == ColumnKind::number && value.find_first_of(".en") == std::string::npos) {
+      value += ".0";
+    }
     members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", name_of(column, unit),
                            is_word ? json_string(value) : value);
   }
@@ -77,8 +81,8 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info,
                   "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
                   "\"reach_mm\":{},\"frames\":[",
                   kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
-                  info.element_pitch_mm, options.minimum_pillars,
-                  friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
+                  json_number(info.element_pitch_mm), options.minimum_pillars,
+                  friction ? json_number(*friction) : "null", json_number(options.reach_mm)));
 }
 
 void JsonSink::append(const SolvedFrame& frame) {
@@ -86,7 +90,7 @@ void JsonSink::append(const SolvedFrame& frame) {
   const std::string where = path_.string();
   const FrameContacts& found = contacts_of(frame, where);
   file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
-                          frames_ == 0 ? "" : ",", frames_, frame.time_s,
+                          frames_ == 0 ? "" : ",", frames_, json_number(frame.time_s),
                           members_of(columns_, found.total, unit_)));
   const char* separator = "";
   for (const TrackedContact& contact : found.contacts) {

@@ -115,13 +115,19 @@ bool RingWriter::open() {
   fstat(segment_.get(), &status);
   if (status.st_nlink == 0) return false;
   const auto size = static_cast<std::uint64_t>(status.st_size);
+  PillarfieldRing unfinished = layout_;
+  unfinished.magic = 0;
+  if (size == 0) {
+    // Written at once, so that what a writer killed from here on leaves is known as a ring.
+    static_cast<void>(pwrite(segment_.get(), &unfinished, sizeof unfinished, 0));
+  } else if (!holds_ring(size)) {
+    throw Error(name_, "the shared memory is not a ring of Pillarfield", "give another name");
+  }
   if (size == 0 || size == bytes) allocate(bytes);
   memory_ = Mapping(segment_, bytes, true);
   guard_.watch({memory_.data(), bytes});
   if (memory_.data() == nullptr) throw Error(name_, std::strerror(errno), "free some memory");
   if (size == 0) {
-    PillarfieldRing unfinished = layout_;
-    unfinished.magic = 0;
     ring() = unfinished;
     store(ring().magic, PILLARFIELD_RING_MAGIC);
     return true;
@@ -132,6 +138,17 @@ bool RingWriter::open() {
   }
   shm_unlink(segment_name_.c_str());
   return false;
+}
+
+/// Whether the segment holds a ring, or one that its writer did not finish.
+bool RingWriter::holds_ring(std::uint64_t bytes) const {
+  PillarfieldRing found = {};
+  if (pread(segment_.get(), &found, sizeof found, 0) != sizeof found) return false;
+  if (found.magic == PILLARFIELD_RING_MAGIC) return true;
+  if (found.magic != 0) return false;
+  found.magic = PILLARFIELD_RING_MAGIC;
+  const std::uint64_t all = sizeof found + found.slots * found.slot_bytes;
+  return is_valid(found, all) && (bytes == sizeof found || bytes == all);
 }
 
 /// Allocates all memory of the segment, of which that of a killed writer may lack some.

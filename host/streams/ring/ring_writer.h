@@ -40,11 +40,11 @@ class CutGuard {
 };
 
 /// Writes a ring in shared memory, in one thread. It takes up a ring of the same layout whose
-/// writer was killed, replaces another one, and unlinks its own at the end.
+/// writer was killed, replaces another ring, and unlinks its own at the end.
 class RingWriter {
  public:
   /// `name` without "shm:". Throws Error if the name is not allowed, another program writes the
-  /// ring, or memory is short.
+  /// ring, the shared memory of this name is not a ring, or memory is short.
   RingWriter(const std::string& name, const RingLayout& layout, std::uint32_t slots);
   ~RingWriter();
   RingWriter(const RingWriter&) = delete;
@@ -63,6 +63,7 @@ class RingWriter {
 
  private:
   [[nodiscard]] bool open();
+  [[nodiscard]] bool holds_ring(std::uint64_t bytes) const;
   void allocate(std::uint64_t bytes);
   [[nodiscard]] PillarfieldRing& ring() const;
 

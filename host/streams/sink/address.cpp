@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <netdb.h>
 
+#include <array>
 #include <charconv>
 #include <cstring>
 
@@ -21,8 +22,12 @@ bool is_port(std::string_view text, int lowest) {
   return error == std::errc() && rest == end && port >= lowest && port <= 65535;
 }
 
-}  // namespace
+struct HostAndPort {
+  std::string host;
+  std::string port;
+};
 
+/// Splits "HOST:PORT", "[IPV6]:PORT", ":PORT" and "PORT"; without a host it is 127.0.0.1.
 HostAndPort split_address(std::string_view text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return {kLoopback, std::string(text)};
@@ -32,7 +37,14 @@ HostAndPort split_address(std::string_view text) {
   return {std::string(host), std::string(text.substr(colon + 1))};
 }
 
-std::string host_and_port(const std::string& host, std::uint16_t port) {
+}  // namespace
+
+std::string place_to_open(const SocketAddress& address, std::uint16_t port) {
+  std::array<char, NI_MAXHOST> text{};
+  getnameinfo(address.get(), address.size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST);
+  std::string host = text.data();
+  if (host == "0.0.0.0") host = kLoopback;
+  if (host == "::") host = "::1";
   const bool is_v6 = host.find(':') != std::string::npos;
   return fmt::format("{}{}{}:{}", is_v6 ? "[" : "", host, is_v6 ? "]" : "", port);
 }

@@ -17,17 +17,9 @@ struct SocketAddress {
   [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
 };
 
-/// An address and a port as text.
-struct HostAndPort {
-  std::string host;
-  std::string port;
-};
-
-/// Splits "HOST:PORT", "[IPV6]:PORT", ":PORT" and "PORT"; without a host it is 127.0.0.1.
-[[nodiscard]] HostAndPort split_address(std::string_view text);
-
-/// "HOST:PORT", with brackets around an IPv6 address.
-[[nodiscard]] std::string host_and_port(const std::string& host, std::uint16_t port);
+/// "ADDRESS:PORT" at which this computer reaches a server that listens at `address`, which may be
+/// any of its own; IPv6 in brackets.
+[[nodiscard]] std::string place_to_open(const SocketAddress& address, std::uint16_t port);
 
 /// The address of "HOST:PORT": HOST is numeric or "localhost". Throws Error, naming `target`, for
 /// another text or a port outside [lowest_port, 65535].

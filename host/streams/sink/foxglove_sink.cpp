@@ -72,11 +72,10 @@ std::unique_ptr<LiveSink> create_foxglove_sink(const std::string& target,
   const std::string_view address = target.size() > kFoxglovePrefix.size()
                                        ? std::string_view(target).substr(kFoxglovePrefix.size())
                                        : "8765";
-  auto server =
-      std::make_unique<WebSocketServer>(address_of(address, target, 0), target, foxglove_protocol(),
-                                        ServerLimits{.allowed_origins = info.allowed_origins});
-  const std::string name =
-      std::string(kFoxglovePrefix) + host_and_port(split_address(address).host, server->port());
+  const SocketAddress place = address_of(address, target, 0);
+  auto server = std::make_unique<WebSocketServer>(
+      place, target, foxglove_protocol(), ServerLimits{.allowed_origins = info.allowed_origins});
+  const std::string name = std::string(kFoxglovePrefix) + place_to_open(place, server->port());
   return std::make_unique<QueuedSink>(name,
                                       std::make_unique<FoxgloveConsumer>(std::move(server), info));
 }

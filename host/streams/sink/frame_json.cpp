@@ -4,11 +4,13 @@
 #include <iterator>
 #include <optional>
 
+#include "base/number_text.h"
+
 namespace pillarfield {
 namespace {
 
 void append_known(fmt::memory_buffer& json, const char* name, const std::optional<double>& value) {
-  if (value) fmt::format_to(std::back_inserter(json), R"(,"{}":{})", name, *value);
+  if (value) fmt::format_to(std::back_inserter(json), R"(,"{}":{})", name, json_number(*value));
 }
 
 /// The members of a contact or of the total.
@@ -16,14 +18,16 @@ void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contac
   const auto out = std::back_inserter(json);
   if (contact.has_shear) {
     fmt::format_to(out, R"("force":{{"shear_x":{},"shear_y":{},"normal":{}}},"torque_nmm":{},)",
-                   contact.shear_x_n, contact.shear_y_n, contact.normal_n, contact.torque_nmm);
+                   json_number(contact.shear_x_n), json_number(contact.shear_y_n),
+                   json_number(contact.normal_n), json_number(contact.torque_nmm));
   } else {
-    fmt::format_to(out, R"("force":{{"normal":{}}},"peak_pressure_kpa":{},)", contact.normal_n,
-                   contact.peak_pressure_kpa());
+    fmt::format_to(out, R"("force":{{"normal":{}}},"peak_pressure_kpa":{},)",
+                   json_number(contact.normal_n), json_number(contact.peak_pressure_kpa()));
   }
   fmt::format_to(out, R"("{}":{},"centre_mm":{{"x":{},"y":{}}})",
                  contact.has_shear ? "pillars" : "sensels", contact.pillars,
-                 contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm);
+                 json_number(contact.centre_of_pressure.x_mm),
+                 json_number(contact.centre_of_pressure.y_mm));
   append_known(json, "friction", contact.friction);
   append_known(json, "friction_deviation", contact.friction_deviation);
   append_known(json, "slip_margin", contact.slip_margin);
@@ -35,7 +39,7 @@ void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contac
   append_known(json, "time_to_slip_high_s", forecast.high_s);
   const auto& [soon, next, later] = forecast.probability;
   fmt::format_to(out, R"(,"slip_within_0_1_s":{},"slip_within_0_3_s":{},"slip_within_1_s":{})",
-                 soon, next, later);
+                 json_number(soon), json_number(next), json_number(later));
 }
 
 }  // namespace
@@ -54,7 +58,7 @@ std::string_view FrameJson::line(const SolvedFrame& frame) {
   json_.clear();
   fmt::format_to(std::back_inserter(json_),
                  R"({{"timestamp":{:.9f},"time":{},"sequence":{},"total":{{)", stamp_s,
-                 frame.time_s, frame.sequence);
+                 json_number(frame.time_s), frame.sequence);
   append_quantities(json_, contacts.total);
   json_.append(std::string_view(R"(},"contacts":{)"));
   std::size_t listed = 0;

@@ -117,11 +117,10 @@ std::unique_ptr<LiveSink> create_web_sink(const std::string& target, const LiveS
   const std::string_view address = target.size() > kWebPrefix.size()
                                        ? std::string_view(target).substr(kWebPrefix.size())
                                        : "8766";
-  auto server =
-      std::make_unique<WebSocketServer>(address_of(address, target, 0), target, page_protocol(),
-                                        ServerLimits{.allowed_origins = info.allowed_origins});
-  const std::string name =
-      "http://" + host_and_port(split_address(address).host, server->port()) + "/";
+  const SocketAddress place = address_of(address, target, 0);
+  auto server = std::make_unique<WebSocketServer>(
+      place, target, page_protocol(), ServerLimits{.allowed_origins = info.allowed_origins});
+  const std::string name = "http://" + place_to_open(place, server->port()) + "/";
   return std::make_unique<QueuedSink>(name, std::make_unique<WebConsumer>(std::move(server), info));
 }
 

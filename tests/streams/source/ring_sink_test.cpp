@@ -313,5 +313,27 @@ TEST(RingSink, RefusesANameInUse) {
   EXPECT_NE(message.find("another program writes this ring"), std::string::npos) << message;
 }
 
+TEST(RingSink, NeverRemovesMemoryThatIsNotARing) {
+  const auto place = std::filesystem::path("/dev/shm") / results_name();
+  const auto open = [] { (void)create_live_sink("shm:" + results_name(), info_of_skin(6, 10)); };
+  for (const std::string& foreign :
+       {std::string(7000, 'x'), std::string("x"), std::string(7000, '\0'), std::string("PRG2")}) {
+    std::ofstream(place) << foreign;
+    const std::string message = core_test::message_of(open);
+    EXPECT_NE(message.find("is not a ring of Pillarfield"), std::string::npos) << message;
+    EXPECT_EQ(std::filesystem::file_size(place), foreign.size());
+  }
+  // Left by a writer that was killed before it finished its ring.
+  PillarfieldRing unfinished = {};
+  unfinished.kind = PILLARFIELD_RING_FRAMES;
+  unfinished.rows = unfinished.cols = 8;
+  unfinished.type = PILLARFIELD_U8;
+  unfinished.slots = 4;
+  unfinished.slot_bytes = 1344;
+  std::ofstream(place).write(reinterpret_cast<const char*>(&unfinished), sizeof unfinished);
+  open();
+  EXPECT_FALSE(std::filesystem::exists(place));
+}
+
 }  // namespace
 }  // namespace pillarfield::streams_test

@@ -18,6 +18,8 @@ struct Files {
     for (const char* name : {"touch.h5", "a scene.toml", "B.NPY", "notes.md", ".secret.h5"}) {
       io_test::write_bytes(directory / name, "123");
     }
+    io_test::write_bytes(directory / "CMakeLists.txt", "project(demo)\n");
+    io_test::write_bytes(directory / "table.txt", "1 2 3 4\n5 6 7 8\n");
     io_test::write_bytes(directory / "today" / "forces.h5", "");
   }
   io_test::TemporaryDirectory directory;
@@ -39,7 +41,8 @@ using Names = std::vector<std::string>;
 TEST(FileList, HasFoldersAndWhatTheViewerOpens) {
   const Files files;
   FileList list(files.root());
-  EXPECT_EQ(names_of(list), (Names{"..", "Skins", "today", "a scene.toml", "B.NPY", "touch.h5"}));
+  EXPECT_EQ(names_of(list),
+            (Names{"..", "Skins", "today", "a scene.toml", "B.NPY", "table.txt", "touch.h5"}));
   EXPECT_EQ(list.entries()[3].bytes, 3U);
 }
 

@@ -94,8 +94,8 @@ TEST(SceneProducer, DescribesTheScene) {
   EXPECT_EQ(info.rate_hz, 100);
   EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
   EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
-  ASSERT_EQ(info.warnings.size(), 1U);
-  EXPECT_TRUE(has_all(info.warnings[0], {"4 of 60 frames", "as requested"}));
+  ASSERT_EQ(info.notes.size(), 1U);
+  EXPECT_TRUE(has_all(info.notes[0], {"4 of 60 frames", "as requested"}));
   EXPECT_FALSE(producer->refresh());
   EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
                       {"demo.toml", "no frame 4", "4 frames"}));

@@ -69,7 +69,11 @@ bool FrameWriter::add(const Pixels& pixels) {
     return false;
   }
   if (video_ != nullptr) video_->finish();
-  state_->notice = fmt::format("wrote {} frames: {}", frames_, path_.string());
+  state_->notice =
+      fmt::format("wrote {} frames: {}", frames_,
+                  video_ != nullptr ? path_.string()
+                                    : fmt::format("{} to {}", numbered(path_, 1, frames_).string(),
+                                                  numbered(path_, frames_, frames_).string()));
   return true;
 }
 

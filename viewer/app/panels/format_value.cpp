@@ -19,7 +19,9 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kMostDecimals = 6;
 
-bool tells(double deviation) { return std::isfinite(deviation) && deviation > 0; }
+bool is_bounded(double value) { return std::abs(value) < 0.1 * kOpenN; }  // false for NaN
+
+bool tells(double deviation) { return is_bounded(deviation) && deviation > 0; }
 
 /// Number of decimals that show `digits` digits of `size`.
 int decimals_of(double size, int digits) {
@@ -28,7 +30,7 @@ int decimals_of(double size, int digits) {
 }
 
 std::string fixed(double value, int decimals) {
-  if (!std::isfinite(value)) return "–";
+  if (!is_bounded(value)) return "–";
   const std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
   const bool zero = text.find_first_not_of("0.") == std::string::npos;
   return value < 0 && !zero ? "\u2212" + text : text;
@@ -141,7 +143,7 @@ std::string format_deviation(double deviation) {
 }
 
 std::string format_interval(double low, double high) {
-  if (!std::isfinite(low) || !std::isfinite(high)) return {};
+  if (!is_bounded(low) || !is_bounded(high)) return {};
   const double width = high - low;
   const int decimals = width > 0 ? decimals_of(width, 2) : 3;
   return fixed(low, decimals) + " … " + fixed(high, decimals);

@@ -24,6 +24,8 @@ struct PanelStyle {
 };
 [[nodiscard]] PanelStyle panel_style(double scale);
 
+inline constexpr Colour kWarningColour = colour_from(0xe69f00);
+
 [[nodiscard]] ImU32 packed(const Colour& colour);
 
 /// Opaque blend of `over` on `under`, `share` of it `over`.

@@ -94,7 +94,7 @@ void draw_silence(const AppState& state, const Viewport& field) {
                       field.y + 0.25 * field.height - gap, static_cast<double>(size.x) + 2 * gap,
                       static_cast<double>(size.y) + 2 * gap};
   draw_block(list, sign, style.raised);
-  draw_text(list, {sign.x + gap, sign.y + gap}, packed(colour_from(0xe69f00)), words);
+  draw_text(list, {sign.x + gap, sign.y + gap}, packed(kWarningColour), words);
 }
 
 void sensor_panel(const Command& command) {

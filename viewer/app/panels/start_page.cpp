@@ -124,7 +124,7 @@ void begin_page(const char* name, const Viewport& area, double scale) {
 
 void warning_words(const std::string& words) {
   ImGui::Spacing();
-  ImGui::PushStyleColor(ImGuiCol_Text, packed(colour_from(0xe69f00)));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed(kWarningColour));
   ImGui::TextWrapped("%s", words.c_str());
   ImGui::PopStyleColor();
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {
@@ -108,7 +109,9 @@ void status_row(const AppState& state, const std::string& gpu) {
   if (fits && state.show_counters) add_measures(row, state);
   if (fits && !state.show_counters) row.begin(source_words(state), ImGuiCol_Text);
   if (!notice.empty()) {
+    if (state.notice.is_failure) ImGui::PushStyleColor(ImGuiCol_CheckMark, packed(kWarningColour));
     if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
+    if (state.notice.is_failure) ImGui::PopStyleColor();
     return;
   }
   const std::string& solver = state.player->info().solver;

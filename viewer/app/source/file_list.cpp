@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/file_kind.h"
+#include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::viewer {
@@ -29,6 +30,17 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
+/// Whether a file of text holds frames, as CMakeLists.txt does not; true for other files.
+bool has_frames(const fs::path& file) {
+  constexpr std::array<std::string_view, 3> kOfText{".asc", ".dat", ".txt"};
+  if (std::ranges::find(kOfText, extension_of(file)) == kOfText.end()) return true;
+  try {
+    return kind_of(file) == FileKind::frames;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::optional<FileList::Entry> listed_entry(const fs::directory_entry& file) {
   FileList::Entry entry{file.path().filename().string()};
   if (entry.name.starts_with('.')) return std::nullopt;
@@ -36,7 +48,7 @@ std::optional<FileList::Entry> listed_entry(const fs::directory_entry& file) {
   entry.is_folder = file.is_directory(error);
   if (entry.is_folder) return entry;
   const bool known = std::ranges::find(kExtensions, extension_of(file.path())) != kExtensions.end();
-  if (!file.is_regular_file(error) || !known) return std::nullopt;
+  if (!file.is_regular_file(error) || !known || !has_frames(file.path())) return std::nullopt;
   entry.bytes = file.file_size(error);
   if (error) entry.bytes = 0;
   return entry;

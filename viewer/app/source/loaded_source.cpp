@@ -108,7 +108,7 @@ std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_tr
                                             const std::string& name) {
   if (open_truth) return open_truth();
   throw Error(name, "its true forces are not known",
-              "show a scene, or a recording of 'pillarfield simulate --truth'");
+              "show a scene, or a recording of 'pillarfield simulate'");
 }
 
 void show_truth(LoadedSource& source) {
@@ -119,9 +119,14 @@ void show_truth(LoadedSource& source) {
 
 std::string warning_lines(const SourceInfo& info) {
   std::string lines;
-  for (const std::string& warning : info.warnings) {
-    lines += printable(fmt::format("pillarfield-viewer: {}: {}", info.name, warning)) + "\n";
-  }
+  const auto add = [&](const char* kind, const std::vector<std::string>& sentences) {
+    for (const std::string& sentence : sentences) {
+      lines += printable(fmt::format("pillarfield-viewer: {}: {}: {}", info.name, kind, sentence));
+      lines += '\n';
+    }
+  };
+  add("warning", info.warnings);
+  add("note", info.notes);
   return lines;
 }
 
