@@ -15,6 +15,7 @@ void bind_solve(pybind11::module_& module);
 void bind_force_files(pybind11::module_& module);
 void bind_compare(pybind11::module_& module);
 void bind_calibrate(pybind11::module_& module);
+void bind_doctor(pybind11::module_& module);
 void bind_live(pybind11::module_& module);
 void bind_picture(pybind11::module_& module);
 void bind_processor(pybind11::module_& module);

@@ -93,6 +93,7 @@ PYBIND11_MODULE(_core, module) {
   bind_force_files(module);
   bind_compare(module);
   bind_calibrate(module);
+  bind_doctor(module);
   bind_live(module);
   bind_picture(module);
   require_construction(module);

@@ -32,6 +32,12 @@ std::string rounded(double number) {
   return (number < 0 ? "-" : "") + grouped(whole);
 }
 
+std::string fixed(double number, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", number, decimals);
+  return text.find_first_not_of("-0.") == std::string::npos ? fmt::format("{:.{}f}", 0.0, decimals)
+                                                            : text;
+}
+
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   if (part == 0 || whole == 0) return "0 %";
   const double value = 100 * static_cast<double>(part) / static_cast<double>(whole);

@@ -18,6 +18,9 @@ namespace pillarfield {
 /// Five significant digits, and all digits before the point: "0.63246", "12,346".
 [[nodiscard]] std::string rounded(double number);
 
+/// As "{:.1f}" with this many decimals, but "0.0" in place of "-0.0".
+[[nodiscard]] std::string fixed(double number, int decimals);
+
 /// "25.0 %"; "<0.1 %" of a part that would round to zero.
 [[nodiscard]] std::string percent(std::uint64_t part, std::uint64_t whole);
 

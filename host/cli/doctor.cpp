@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "base/number_text.h"
+#include "calibration/doctor/diagnosis_facts.h"
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/progress.h"
@@ -132,62 +133,9 @@ std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
                      falling, tare);
 }
 
-Json json_of(const SenselFigure& figure) {
-  return {{"median", figure.median}, {"worst", figure.worst}, {"place", figure.place}};
-}
-
-template <class Number>
-Json json_of(const std::optional<Number>& number) {
-  return number ? Json(*number) : Json(nullptr);
-}
-
-Json json_of(const ArrayFinding& finding) {
-  Json json = {{"fault", name_of(finding.fault)}};
-  if (!finding.sensels.empty()) {
-    json["count"] = finding.sensels.size();
-    json["sensels"] = finding.sensels;
-  }
-  if (!finding.lines.empty()) json["lines"] = finding.lines;
-  if (!finding.in_order.empty()) json["order"] = finding.in_order;
-  json["figure"] = finding.figure;
-  json["text"] = finding.text;
-  return json;
-}
-
 Json json_of(const DoctorOptions& options, const Diagnosis& found) {
-  Json gaps = Json::array();
-  for (const FrameGap& gap : found.timing.gaps) {
-    gaps.push_back({{"frame", gap.frame}, {"time_s", gap.time_s}, {"length_s", gap.length_s}});
-  }
-  Json json = {{"source", options.source},
-               {"frames", found.frames},
-               {"frames_looked_at", found.kept},
-               {"rows", found.rows},
-               {"cols", found.cols},
-               {"sensel_type", name_of(found.type)},
-               {"rate_hz", json_of(found.timing.rate_hz)},
-               {"jitter_ms", found.timing.jitter_ms},
-               {"gaps", gaps},
-               {"gap_count", found.timing.gap_count},
-               {"lost", found.timing.lost},
-               {"polarity", name_of(found.polarity)},
-               {"idle_counts", found.idle_counts},
-               {"noise_counts", json_of(found.noise)},
-               {found.timing.rate_hz ? "drift_counts_per_minute" : "drift_counts",
-                found.drift ? json_of(*found.drift) : Json(nullptr)},
-               {"contact_counts", found.contact_counts},
-               {"contact_frames", found.contact_frames},
-               {"idle_frames", found.idle_frames},
-               {"clipped", found.clipped},
-               {"layout", name_of(found.layout)},
-               {"layout_ratio", json_of(found.layout_ratio)},
-               {"row_order_tested", found.row_order_tested},
-               {"column_order_tested", found.column_order_tested},
-               {"row_crosstalk_percent", json_of(found.row_crosstalk_percent)},
-               {"column_crosstalk_percent", json_of(found.column_crosstalk_percent)},
-               {"untouched", found.untouched},
-               {"findings", Json::array()}};
-  for (const ArrayFinding& finding : found.findings) json["findings"].push_back(json_of(finding));
+  Json json = {{"source", options.source}};
+  json.update(facts_of(found));
   json["next"] = next_command(options, found);
   return json;
 }
@@ -204,8 +152,8 @@ std::string timing_text(const FrameTiming& timing) {
 }
 
 std::string worst_text(const SenselFigure& figure) {
-  return fmt::format("{:.2f} counts (farthest {:.2f} at {})", figure.median, figure.worst,
-                     place_text(figure.place));
+  return fmt::format("{} counts (farthest {} at {})", fixed(figure.median, 2),
+                     fixed(figure.worst, 2), place_text(figure.place));
 }
 
 std::string load_text(const Diagnosis& found) {
@@ -235,7 +183,7 @@ std::string layout_text(const Diagnosis& found) {
 std::string tested_text(const Diagnosis& found) {
   const auto order = [](bool tested) { return tested ? "tested" : "not shown by these frames"; };
   const auto ghosts = [](const std::optional<double>& percent) {
-    return percent ? fmt::format("{:.1f} %", *percent) : std::string("not shown");
+    return percent ? fixed(*percent, 1) + " %" : std::string("not shown");
   };
   const std::uint64_t sensels = std::uint64_t{found.rows} * found.cols;
   return fmt::format(
@@ -273,7 +221,7 @@ void doctor(const DoctorOptions& options) {
                   options.replace);
   }
   const Diagnosis found = is_live ? look_at_source(options) : look_at_file(options);
-  if (!options.png.empty()) write_png(options.png, draw(found), options.replace);
+  if (!options.png.empty()) write_png(options.png, draw(found, options.source), options.replace);
   if (options.json) {
     fmt::print("{}\n", json_text(json_of(options, found)));
   } else {

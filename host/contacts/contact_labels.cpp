@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
@@ -32,17 +34,27 @@ unsigned loaded_of(std::uint64_t word) {
   return static_cast<unsigned>((carried * 0x0102040810204080u) >> 56);
 }
 
-/// As loaded_of, for eight pillars from column `col`; pillars past the row's end are not loaded.
-unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
-  if (col + kWordBytes <= row.size()) return loaded_of(word_at(row.data() + col));
+/// The status of eight pillars from column `col`; zero past the row's end.
+std::uint64_t eight_from(std::span<const std::uint8_t> row, std::size_t col) {
+  if (col + kWordBytes <= row.size()) return word_at(row.data() + col);
   if (row.size() >= kWordBytes) {
     const std::uint64_t last = word_at(row.data() + row.size() - kWordBytes);
-    return loaded_of(last >> (8 * (col + kWordBytes - row.size())));
+    return last >> (8 * (col + kWordBytes - row.size()));
   }
   std::uint64_t word = 0;
   std::memcpy(&word, row.data() + col, row.size() - col);
-  return loaded_of(word);
+  return word;
 }
+
+/// Pillars that a contact may bridge, since their load is unknown: missing or at full scale,
+/// without a usable sensel.
+constexpr unsigned kUnknownLoad = status::kInconsistent | status::kSaturated;
+bool may_be_loaded(std::uint8_t status) {
+  return (status & kUnknownLoad) != 0 && (status & status::kUsable) == 0;
+}
+
+/// The widest gap that a contact bridges: two dead lines side by side.
+constexpr std::uint32_t kWidestGap = 2;
 
 /// Status bytes that one is_idle() test covers.
 constexpr std::size_t kStride = 4 * kWordBytes;
@@ -97,13 +109,17 @@ ContactRun run_of(std::size_t row, std::size_t first, std::size_t end) {
           static_cast<std::uint32_t>(end), 0};
 }
 
-/// Appends the runs of loaded pillars within the columns of `active`.
+/// Appends the runs of loaded pillars within the columns of `active`; adds the bits that it meets.
 void append_runs(std::span<const std::uint8_t> row, const ContactRun& active,
-                 std::vector<ContactRun>& runs) {
+                 std::vector<ContactRun>& runs, std::uint64_t& met) {
   const auto loaded = row.first(active.end);
   for_each_run(
       active.first, loaded.size(), [&](std::size_t col) { return skip_idle_bytes(loaded, col); },
-      [&](std::size_t col) { return loaded_at(loaded, col); },
+      [&](std::size_t col) {
+        const std::uint64_t word = eight_from(loaded, col);
+        met |= word;
+        return loaded_of(word);
+      },
       [&](std::size_t first, std::size_t end) { runs.push_back(run_of(active.row, first, end)); });
 }
 
@@ -184,6 +200,60 @@ void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t 
   }
 }
 
+/// Joins runs on both sides of a gap in one frame.
+class GapBridges {
+ public:
+  GapBridges(std::span<const std::uint8_t> status, std::uint32_t cols,
+             std::span<const ContactRun> runs, std::vector<std::uint32_t>& parents)
+      : status_(status), cols_(cols), runs_(runs), parents_(parents) {}
+
+  /// Joins a run with those that begin behind a gap to its right, or lie behind one below it.
+  void join_across(std::uint32_t run) {
+    const auto& [row, first, end, contact] = runs_[run];
+    const std::uint32_t right = gap(row, end, 0, 1);
+    for (std::uint32_t side = 0; right > 0 && side <= 2 * right + 2; ++side) {
+      join_at(run, row + side - right - 1, end + right);
+    }
+    for (std::uint32_t col = first; col < end; ++col) {
+      const std::uint32_t below = gap(row + 1, col, 1, 0);
+      for (std::uint32_t side = 0; below > 0 && side <= 2 * below + 2; ++side) {
+        join_at(run, row + 1 + below, col + side - below - 1);
+      }
+    }
+  }
+
+ private:
+  /// The length of the gap that begins at a place; 0: there is none that a contact bridges.
+  [[nodiscard]] std::uint32_t gap(std::uint32_t row, std::uint32_t col, std::uint32_t down,
+                                  std::uint32_t right) const {
+    std::uint32_t length = 0;
+    for (; col < cols_ && std::size_t{row} * cols_ + col < status_.size(); ++length) {
+      if (!may_be_loaded(status_[std::size_t{row} * cols_ + col])) {
+        return length <= kWidestGap ? length : 0;
+      }
+      row += down;
+      col += right;
+    }
+    return 0;
+  }
+
+  /// Joins with the run at a place, if there is one; rows above and left of the frame are 2^32 - 1.
+  void join_at(std::uint32_t run, std::uint32_t row, std::uint32_t col) {
+    const auto after = std::ranges::upper_bound(
+        runs_, std::pair(row, col), {},
+        [](const ContactRun& each) { return std::pair(each.row, each.first); });
+    if (after == runs_.begin()) return;
+    const ContactRun& found = *std::prev(after);
+    if (found.row != row || found.end <= col) return;
+    join(parents_, run, static_cast<std::uint32_t>(&found - runs_.data()));
+  }
+
+  std::span<const std::uint8_t> status_;
+  std::uint32_t cols_;
+  std::span<const ContactRun> runs_;
+  std::vector<std::uint32_t>& parents_;
+};
+
 }  // namespace
 
 void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t rows,
@@ -212,10 +282,11 @@ void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t row
   sort_runs();
 }
 
-/// Finds the runs of loaded pillars in active_ and joins touching runs.
+/// Finds the runs of loaded pillars in active_ and joins those that touch, or have a gap between.
 void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_t cols) {
   found_.clear();
   parents_.clear();
+  std::uint64_t met = 0;
   std::size_t above = 0;  // first run of the row above
   std::uint32_t next_row = 0;
   for (std::size_t stretch = 0; stretch < active_.size();) {
@@ -223,7 +294,7 @@ void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_
     const std::size_t begin = found_.size();
     if (row != next_row) above = begin;
     for (; stretch < active_.size() && active_[stretch].row == row; ++stretch) {
-      append_runs(status.subspan(std::size_t{row} * cols, cols), active_[stretch], found_);
+      append_runs(status.subspan(std::size_t{row} * cols, cols), active_[stretch], found_, met);
     }
     for (std::size_t run = begin; run < found_.size(); ++run) {
       parents_.push_back(static_cast<std::uint32_t>(run));
@@ -232,6 +303,9 @@ void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_
     above = begin;
     next_row = row + 1;
   }
+  if ((met & kEachByte * kUnknownLoad) == 0) return;
+  GapBridges bridges(status, cols, found_, parents_);
+  for (std::uint32_t run = 0; run < found_.size(); ++run) bridges.join_across(run);
 }
 
 /// Labels contacts by their first runs, in order. A contact's first run precedes its others.

@@ -1,8 +1,10 @@
 #include "device/slot_memory.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "device/kernel_source.h"
+#include "pillarfield/calibration.h"
 #include "skin/quads.h"
 
 namespace pillarfield {
@@ -19,10 +21,13 @@ ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
   lanes = static_cast<std::uint32_t>(block_lanes);
   flag_stride = blocks_of_row(quad_cols(plan.skin), lanes);
   idle_flags = quad_rows(plan.skin) * flag_stride;
+  flags_hide_missing =
+      std::ranges::find(plan.calibration.mask, kMissing) != plan.calibration.mask.end();
 }
 
 void ResultMemory::hold_flags() {
   std::memset(pages_ + layout_.bytes, 0, layout_.idle_flags);
+  if (layout_.flags_hide_missing) return;
   const auto* const flags = reinterpret_cast<const std::uint8_t*>(pages_ + layout_.bytes);
   idle_ = {{flags, layout_.idle_flags}, layout_.flag_stride, layout_.lanes};
 }

@@ -39,11 +39,12 @@ struct ResultLayout {
   std::array<bool, kSolvedPlanes> has{};            ///< planes of the plan
   std::size_t plane_bytes = 0;                      ///< distance between planes
   std::size_t status = 0;
-  std::size_t bytes = 0;        ///< of the block; the flags follow
-  std::size_t idle_flags = 0;   ///< number of flags
-  std::size_t scratch = 0;      ///< bytes that only the device uses, after the flags
-  std::size_t flag_stride = 0;  ///< flags of a pillar row
-  std::uint32_t lanes = 1;      ///< pillars of a flag
+  std::size_t bytes = 0;            ///< of the block; the flags follow
+  std::size_t idle_flags = 0;       ///< number of flags
+  std::size_t scratch = 0;          ///< bytes that only the device uses, after the flags
+  std::size_t flag_stride = 0;      ///< flags of a pillar row
+  bool flags_hide_missing = false;  ///< idle blocks may hold masked pillars, which contacts bridge
+  std::uint32_t lanes = 1;          ///< pillars of a flag
 
   /// Offset of the scratch memory.
   [[nodiscard]] std::size_t scratch_begin() const { return page_aligned(bytes + idle_flags); }
@@ -74,7 +75,7 @@ class ResultMemory {
   }
   /// The block of whole pages that holds all planes; it does not move.
   [[nodiscard]] std::span<const std::byte> pages() const { return {pages_, layout_.bytes}; }
-  /// The flags of idle blocks; none if they stay on the device.
+  /// The flags of idle blocks; none if they stay on the device, or hide missing pillars.
   [[nodiscard]] const IdleBlocks& idle_blocks() const { return idle_; }
 
  protected:

@@ -18,6 +18,7 @@ from . import calibrate, distributed
 from ._compare import Comparison, ContactErrors, ResultantErrors, compare
 from ._core import (Calibration, Contact, ContactTotal, Device, FrameContacts, Plan, RegionErrors,
                     Scene, Skin, Surface, VectorErrors, __version__, devices)
+from ._doctor import ArrayFinding, Diagnosis, doctor
 from ._error import Error
 from ._field import ForceField, Intervals, Points, Uncertainty
 from ._live import Frame, LiveForces, LiveSink, LiveSource, live, live_forces, sink
@@ -28,10 +29,10 @@ from ._solve import solve
 from ._status import Region, Status
 from .calibrate import SenselFinding
 
-__all__ = ["Calibration", "Comparison", "Contact", "ContactErrors", "ContactTotal", "Contacts",
-           "Device", "Error", "ForceField", "ForceFile", "Frame", "FrameContacts", "Intervals",
+__all__ = ["ArrayFinding", "Calibration", "Comparison", "Contact", "ContactErrors", "ContactTotal", "Contacts",
+           "Device", "Diagnosis", "Error", "ForceField", "ForceFile", "Frame", "FrameContacts", "Intervals",
            "LiveForces", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
            "RegionErrors", "ResultantErrors", "Scene", "SenselFinding", "Simulation", "Skin",
            "Status", "Surface", "Uncertainty", "VectorErrors", "__version__", "calibrate",
-           "compare", "devices", "distributed", "live", "live_forces", "open", "save_recording", "scene",
+           "compare", "devices", "distributed", "doctor", "live", "live_forces", "open", "save_recording", "scene",
            "simulate", "sink", "solve"]

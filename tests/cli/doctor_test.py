@@ -269,11 +269,20 @@ class DoctorTest(CommandTest):
         picture = self.folder / "pad.png"
         self.examine(readings, "--png", picture)
         pixels = pixels_of(picture)
-        side = pixels.shape[0] // (ROWS + 2)
-        self.assertEqual(pixels.shape, ((ROWS + 2) * side, (COLS + 2) * side, 3))
-        self.assertEqual(pixels[5 * side, 21 * side].tolist(), [70, 110, 255])
-        self.assertEqual(pixels[side - 1, 8 * side + side // 2].tolist(), [255, 40, 40])
-        self.assertLess(pixels[side + side // 2, 8 * side + side // 2].max(), 60)
+        top, left, side = 80, 44, 37
+        bottom, right, paper, ink, red = top + ROWS * side, left + COLS * side, [24] * 3, [225] * 3, [255, 40, 40]
+        absent = pixels[top + 4 * side:top + 5 * side, left + 20 * side:left + 21 * side]
+        self.assertEqual((absent[0, 0].tolist(), absent[side // 2, side // 2].tolist()), (paper, [90, 90, 100]))
+        column = left + 7 * side + side // 2
+        for row in (top - 5, bottom + 5):
+            self.assertEqual(pixels[row, column].tolist(), red)
+        self.assertLess(pixels[top + side // 2, column].max(), 60)
+        grey = pixels[top:top + 100, right + 25, 0]  # the scale
+        self.assertEqual((grey[0], grey[-1], (np.diff(grey) <= 0).all()), (255, 0, True))
+        for what, area in {"title": pixels[:40], "columns": pixels[45:70, left:right], "rows": pixels[top:bottom, :left],
+                           "scale": pixels[top:top + 100, right + 45:], "legend": pixels[top + 120:, right + 45:]}.items():
+            self.assertGreater((area == ink).all(2).sum(), 200, what)
+        self.assertTrue((pixels[top + 120:, right:right + 45] == red).all(2).any())
         self.assert_fails("doctor", self.folder / "pad.npy", "--png", self.folder / "pad.npy",
                           names=["pad.npy"])
 

@@ -13,7 +13,7 @@
 namespace pillarfield {
 namespace {
 
-/// Status bytes by row; '#' is a loaded pillar.
+/// Status bytes by row; '#' is a loaded pillar, 'x' a missing and 's' a saturated one.
 struct Mask {
   Mask(std::uint32_t mask_rows, std::uint32_t mask_cols)
       : rows(mask_rows), cols(mask_cols), status(std::size_t{rows} * cols) {}
@@ -22,7 +22,11 @@ struct Mask {
       : Mask(static_cast<std::uint32_t>(lines.size()),
              static_cast<std::uint32_t>(lines.empty() ? 0 : lines[0].size())) {
     for (std::uint32_t row = 0; row < rows; ++row) {
-      for (std::uint32_t col = 0; col < cols; ++col) set(row, col, lines[row][col] == '#');
+      for (std::uint32_t col = 0; col < cols; ++col) {
+        set(row, col, lines[row][col] == '#');
+        if (lines[row][col] == 'x') status[row * cols + col] = status::kInconsistent;
+        if (lines[row][col] == 's') status[row * cols + col] = status::kSaturated;
+      }
     }
   }
 
@@ -30,7 +34,9 @@ struct Mask {
   /// must not count.
   void set(std::uint32_t row, std::uint32_t col, bool loaded) {
     const std::size_t place = std::size_t{row} * cols + col;
-    const auto others = static_cast<std::uint8_t>(place % 5 == 0 ? 0xf0 : 0);
+    const unsigned unusual = status::kAmbiguous | status::kFromNeighbours |
+                             (loaded ? status::kInconsistent | status::kSaturated : 0U);
+    const auto others = static_cast<std::uint8_t>(place % 5 == 0 ? unusual : 0U);
     const auto usable = static_cast<std::uint8_t>(loaded ? 1u << (place * 7 % 4) : 0u);
     status[place] = others | usable;
   }
@@ -176,7 +182,7 @@ TEST(ContactLabels, IsThatOfAFloodOnManySmallMasks) {
 TEST(ContactLabels, EveryStatusByteCountsByItsUsableBits) {
   for (unsigned status = 0; status < 256; ++status) {
     for (std::uint32_t col = 0; col < 19; ++col) {
-      std::vector<std::uint8_t> bytes(19, 0xf0);
+      std::vector<std::uint8_t> bytes(19, status::kAmbiguous | status::kFromNeighbours);
       bytes[col] = static_cast<std::uint8_t>(status);
       ContactLabels labels;
       labels.find(bytes, 1, 19);
@@ -288,6 +294,43 @@ void add_spiral(Mask& mask, int windings, int sign) {
   for (int k = 0; k < windings; ++k) {
     draw_to(2 * k + 1, 2 * k + 1);
     draw_to(-(2 * k + 2), -(2 * k + 2));
+  }
+}
+
+TEST(ContactLabels, MissingPillarsDoNotPartAContact) {
+  const struct {
+    std::vector<std::string> lines;
+    std::uint32_t contacts;
+  } cases[] = {
+      {{"##x##", "##x##"}, 1},                            // a dead column
+      {{"##xx#", "##xx#"}, 1},                            // two
+      {{"##xxx##"}, 2},                                   // too wide
+      {{"###", "xxx", "###"}, 1},                         // a dead row
+      {{".#.x...", "xxxxxxx", "xxxxxxx", "...x.#."}, 2},  // the body is not above the other
+      {{"##x##", "xxxxx", "##x##"}, 1},                   // row and column
+      {{"#x...", "#x...", ".x...", ".x..#", ".x..#"}, 2},
+      {{"#x.", ".x.", ".x#"}, 1},         // across a corner
+      {{"#x.", ".x.", ".x.", ".x#"}, 2},  // two fingers beside a dead column
+      {{"#x", ".x", "#x"}, 2},            // on one side of it
+      {{"xxxxxxxx", "#xxxxxx#", "xxxxxxxx"}, 2},
+      {{"##ss##"}, 1},
+      {{"#.x.#"}, 2},
+      {{"x#", "#x"}, 1},
+      {{"xx", "xx"}, 0},
+      {{"#########x", "..........", "x#########"}, 2},
+      {{"##x"}, 1},
+      {{"##", "xx"}, 1},
+  };
+  for (const auto& [lines, contacts] : cases) {
+    const Mask mask(lines);
+    ContactLabels labels;
+    labels.find(mask.status, mask.rows, mask.cols);
+    EXPECT_EQ(labels.contacts(), contacts) << lines[0];
+    for (const ContactRun& run : labels.runs()) {
+      for (std::uint32_t col = run.first; col < run.end; ++col) {
+        EXPECT_TRUE(mask.loaded(run.row, col));
+      }
+    }
   }
 }
 

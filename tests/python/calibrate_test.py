@@ -19,6 +19,30 @@ def noisy(readings, frames=40):
     return (readings + RANDOM.normal(0, 1, (frames, *readings.shape))).round().astype(np.uint16)
 
 
+class Doctor(unittest.TestCase):
+    def test_faults_of_frames_from_anywhere(self):
+        row, col = np.mgrid[0:8, 0:12]
+        bells = [np.exp(-((row - t // 40) ** 2 + (col - t % 40 / 3) ** 2) / 2) for t in range(320)]
+        frames = (200 - 90 * np.array(bells) + RANDOM.normal(0, 1, (320, 8, 12))).round().astype(np.uint8)
+        frames[:, 6, 1] = 77
+        WORK.mkdir(parents=True, exist_ok=True)
+        np.save(WORK / "pad.npy", frames)
+        pf.save_recording(WORK / "pad.h5", frames, rate_hz=50, overwrite=True)
+        live = (pf.Frame(each, 0.02 * t, t, []) for t, each in enumerate(frames))
+        for given, rate_hz in ((frames, None), (list(frames), None), (iter(frames), None), (live, 50),
+                               (WORK / "pad.npy", None), (pf.Recording(WORK / "pad.h5"), 50)):
+            found = pf.doctor(given)
+            self.assertEqual((found.polarity, found.rate_hz and round(found.rate_hz)), ("falls", rate_hz))
+            self.assertEqual([(each.fault, each.sensels) for each in found.findings], [("stuck", [(6, 1)])])
+        self.assertEqual(pf.doctor(WORK / "pad.npy", rate_hz=25).rate_hz, 25)
+        self.assertAlmostEqual(found.noise_counts, 1, delta=0.3)
+        self.assertIn(f"polarity falls, noise {found.noise_counts:.3g} counts", repr(found))
+        self.assertIn(found.findings[0].text, repr(found))
+        self.assertEqual(found.picture()[:4], b"\x89PNG")
+        with self.assertRaisesRegex(pf.Error, "9 frames"):
+            pf.doctor(frames[:9])
+
+
 class Steps(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

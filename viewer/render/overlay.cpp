@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
+#include <vector>
 
+#include "pillarfield/calibration.h"
 #include "viewer/render/contact_marks.h"
 #include "viewer/render/gui_context.h"
 #include "viewer/render/imgui_point.h"
@@ -62,6 +66,43 @@ struct Canvas {
   }
   [[nodiscard]] Colour special(Special kind) const { return colour_of(kind, settings.theme); }
 };
+
+/// Paper, and an outline, in place of elements that the sensor does not have: an insole has its
+/// shape.
+void draw_absent(const Canvas& canvas, const SourceInfo& source, const Ground& ground) {
+  if (count_absent(source.calibration) == 0) return;
+  const Skin& skin = source.skin;
+  const auto exists = [&](std::uint32_t row, std::uint32_t col) {
+    return row < skin.element_rows() && col < skin.element_cols() &&
+           !lacks_sensels(source.calibration, skin, row, col);
+  };
+  const Viewport& plot = ground.plot();
+  canvas.list.PushClipRect(to_imgui({plot.x, plot.y}),
+                           to_imgui({plot.x + plot.width, plot.y + plot.height}));
+  const ImDrawListFlags flags = std::exchange(canvas.list.Flags, ImDrawListFlags_None);
+  const ImU32 paper = packed_colour(background_of(canvas.settings.theme));
+  for (std::uint32_t row = 0; row < skin.element_rows(); ++row) {
+    for (std::uint32_t col = 0; col < skin.element_cols(); ++col) {
+      if (exists(row, col)) continue;
+      const auto seen = ground.outline({row, row + 1, col, col + 1});
+      if (seen.empty() || std::ranges::any_of(seen, &SeenPoint::hidden)) continue;
+      std::vector<ImVec2> points;
+      std::ranges::transform(seen, std::back_inserter(points), to_imgui);
+      canvas.list.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), paper);
+      points.push_back(points.front());
+      const std::size_t side = seen.size() / 4;
+      const std::array<bool, 4> is_edge = {exists(row - 1, col), exists(row, col + 1),
+                                           exists(row + 1, col), exists(row, col - 1)};
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (!is_edge.at(i)) continue;
+        canvas.list.AddPolyline(&points[i * side], static_cast<int>(side) + 1, canvas.faint_colour,
+                                ImDrawFlags_None, canvas.unit());
+      }
+    }
+  }
+  canvas.list.Flags = flags;
+  canvas.list.PopClipRect();
+}
 
 /// Name and time in the upper left corner of the plot.
 void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo& source,
@@ -228,11 +269,13 @@ class LegendList {
   LegendList(const Canvas& canvas, double x, double y) : canvas_(canvas), x_(x), y_(y) {}
 
   void add(Special kind, const char* words, bool hatched = false) {
+    add(packed_colour(canvas_.special(kind)), words, hatched);
+  }
+  void add(ImU32 colour, const char* words, bool hatched = false) {
     const auto side = static_cast<float>(12 * canvas_.unit());
     const auto left = static_cast<float>(x_);
     const auto top = std::round(static_cast<float>(y_ + 3 * canvas_.unit()));
     const ImVec2 corner(left + side, top + side);
-    const ImU32 colour = packed_colour(canvas_.special(kind));
     if (hatched) {
       canvas_.list.PushClipRect(ImVec2(left, top), corner, true);
       for (int line = 0; line < 5; ++line) {
@@ -302,6 +345,9 @@ double write_legend(const Canvas& canvas, const SourceInfo& source, const Layout
   }
   list.add(Special::no_reading, "no reading");
   list.add(Special::idle, "no contact");
+  if (count_absent_elements(source.calibration, source.skin) > 0) {
+    list.add(packed_colour(background_of(settings.theme)), "no sensel");
+  }
   if (!settings.arrows) return list.y();
   list.skip(6);
   write_arrow_scale(canvas, source, layout, list.y());
@@ -347,15 +393,16 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
   io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
   io.DeltaTime = 1;
   ImGui::NewFrame();
+  const bool dark = settings.theme == Theme::dark;
+  const Canvas canvas{*ImGui::GetBackgroundDrawList(), settings,
+                      dark ? IM_COL32(232, 236, 241, 255) : IM_COL32(22, 26, 32, 255),
+                      dark ? IM_COL32(150, 158, 170, 255) : IM_COL32(96, 104, 116, 255)};
+  draw_absent(canvas, source, Ground(&field, source, settings, layout.plot));
   if (settings.contacts && field.contacts != nullptr) {
     draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts,
                        Ground(&field, source, settings, layout.plot));
   }
   if (settings.legend) {
-    const bool dark = settings.theme == Theme::dark;
-    const Canvas canvas{*ImGui::GetBackgroundDrawList(), settings,
-                        dark ? IM_COL32(232, 236, 241, 255) : IM_COL32(22, 26, 32, 255),
-                        dark ? IM_COL32(150, 158, 170, 255) : IM_COL32(96, 104, 116, 255)};
     canvas.rectangle(layout.plot, canvas.faint_colour);
     write_title(canvas, field, source, layout);
     if (const auto* top = std::get_if<TopView>(&settings.view)) {

@@ -83,7 +83,9 @@ namespace {
 SourceInfo truth_info(SourceInfo info) {
   info.name += ", truth";
   info.kind = "truth";
-  info.calibration = {};
+  Calibration absent;  // what has no sensel has no truth either
+  absent.mask = std::move(info.calibration.mask);
+  info.calibration = std::move(absent);
   info.has_readings = false;
   info.has_uncertainty = false;
   info.solver = "true forces";

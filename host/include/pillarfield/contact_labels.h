@@ -22,8 +22,8 @@ struct ContactRun {
 };
 
 /// The contacts of a frame: connected components (sides and corners) of its loaded pillars, which
-/// are those with a usable sensel.
-///
+/// have a usable sensel. A gap of one or two missing or saturated pillars without one, such as a
+/// dead column, does not part a contact and does not belong to it.
 /// Labels count from 0 in the order of first pillars, row by row, so they depend on the frame
 /// alone. Reuse the object from frame to frame: it keeps its memory.
 class ContactLabels {

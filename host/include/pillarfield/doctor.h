@@ -140,9 +140,11 @@ class Doctor {
   std::unique_ptr<State> state_;
 };
 
-/// Draws the array in squares, the brighter the more a sensel changed under load. Sensels are
-/// framed in the colour of their fault: absent blue, dead red, stuck orange, saturated magenta.
-/// Bars beside rows and columns: dead red, shorted yellow, out of order cyan.
-[[nodiscard]] RgbPicture draw(const Diagnosis& diagnosis);
+/// Draws the array in squares, the brighter the more a sensel changed under load, with a scale in
+/// counts, numbers of rows and columns, a legend of the faults, and `title` above, ASCII. Sensels
+/// are framed in the colour of their fault: dead red, stuck orange, saturated magenta, others cyan;
+/// an absent one is crossed out. Bars beside rows and columns: dead red, shorted yellow, others
+/// cyan.
+[[nodiscard]] RgbPicture draw(const Diagnosis& diagnosis, const std::string& title);
 
 }  // namespace pillarfield

@@ -1,0 +1,47 @@
+#include "pillarfield/doctor.h"
+
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <string>
+#include <tuple>
+
+#include "calibration/doctor/diagnosis_facts.h"
+#include "python/bindings.h"
+#include "python/frames.h"
+#include "python/signals.h"
+
+namespace pillarfield::python {
+namespace {
+
+/// The facts as JSON, and the picture, uint8 [rows, cols, 3].
+std::tuple<std::string, py::array> diagnose(Frames& frames, const std::string& name, bool timed) {
+  Diagnosis found;
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(frames.alone);
+    FrameSource& source = *frames.source;
+    Doctor doctor(name, source.skin(), source.sensel_type());
+    FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+    SignalCheck check_signals;
+    for (std::uint64_t i = 0; i < source.frames(); ++i) {
+      check_signals();
+      const double time_s = source.read(i, frame);
+      doctor.add(frame.view(), timed ? time_s : std::numeric_limits<double>::quiet_NaN());
+    }
+    found = doctor.result();
+  }
+  const RgbPicture picture = draw(found, name);
+  py::array_t<std::uint8_t> pixels(Shape{picture.height, picture.width, 3});
+  std::memcpy(pixels.mutable_data(), picture.rgb.data(), picture.rgb.size());
+  return {facts_of(found).dump(), pixels};
+}
+
+}  // namespace
+
+void bind_doctor(py::module_& module) {
+  module.def("doctor", &diagnose, py::arg("frames"), py::arg("name"), py::arg("timed"),
+             "The facts of pillarfield.doctor() as JSON, and its picture.");
+}
+
+}  // namespace pillarfield::python
