@@ -180,6 +180,8 @@ Diagnosis Doctor::result() {
   seen.full_scale = skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity());
   seen.idle.resize(skin.sensels());
   seen.noise.resize(skin.sensels());
+  seen.lowest.resize(skin.sensels());
+  seen.highest.resize(skin.sensels());
   seen.touched.resize(skin.sensels());
   seen.good.assign(skin.sensels(), 1);
   seen.constant = constant_sensels(statistics);

@@ -13,6 +13,8 @@ namespace pillarfield {
 
 /// Multiple of the noise beyond which a reading is not noise.
 inline constexpr double kBeyondIdleNoise = 6;
+/// Multiple of the typical noise above which a sensel is noisy.
+inline constexpr double kNoisy = 10;
 
 /// Rows or columns.
 enum class LineAxis : std::uint8_t { rows, columns };
@@ -30,15 +32,18 @@ struct Examination {
   KeptFrames& kept;                   ///< after find_signals(): counts beyond idle, under load > 0
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
-  double full_scale = 0;                      ///< counts; infinite: unknown
-  std::vector<float> idle = {};               ///< reading without load, of each sensel, counts
-  std::vector<float> noise = {};              ///< standard deviation of that, counts
-  double typical_noise = 0;                   ///< median, at least that of rounding, counts
-  std::vector<std::uint8_t> constant = {};    ///< 1: the reading never changes, or there is none
-  std::vector<std::uint8_t> good = {};        ///< 1: no fault found so far
-  std::vector<std::uint32_t> contacts = {};   ///< kept frames in which something touches the array
-  double contact_counts = 0;                  ///< median of their largest signals
-  std::vector<std::uint32_t> touched = {};    ///< number of contacts in which a sensel is loaded
+  double full_scale = 0;                     ///< counts; infinite: unknown
+  std::vector<float> idle = {};              ///< reading without load, of each sensel, counts
+  std::vector<float> noise = {};             ///< standard deviation of that, counts
+  double typical_noise = 0;                  ///< median, at least that of rounding, counts
+  std::vector<float> lowest = {};            ///< of the readings of each sensel but for one, counts
+  std::vector<float> highest = {};           ///< counts
+  double span = 0;                           ///< largest range of a sensel's readings, counts
+  std::vector<std::uint8_t> constant = {};   ///< 1: the reading never changes, or there is none
+  std::vector<std::uint8_t> good = {};       ///< 1: no fault found so far
+  std::vector<std::uint32_t> contacts = {};  ///< kept frames in which something touches the array
+  double contact_counts = 0;                 ///< median of their largest signals
+  std::vector<std::uint32_t> touched = {};   ///< number of contacts in which a sensel is loaded
   std::vector<std::uint32_t> row_order = {};  ///< the rows in the order in which they lie
   std::vector<std::uint32_t> column_order = {};
 
@@ -61,6 +66,8 @@ struct Examination {
   }
   /// Least signal of a loaded sensel, counts.
   [[nodiscard]] double threshold(std::size_t sensel) const;
+  /// Whether a sensel varies, with a noise like that of the others.
+  [[nodiscard]] bool is_steady(std::size_t sensel) const;
 };
 
 /// The sensel in the centre of pressure of a contact on few sensels; unset: it is on many.
@@ -75,8 +82,8 @@ struct Examination {
 [[nodiscard]] std::vector<std::optional<double>> neighbour_differences(const Examination& seen,
                                                                        LineAxis axis);
 
-/// Which way readings go under load; `slopes` are the sensels' drifts, counts per kept frame.
-[[nodiscard]] Polarity find_polarity(const Examination& seen, const std::vector<float>& slopes);
+/// Which way readings go under load: loads are local and large, drift and offsets common and slow.
+[[nodiscard]] Polarity find_polarity(const Examination& seen);
 
 /// Whether the layout is pillars, or might be.
 [[nodiscard]] bool may_have_pillars(const Diagnosis& found);
