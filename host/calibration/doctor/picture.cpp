@@ -19,6 +19,7 @@ MarkColour colour_of(ArrayFault fault) {
     case ArrayFault::absent:
       return {70, 110, 255};
     case ArrayFault::stuck:
+    case ArrayFault::noisy:
       return {255, 150, 0};
     case ArrayFault::saturated:
       return {255, 0, 255};
@@ -33,6 +34,7 @@ MarkColour colour_of(ArrayFault fault) {
     case ArrayFault::column_order:
     case ArrayFault::row_crosstalk:
     case ArrayFault::column_crosstalk:
+    default:
       break;
   }
   return {0, 255, 255};

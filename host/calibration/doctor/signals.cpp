@@ -19,6 +19,7 @@ constexpr std::size_t kLeastLoaded = 3;
 constexpr double kSingleShare = 0.3;
 /// Share of the largest span up to which a sensel may be at rest: drift is below a quarter.
 constexpr double kAtRest = 0.35;
+constexpr double kMostDrift = 0.3;
 constexpr std::size_t kLeastRest = 10;  ///< frames
 constexpr double kOddSpans = 0.01;      ///< share of the sensels
 /// Deviation of a rounded number.
@@ -170,8 +171,8 @@ class Baseline {
     const double at = std::clamp(place_of(frame), 0.0, static_cast<double>(windows_ - 1));
     const auto before = static_cast<std::size_t>(at);
     const double next = before + 1 < windows_ ? common_[before + 1] : common_[before];
-    return std::lerp(common_[before], next, at - static_cast<double>(before)) +
-           slopes_[sensel] * place_of(frame);
+    return std::lerp(common_[before], next, at - static_cast<double>(before)) + -common_.front() +
+           slopes_[sensel] * (place_of(frame) - place_of(0));
   }
 
   /// Counts per kept frame.
@@ -249,6 +250,9 @@ class Baseline {
         common_[w] = last;
       }
     }
+    // A curve that goes as far as loads do is load.
+    const auto [least, most] = std::ranges::minmax(common_);
+    if (most - least > kMostDrift * seen_.span) common_.assign(windows_, 0);
   }
 
   const Examination& seen_;
@@ -280,7 +284,7 @@ void turn_over(Examination& seen) {
   }
 }
 
-/// Kept frames in which no sensel is loaded.
+/// Kept frames in which no sensel is loaded; none if they are few.
 std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline& baseline) {
   std::vector<std::uint8_t> at_rest(seen.kept.frames(), 1);
   std::size_t count = 0;
@@ -288,13 +292,13 @@ std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline
     const auto readings = std::as_const(seen.kept).frame(frame);
     for (std::size_t i = 0; i < readings.size() && at_rest[frame] != 0; ++i) {
       const double most = seen.lowest[i] + kAtRest * seen.span;
-      if (seen.is_steady(i) && readings[i] - baseline.of(i, frame) + baseline.of(i, 0) > most) {
+      if (seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most) {
         at_rest[frame] = 0;
       }
     }
     count += at_rest[frame];
   }
-  if (count < kLeastRest) at_rest.assign(at_rest.size(), 1);
+  if (count < kLeastRest) at_rest.clear();
   return at_rest;
 }
 
@@ -311,7 +315,10 @@ void take_signals(Examination& seen, float sign) {
     rest.clear();
     for (std::size_t n = 0; n < readings.values.size(); ++n) {
       readings.values[n] -= static_cast<float>(baseline.of(i, readings.frames[n]));
-      if (at_rest[readings.frames[n]] != 0) rest.push_back(readings.values[n]);
+      const float most = seen.lowest[i] + static_cast<float>(kAtRest * seen.span);
+      const bool is_rest =
+          at_rest.empty() ? readings.values[n] < most : at_rest[readings.frames[n]] != 0;
+      if (is_rest) rest.push_back(readings.values[n]);
     }
     if (rest.empty()) rest = readings.values;
     if (rest.empty()) continue;
@@ -369,7 +376,7 @@ void find_contacts(Examination& seen, Diagnosis& found) {
   const auto first =
       std::ranges::find_if(loads, [](const FrameLoad& load) { return load.loaded > 0; });
   const auto idle = static_cast<std::uint64_t>(first - loads.begin());
-  found.idle_frames = idle == 0 ? 0 : (idle - 1) * seen.kept.stride() + 1;
+  found.idle_frames = idle == 0 ? 0 : seen.kept.number(idle - 1) + 1;
 }
 
 }  // namespace
