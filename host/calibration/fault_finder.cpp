@@ -11,6 +11,7 @@
 
 #include "base/number_text.h"
 #include "calibration/finding_list.h"
+#include "calibration/sensel_judge.h"
 #include "calibration/steps.h"
 #include "pillarfield/doctor.h"
 #include "pillarfield/error.h"
@@ -144,7 +145,7 @@ class FaultFinder::Classifier {
   }
 
   [[nodiscard]] bool is_uninformative(std::size_t sensel) const {
-    return 2 * read(sensel).readings < finder_.statistics_.frames();
+    return lacks_readings(read(sensel), finder_.statistics_.frames());
   }
 
   /// Noise of a raw reading, counts.
@@ -154,8 +155,7 @@ class FaultFinder::Classifier {
   }
 
   [[nodiscard]] bool is_still(std::size_t sensel) const {
-    const double spread = double{read(sensel).highest} - read(sensel).lowest;
-    return spread <= finder_.options_.still_factor * noise(sensel);
+    return pillarfield::is_still(read(sensel), noise(sensel), finder_.options_.still_factor);
   }
 
   /// Whether the prediction of parity moves by more than the noise of three readings.
@@ -170,7 +170,7 @@ class FaultFinder::Classifier {
   }
 
   [[nodiscard]] SenselFault fault_of(std::size_t sensel) const {
-    if (2 * read(sensel).saturated > read(sensel).readings) return SenselFault::saturated;
+    if (is_saturated(read(sensel))) return SenselFault::saturated;
     const bool responds = 2 * finder_.predictions_[sensel].usable > finder_.statistics_.frames();
     return responds ? SenselFault::stuck : SenselFault::unresponsive;
   }
@@ -208,35 +208,6 @@ FaultResult faults_by_parity(const StepWork& work, const FaultOptions& options) 
   return finder.result();
 }
 
-/// The fault of the sensels of a finding; unset where they may be sound.
-std::optional<SenselFault> sensel_fault(ArrayFault fault) {
-  switch (fault) {
-    case ArrayFault::absent:
-    case ArrayFault::dead:
-    case ArrayFault::dead_row:
-    case ArrayFault::dead_column:
-      return SenselFault::unresponsive;
-    case ArrayFault::stuck:
-      return SenselFault::stuck;
-    case ArrayFault::saturated:
-      return SenselFault::saturated;
-    default:
-      return std::nullopt;
-  }
-}
-
-/// The sensels of a finding: its own, or all of its dead lines.
-std::vector<SenselPlace> sensels_of(const ArrayFinding& finding, const Skin& skin) {
-  std::vector<SenselPlace> places = finding.sensels;
-  const bool is_row = finding.fault == ArrayFault::dead_row;
-  for (const std::uint32_t line : finding.lines) {
-    for (std::uint32_t along = 0; along < (is_row ? skin.cols : skin.rows); ++along) {
-      places.push_back(is_row ? SenselPlace{line, along} : SenselPlace{along, line});
-    }
-  }
-  return places;
-}
-
 /// Without pillars there is no parity: masks what the doctor finds.
 FaultResult faults_by_neighbours(const StepWork& work, const FaultOptions& options) {
   for (const char* const name : {"still", "moving"}) {
@@ -257,15 +228,8 @@ FaultResult faults_by_neighbours(const StepWork& work, const FaultOptions& optio
   const Diagnosis seen = doctor.result();
   if (seen.contact_frames == 0) refuse_still(statistics);
   FindingList found(work.before.planes.mask, statistics);
-  for (const ArrayFinding& finding : seen.findings) {
-    const auto fault = sensel_fault(finding.fault);
-    if (!fault) continue;
-    for (const auto& [row, col] : sensels_of(finding, statistics.skin())) {
-      const std::size_t sensel = std::size_t{row} * statistics.skin().cols + col;
-      if (!found.good(sensel)) continue;
-      found.mask(sensel,
-                 statistics.sensels()[sensel].readings > 0 ? *fault : SenselFault::not_a_number);
-    }
+  for (std::size_t sensel = 0; sensel < seen.verdicts.size(); ++sensel) {
+    if (seen.verdicts[sensel] && found.good(sensel)) found.mask(sensel, *seen.verdicts[sensel]);
   }
   FaultResult result = {work.before, found.findings(), seen.untouched, statistics.frames()};
   result.calibration.planes.mask = found.mask_plane();

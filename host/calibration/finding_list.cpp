@@ -9,6 +9,8 @@ const char* name_of(SenselFault fault) {
   switch (fault) {
     case SenselFault::not_a_number:
       return "not a number";
+    case SenselFault::absent:
+      return "absent";
     case SenselFault::saturated:
       return "saturated";
     case SenselFault::stuck:
@@ -43,7 +45,7 @@ void FindingList::note(std::size_t sensel, SenselFault fault, bool masked) {
   findings_.push_back({static_cast<std::uint32_t>(sensel / cols),
                        static_cast<std::uint32_t>(sensel % cols), fault, masked,
                        statistics_.sensels()[sensel].mean});
-  if (masked) mask_[sensel] = 0;
+  if (masked) mask_[sensel] = fault == SenselFault::absent ? kAbsent : std::uint8_t{0};
 }
 
 }  // namespace pillarfield

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/thread_pool.h"
+#include "calibration/sensel_judge.h"
 #include "pillarfield/error.h"
 #include "pillarfield/fault_finder.h"
 #include "pillarfield/tuning.h"
@@ -133,7 +134,7 @@ void SenselWatch::State::update_faults(const FaultFinder& finder) {
 bool SenselWatch::State::is_still(const SenselStatistics& sensel, std::size_t index) const {
   const double noise =
       plan.calibration.noise.empty() ? reading_noise(plan) : plan.calibration.noise[index];
-  return double{sensel.highest} - sensel.lowest <= FaultOptions{}.still_factor * noise;
+  return pillarfield::is_still(sensel, noise, FaultOptions{}.still_factor);
 }
 
 bool SenselWatch::State::drifts(const SenselStatistics& sensel, std::size_t index) const {

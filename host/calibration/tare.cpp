@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "base/number_text.h"
-#include "base/quantile.h"
 #include "calibration/finding_list.h"
+#include "calibration/sensel_judge.h"
 #include "calibration/steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
@@ -16,102 +16,35 @@
 namespace pillarfield {
 namespace {
 
-/// Distance from the median tare, in spreads, beyond which a tare is an outlier.
-constexpr double kFar = 6;
-/// Multiple of the median noise above which a sensel is noisy.
-constexpr double kNoisy = 10;
 /// Least number of outlying pillars, each of at least kTestedSensels sensels, for which the skin
 /// counts as touched.
 constexpr std::size_t kTouchedPillars = 2;
 constexpr int kTestedSensels = 3;
 
-/// Medians over sensels with a tare.
-struct Typical {
-  double tare = 0;
-  double spread = 0;  ///< robust standard deviation of the tares
-  double noise = 0;
-};
-
-/// Least standard deviation of a reading: that of rounding to whole counts.
-double least_noise(SenselType type) { return type == SenselType::f32 ? 0 : 1 / std::sqrt(12.0); }
-
-double noise_of(const SenselStatistics& sensel, SenselType type) {
-  return std::max(sensel.deviation(), least_noise(type));
+/// Whether the sensel reads as if it were touched, or as if most others were and it were not. A
+/// constant low reading is that of a dead sensel.
+bool is_as_if_touched(const SenselJudge& judge, std::size_t i) {
+  const SenselEvidence& sensel = judge.sensels()[i];
+  const auto verdict = judge.verdict(i);
+  return verdict != SenselFault::absent &&
+         (judge.is_far_above(i) || verdict == SenselFault::noisy || is_saturated(sensel.read) ||
+          (judge.is_far_below(i) && !sensel.is_constant()));
 }
 
-bool is_constant(const SenselStatistics& sensel) { return sensel.lowest == sensel.highest; }
-
-Typical typical_of(const FrameStatistics& unloaded, const FindingList& found) {
-  std::vector<double> tares;
-  std::vector<double> noises;
-  for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
-    if (!found.good(i)) continue;
-    tares.push_back(unloaded.sensels()[i].mean);
-    noises.push_back(noise_of(unloaded.sensels()[i], unloaded.type()));
-  }
-  if (tares.empty()) {
-    throw Error(unloaded.name(), "no sensel has a valid tare",
-                "check the sensor, its full scale and its mask");
-  }
-  Typical typical;
-  typical.tare = median(tares);
-  typical.noise = median(noises);
-  for (double& tare : tares) tare = std::abs(tare - typical.tare);
-  // The median deviation of a normal distribution is 0.6745 of its standard deviation.
-  typical.spread = std::max(1.4826 * median(tares), typical.noise);
-  return typical;
+/// A board that has stopped repeats one frame.
+void refuse_equal_frames(const FrameStatistics& unloaded) {
+  const auto moves = [](const SenselStatistics& read) { return read.lowest < read.highest; };
+  if (std::ranges::any_of(unloaded.sensels(), moves)) return;
+  throw Error(unloaded.name(),
+              fmt::format("all of its {} frames are equal, as of a board that has stopped",
+                          unloaded.frames()),
+              "record frames with the noise of the sensor");
 }
-
-void mask_without_tare(const FrameStatistics& unloaded, FindingList& found) {
-  for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
-    const SenselStatistics& sensel = unloaded.sensels()[i];
-    if (!found.good(i)) continue;
-    if (2 * sensel.readings < unloaded.frames() || sensel.readings < 2) {
-      found.mask(i, SenselFault::not_a_number);
-    } else if (2 * sensel.saturated > sensel.readings) {
-      found.mask(i, SenselFault::saturated);
-    }
-  }
-}
-
-/// Tests sensels against the medians of the skin.
-class OutlierTest {
- public:
-  OutlierTest(const FrameStatistics& unloaded, const Typical& typical)
-      : unloaded_(unloaded), typical_(typical) {}
-
-  [[nodiscard]] bool stuck(std::size_t i) const {
-    return is_constant(unloaded_.sensels()[i]) && (far_above(i) || far_below(i));
-  }
-
-  [[nodiscard]] bool noisy(std::size_t i) const {
-    return unloaded_.sensels()[i].deviation() > kNoisy * typical_.noise && typical_.noise > 0;
-  }
-
-  /// Whether the sensel reads as if it were touched, or as if most others were and it were not. A
-  /// constant low reading is that of a dead sensel.
-  [[nodiscard]] bool as_if_touched(std::size_t i) const {
-    const SenselStatistics& sensel = unloaded_.sensels()[i];
-    return far_above(i) || noisy(i) || 2 * sensel.saturated > sensel.readings ||
-           (far_below(i) && !is_constant(sensel));
-  }
-
- private:
-  [[nodiscard]] bool far_above(std::size_t i) const {
-    return unloaded_.sensels()[i].mean > typical_.tare + kFar * typical_.spread;
-  }
-  [[nodiscard]] bool far_below(std::size_t i) const {
-    return unloaded_.sensels()[i].mean < typical_.tare - kFar * typical_.spread;
-  }
-
-  const FrameStatistics& unloaded_;
-  const Typical& typical_;
-};
 
 /// Throws if whole pillars are outliers: faults are single sensels or lines, contacts cover
 /// pillars.
 void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std::uint8_t>& mask,
-                         const OutlierTest& test) {
+                         const SenselJudge& judge) {
   const std::uint32_t side = unloaded.skin().has_pillars() ? 1 : 2;  // in elements
   std::size_t touched = 0;
   std::string first;
@@ -121,7 +54,7 @@ void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std:
     for (const std::size_t i : sensels) {
       if ((!mask.empty() && mask[i] != kGood) || unloaded.sensels()[i].readings == 0) continue;
       ++tested;
-      standing_out += test.as_if_touched(i) ? 1 : 0;
+      standing_out += is_as_if_touched(judge, i) ? 1 : 0;
     }
     if (tested < kTestedSensels || standing_out < tested) return;
     if (touched++ == 0) first = fmt::format("row {}, column {}", side * row, side * col);
@@ -134,23 +67,27 @@ void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std:
 }
 
 /// Fills tare and noise; zero for masked sensels.
-void fill_planes(const FrameStatistics& unloaded, const FindingList& found, Calibration& planes) {
-  const std::size_t sensels = unloaded.sensels().size();
+void fill_planes(const SenselJudge& judge, const FindingList& found, Calibration& planes) {
+  const std::size_t sensels = judge.sensels().size();
   planes.tare.assign(sensels, 0);
   planes.noise.assign(sensels, 0);
   for (std::size_t i = 0; i < sensels; ++i) {
     if (!found.good(i)) continue;
-    planes.tare[i] = static_cast<float>(unloaded.sensels()[i].mean);
-    planes.noise[i] = static_cast<float>(noise_of(unloaded.sensels()[i], unloaded.type()));
+    planes.tare[i] = static_cast<float>(judge.sensels()[i].level);
+    planes.noise[i] = static_cast<float>(judge.sensels()[i].noise);
   }
   planes.mask = found.mask_plane();
 }
 
 void require_majority(const FindingList& found, const FrameStatistics& unloaded) {
-  const std::size_t sensels = unloaded.sensels().size();
-  if (2 * found.findings().size() <= sensels) return;
-  throw Error(unloaded.name(),
-              fmt::format("{} of {} sensels are faulty", found.findings().size(), sensels),
+  const auto is_absent = [](const SenselFinding& each) {
+    return each.fault == SenselFault::absent;
+  };
+  const auto absent = static_cast<std::size_t>(std::ranges::count_if(found.findings(), is_absent));
+  const std::size_t sensels = unloaded.sensels().size() - absent;
+  const std::size_t faulty = found.findings().size() - absent;
+  if (2 * faulty <= sensels) return;
+  throw Error(unloaded.name(), fmt::format("{} of {} sensels are faulty", faulty, sensels),
               "check the sensor and its full scale");
 }
 
@@ -161,26 +98,27 @@ TareResult take_tare(const SkinCalibration& before, const FrameStatistics& unloa
   require_fitting(before, unloaded.skin(), unloaded.name());
   require_frames(unloaded, kLeastTareFrames);
   FindingList found(before.planes.mask, unloaded);
-  mask_without_tare(unloaded, found);
-  Typical typical = typical_of(unloaded, found);
-  const OutlierTest test(unloaded, typical);
-  if (!options.preloaded) refuse_touched_skin(unloaded, before.planes.mask, test);
+  const double full_scale =
+      unloaded.skin().full_scale_counts.value_or(std::numeric_limits<double>::infinity());
+  const SenselJudge judge(evidence_without_load(unloaded), unloaded.frames(), full_scale,
+                          before.planes.mask);
+  if (judge.typical().count == 0) {
+    throw Error(unloaded.name(), "no sensel has a valid tare",
+                "check the sensor, its full scale and its mask");
+  }
+  if (!options.preloaded) refuse_touched_skin(unloaded, before.planes.mask, judge);
   for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
     if (!found.good(i)) continue;
-    if (test.stuck(i)) {
-      found.mask(i, SenselFault::stuck);
-    } else if (test.noisy(i)) {
-      found.mask(i, SenselFault::noisy);
-    }
+    if (const auto fault = judge.verdict(i)) found.mask(i, *fault);
   }
   require_majority(found, unloaded);
   TareResult result;
   result.calibration = before;
-  fill_planes(unloaded, found, result.calibration.planes);
+  fill_planes(judge, found, result.calibration.planes);
   set_threshold(result.calibration, options.threshold_factor);
   result.findings = found.findings();
-  result.tare_counts = typical.tare;
-  result.noise_counts = typical.noise;
+  result.tare_counts = judge.typical().level;
+  result.noise_counts = judge.typical().noise;
   return result;
 }
 
@@ -189,8 +127,9 @@ namespace {
 SkinCalibration run_tare(StepWork& work) {
   const TareOptions options = {.threshold_factor = work.number("threshold-factor", 4),
                                .preloaded = work.number("preloaded", 0) != 0};
-  const TareResult result =
-      take_tare(work.before, work.statistics(WireUse::unloaded).front(), options);
+  const FrameStatistics unloaded = work.statistics(WireUse::unloaded).front();
+  refuse_equal_frames(unloaded);
+  const TareResult result = take_tare(work.before, unloaded, options);
   const SkinCalibration& calibration = result.calibration;
   StepReport& report = work.report;
   report.headline = fmt::format("Tare of {} x {} sensels from {}", calibration.rows,

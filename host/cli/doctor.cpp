@@ -25,6 +25,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// What part of the frames show may mislead.
+void refuse_interrupted(const DoctorOptions& options) {
+  if (!is_interrupted()) return;
+  throw Error(options.source, "the doctor was interrupted before it saw all frames",
+              "let it run to its end, or give fewer frames");
+}
+
 Diagnosis look_at_file(const DoctorOptions& options) {
   ReadOptions read = options.read;
   read.untimed = !read.rate_hz;
@@ -41,6 +48,7 @@ Diagnosis look_at_file(const DoctorOptions& options) {
     doctor.add(frame.view(), time_s);
     progress.show(index + 1);
   }
+  refuse_interrupted(options);
   return doctor.result();
 }
 
@@ -71,6 +79,7 @@ Diagnosis look_at_source(const DoctorOptions& options) {
     if (arrival == Arrival::ended) break;
     if (arrival == Arrival::arrived) doctor.add(frame.readings, frame.time_s);
   }
+  refuse_interrupted(options);
   return doctor.result();
 }
 
@@ -109,8 +118,9 @@ std::string reading_arguments(const ReadOptions& read) {
   return text;
 }
 
-/// What to type next: an idle file gives a tare, others forces.
+/// What to type next: an idle file gives a tare, others forces; nothing where there is no force.
 std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
+  if (found.is_no_force()) return "";
   const std::string source = quoted(options.source);
   const std::string falling = found.polarity == Polarity::falls ? " --falling" : "";
   const std::string layout = found.layout == ArrayLayout::pillars ? " --layout pillars" : "";
@@ -209,7 +219,9 @@ void print(const DoctorOptions& options, const Diagnosis& found) {
   fmt::print("  tested     {}\n", tested_text(found));
   for (const ArrayFinding& finding : found.findings) fmt::print("  ! {}\n", finding.text);
   if (found.findings.empty()) fmt::print("  Nothing wrong was found.\n");
-  fmt::print("Next: {}\n", printable(next_command(options, found)));
+  const std::string next = next_command(options, found);
+  fmt::print("Next: {}\n",
+             next.empty() ? "record other frames: these hold no force" : printable(next));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ class CrosstalkMeter {
     bool is_first = true;
     for (std::size_t row = 0; row < seen_.rows; ++row) {
       for (std::size_t col = 0; col < seen_.cols; ++col) {
-        const std::size_t i = seen_.sensel_lying_at(row, col);
+        const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
         if (seen_.good[i] == 0 || signals_[i] < kContactShare * peak) continue;
         rows_.include(row, is_first);
         cols_.include(col, is_first);
@@ -77,8 +77,8 @@ class CrosstalkMeter {
     for (std::size_t row = 0; row < seen_.rows; ++row) {
       if (!rows_.is_far(row)) continue;
       for (std::size_t col = 0; col < seen_.cols; ++col) {
-        if (cols_.is_far(col) && seen_.good[seen_.sensel_lying_at(row, col)] != 0) {
-          values_.push_back(signals_[seen_.sensel_lying_at(row, col)]);
+        if (cols_.is_far(col) && seen_.good[seen_.sensel(LineAxis::rows, row, col)] != 0) {
+          values_.push_back(signals_[seen_.sensel(LineAxis::rows, row, col)]);
         }
       }
     }
@@ -97,8 +97,8 @@ class CrosstalkMeter {
       values_.clear();
       double peak = 0;
       for (std::size_t place = 0; place < (in_rows ? seen_.cols : seen_.rows); ++place) {
-        const std::size_t i =
-            in_rows ? seen_.sensel_lying_at(line, place) : seen_.sensel_lying_at(place, line);
+        const std::size_t i = in_rows ? seen_.sensel(LineAxis::rows, line, place)
+                                      : seen_.sensel(LineAxis::rows, place, line);
         if (seen_.good[i] == 0) continue;
         peak = std::max<double>(peak, signals_[i]);
         if (along.is_far(place)) values_.push_back(signals_[i] - static_cast<float>(common));
@@ -139,6 +139,7 @@ void judge_crosstalk(std::vector<double>& ratios, ArrayFault fault, std::optiona
 }  // namespace
 
 void find_crosstalk(Examination& seen, Diagnosis& found) {
+  if (seen.is_out_of_order) return;
   CrosstalkMeter meter(seen);
   for (const std::uint32_t frame : seen.contacts) meter.add(frame);
   judge_crosstalk(meter.ratios(LineAxis::rows), ArrayFault::row_crosstalk,

@@ -23,7 +23,6 @@ Json fact_of(const ArrayFinding& finding) {
     facts["sensels"] = finding.sensels;
   }
   if (!finding.lines.empty()) facts["lines"] = finding.lines;
-  if (!finding.in_order.empty()) facts["order"] = finding.in_order;
   facts["figure"] = finding.figure;
   facts["text"] = finding.text;
   return facts;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -113,9 +112,21 @@ Skin with_full_scale(Skin skin, SenselType type) {
   return skin;
 }
 
-std::vector<std::uint8_t> constant_sensels(const FrameStatistics& statistics) {
+/// Of the kept frames.
+std::vector<SenselStatistics> statistics_of(const KeptFrames& kept, double full_scale) {
+  std::vector<SenselStatistics> statistics(kept.sensels());
+  for (std::size_t frame = 0; frame < kept.frames(); ++frame) {
+    const auto readings = kept.frame(frame);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      statistics[i].add(readings[i], static_cast<float>(full_scale));
+    }
+  }
+  return statistics;
+}
+
+std::vector<std::uint8_t> constant_sensels(const std::vector<SenselStatistics>& sensels) {
   std::vector<std::uint8_t> constant;
-  for (const SenselStatistics& sensel : statistics.sensels()) {
+  for (const SenselStatistics& sensel : sensels) {
     constant.push_back(sensel.readings == 0 || sensel.lowest == sensel.highest ? 1 : 0);
   }
   return constant;
@@ -124,7 +135,7 @@ std::vector<std::uint8_t> constant_sensels(const FrameStatistics& statistics) {
 void require_readings(const FrameStatistics& statistics) {
   const auto is_empty = [](const SenselStatistics& sensel) { return sensel.readings == 0; };
   if (!std::ranges::all_of(statistics.sensels(), is_empty)) return;
-  throw Error(statistics.name(), "has no readings: all of its values are NaN",
+  throw Error(statistics.name(), "has no readings: all of its values are NaN or beyond 1e33",
               "give frames of numbers");
 }
 
@@ -140,6 +151,13 @@ std::vector<float> largest_signals(const Examination& seen) {
 
 }  // namespace
 
+bool Diagnosis::is_no_force() const {
+  return std::ranges::any_of(findings, [](const ArrayFinding& finding) {
+    return finding.fault == ArrayFault::normalised || finding.fault == ArrayFault::two_values ||
+           finding.fault == ArrayFault::byte_order || finding.fault == ArrayFault::frozen;
+  });
+}
+
 struct Doctor::State {
   State(std::string name, const Skin& skin, SenselType type)
       : statistics(std::move(name), with_full_scale(skin, type), type),
@@ -148,6 +166,7 @@ struct Doctor::State {
   FrameStatistics statistics;
   FrameTimes times;
   KeptFrames kept;
+  FrameWatch watch;
 };
 
 Doctor::Doctor(std::string name, const Skin& skin, SenselType type)
@@ -159,7 +178,7 @@ Doctor& Doctor::operator=(Doctor&&) noexcept = default;
 void Doctor::add(const FrameView& frame, double time_s) {
   state_->statistics.add(frame);
   state_->times.add(time_s);
-  state_->kept.add(frame, time_s);
+  state_->kept.add(frame, time_s, state_->watch.add(frame));
 }
 
 Diagnosis Doctor::result() {
@@ -174,31 +193,45 @@ Diagnosis Doctor::result() {
   found.frames = statistics.frames();
   found.kept = state_->kept.frames();
   found.timing = state_->times.timing();
+  const FrameWatch& watch = state_->watch;
   Examination seen = {.statistics = statistics, .kept = state_->kept};
+  if (!watch.is_frozen()) {
+    if (watch.uniform_are_lost()) seen.kept.drop(FrameKind::uniform);
+    if (watch.repeats_are_odd()) seen.kept.drop(FrameKind::repeated);
+    seen.kept.drop(FrameKind::empty);
+  }
   seen.rows = skin.rows;
   seen.cols = skin.cols;
   seen.full_scale = skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity());
+  const bool has_dropped =
+      seen.kept.frames() * seen.kept.stride() + seen.kept.stride() < found.frames;
+  seen.read.assign(statistics.sensels().begin(), statistics.sensels().end());
+  if (has_dropped) seen.read = statistics_of(seen.kept, seen.full_scale);
+  seen.frames_with_readings = 0;
+  for (const SenselStatistics& each : seen.read) {
+    seen.frames_with_readings = std::max(seen.frames_with_readings, each.readings);
+  }
   seen.idle.resize(skin.sensels());
   seen.noise.resize(skin.sensels());
+  seen.lowest.resize(skin.sensels());
+  seen.highest.resize(skin.sensels());
   seen.touched.resize(skin.sensels());
   seen.good.assign(skin.sensels(), 1);
-  seen.constant = constant_sensels(statistics);
-  seen.doubtful_rows.resize(skin.rows);
-  seen.doubtful_columns.resize(skin.cols);
-  seen.row_order.resize(skin.rows);
-  std::iota(seen.row_order.begin(), seen.row_order.end(), 0U);
-  seen.column_order.resize(skin.cols);
-  std::iota(seen.column_order.begin(), seen.column_order.end(), 0U);
+  seen.constant = constant_sensels(seen.read);
+  find_odd_frames(seen, watch, found);
   find_signals(seen, found);
-  find_odd_readings(seen, found);
-  find_layout(seen, found);
-  find_shorts(seen, found);
-  find_line_orders(seen, found);
-  find_crosstalk(seen, found);
+  find_odd_readings(seen);
+  if (!found.is_no_force()) {
+    find_layout(seen, found);
+    find_shorts(seen, found);
+    find_line_orders(seen, found);
+    find_crosstalk(seen, found);
+    find_ghosts(seen, found);
+  }
   find_faulty_sensels(seen, found);
   found.picture = largest_signals(seen);
   for (std::size_t i = 0; i < skin.sensels(); ++i) {
-    found.clipped += seen.good[i] != 0 && statistics.sensels()[i].saturated > 0 ? 1U : 0U;
+    found.clipped += seen.good[i] != 0 && seen.read[i].saturated > 0 ? 1U : 0U;
   }
   std::ranges::stable_sort(found.findings, {}, &ArrayFinding::fault);
   return found;

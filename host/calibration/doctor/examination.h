@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/doctor/kept_frames.h"
+#include "calibration/sensel_judge.h"
 #include "pillarfield/doctor.h"
 #include "pillarfield/frame_statistics.h"
 
@@ -26,25 +27,27 @@ struct LinePair {
 
 /// What the findings are found in: kept frames as signals, and what is known of each sensel.
 struct Examination {
-  const FrameStatistics& statistics;  ///< of all frames
-  KeptFrames& kept;                   ///< after find_signals(): counts beyond idle, under load > 0
+  const FrameStatistics& statistics;        ///< of all frames
+  std::vector<SenselStatistics> read = {};  ///< of the frames that are not missing
+  KeptFrames& kept;  ///< after find_signals(): counts beyond idle, under load > 0
+  std::uint32_t frames_with_readings = 0;
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
-  double full_scale = 0;                      ///< counts; infinite: unknown
-  std::vector<float> idle = {};               ///< reading without load, of each sensel, counts
-  std::vector<float> noise = {};              ///< standard deviation of that, counts
-  double typical_noise = 0;                   ///< median, at least that of rounding, counts
-  std::vector<std::uint8_t> constant = {};    ///< 1: the reading never changes, or there is none
-  std::vector<std::uint8_t> good = {};        ///< 1: no fault found so far
-  std::vector<std::uint32_t> contacts = {};   ///< kept frames in which something touches the array
-  double contact_counts = 0;                  ///< median of their largest signals
-  std::vector<std::uint32_t> touched = {};    ///< number of contacts in which a sensel is loaded
-  std::vector<std::uint32_t> row_order = {};  ///< the rows in the order in which they lie
-  std::vector<std::uint32_t> column_order = {};
-
+  double full_scale = 0;                    ///< counts; infinite: unknown
+  std::vector<float> idle = {};             ///< reading without load, of each sensel, counts
+  std::vector<float> noise = {};            ///< standard deviation of that, counts
+  double typical_noise = 0;                 ///< median, at least that of rounding, counts
+  std::vector<float> lowest = {};           ///< of the readings of each sensel but for one, counts
+  std::vector<float> highest = {};          ///< counts
+  double span = 0;                          ///< largest range of a sensel's readings, counts
+  std::vector<std::uint8_t> constant = {};  ///< 1: the reading never changes, or there is none
+  std::vector<std::uint8_t> good = {};      ///< 1: no fault found so far
+  std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel
+  std::vector<std::uint32_t> contacts = {};  ///< kept frames in which something touches the array
+  double contact_counts = 0;                 ///< median of their largest signals
+  std::vector<std::uint32_t> touched = {};   ///< number of contacts in which a sensel is loaded
+  bool is_out_of_order = false;              ///< neighbours need not lie beside each other
   std::vector<LinePair> shorted = {};
-  std::vector<std::uint8_t> doubtful_rows = {};  ///< 1: nothing tells what lies beside this place
-  std::vector<std::uint8_t> doubtful_columns = {};
 
   [[nodiscard]] std::size_t lines(LineAxis axis) const {
     return axis == LineAxis::rows ? rows : cols;
@@ -52,15 +55,10 @@ struct Examination {
   [[nodiscard]] std::size_t sensel(LineAxis axis, std::size_t line, std::size_t along) const {
     return axis == LineAxis::rows ? line * cols + along : along * cols + line;
   }
-  /// The sensel that lies at a place of the array.
-  [[nodiscard]] std::size_t sensel_lying_at(std::size_t row, std::size_t col) const {
-    return std::size_t{row_order[row]} * cols + column_order[col];
-  }
-  [[nodiscard]] bool has_doubtful_place(std::size_t row, std::size_t col) const {
-    return doubtful_rows[row] != 0 || doubtful_columns[col] != 0;
-  }
   /// Least signal of a loaded sensel, counts.
   [[nodiscard]] double threshold(std::size_t sensel) const;
+  /// Whether a sensel varies, with a noise like that of the others.
+  [[nodiscard]] bool is_steady(std::size_t sensel) const;
 };
 
 /// The sensel in the centre of pressure of a contact on few sensels; unset: it is on many.
@@ -75,18 +73,20 @@ struct Examination {
 [[nodiscard]] std::vector<std::optional<double>> neighbour_differences(const Examination& seen,
                                                                        LineAxis axis);
 
-/// Which way readings go under load; `slopes` are the sensels' drifts, counts per kept frame.
-[[nodiscard]] Polarity find_polarity(const Examination& seen, const std::vector<float>& slopes);
+/// Which way readings go under load: loads are local and large, drift and offsets common and slow.
+[[nodiscard]] Polarity find_polarity(const Examination& seen);
 
 /// Whether the layout is pillars, or might be.
 [[nodiscard]] bool may_have_pillars(const Diagnosis& found);
 
 // Each step writes what it finds into the examination and into the diagnosis, in this order.
 
+/// Frames and values that are no readings.
+void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis& found);
 /// Noise, drift, polarity, idle readings; replaces the kept readings by signals; finds contacts.
 void find_signals(Examination& seen, Diagnosis& found);
-/// Sensels that are constant or saturated: not good for the next steps.
-void find_odd_readings(Examination& seen, Diagnosis& found);
+/// Verdicts by readings alone; sensels that have one are not good for the next steps.
+void find_odd_readings(Examination& seen);
 /// Whether groups of 2 x 2 sensels share their loads.
 void find_layout(const Examination& seen, Diagnosis& found);
 /// Two lines with the same signals, of different pillars.
@@ -95,6 +95,8 @@ void find_shorts(Examination& seen, Diagnosis& found);
 void find_line_orders(Examination& seen, Diagnosis& found);
 /// Signals in the rows and columns of small contacts, far from them.
 void find_crosstalk(Examination& seen, Diagnosis& found);
+/// Sensels that read only while the other three corners of a rectangle are pressed.
+void find_ghosts(Examination& seen, Diagnosis& found);
 /// Sensels that are constant or do not respond, and rows and columns of them.
 void find_faulty_sensels(Examination& seen, Diagnosis& found);
 }  // namespace pillarfield

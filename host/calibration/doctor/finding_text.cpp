@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "calibration/doctor/named_orders.h"
 
 namespace pillarfield {
 namespace {
@@ -24,15 +23,11 @@ std::string places_of(const ArrayFinding& finding) {
 }
 
 std::string order_text(const ArrayFinding& finding, std::string_view lines) {
-  const auto count = static_cast<std::uint32_t>(finding.in_order.size());
-  std::string name = fmt::format("{} of them lie elsewhere", finding.lines.size());
-  for (const NamedOrder& each : named_orders(count, finding.lines.front(), finding.lines.back())) {
-    if (each.order != finding.in_order) continue;
-    name = each.name;
-    break;
+  std::string list;
+  for (const std::uint32_t line : finding.lines) {
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", line);
   }
-  return fmt::format("Wiring: {} {}; a contact passes {} of {} out of turn", lines, name,
-                     finding.lines.size(), count);
+  return fmt::format("Wiring: {} out of order: a contact passes {} out of turn", lines, list);
 }
 
 std::string count_text(const ArrayFinding& finding) {
@@ -43,7 +38,10 @@ std::string sentence_of(const ArrayFinding& finding) {
   const std::vector<std::uint32_t>& lines = finding.lines;
   switch (finding.fault) {
     case ArrayFault::absent:
-      return fmt::format("Absent: {}, without a reading or always 0, at {}", count_text(finding),
+      return fmt::format("Absent: {}, {}, at {}", count_text(finding),
+                         finding.figure == 0 ? "without a reading or always 0"
+                                             : fmt::format("always {}, which stands for no sensel",
+                                                           rounded(finding.figure)),
                          places_of(finding));
     case ArrayFault::dead:
       return fmt::format("Dead: {}, at most {:.1f} % of the response of the neighbours, at {}",
@@ -54,6 +52,9 @@ std::string sentence_of(const ArrayFinding& finding) {
     case ArrayFault::saturated:
       return fmt::format("Saturated: {}, at full scale ({} counts) most of the time, at {}",
                          count_text(finding), rounded(finding.figure), places_of(finding));
+    case ArrayFault::noisy:
+      return fmt::format("Noisy: {}, {:.0f} times the noise of the others, at {}",
+                         count_text(finding), finding.figure, places_of(finding));
     case ArrayFault::dead_row:
       return fmt::format("Dead: row {}, at most {:.1f} % of the response of its neighbours",
                          lines[0], finding.figure);
@@ -74,10 +75,17 @@ std::string sentence_of(const ArrayFinding& finding) {
       return fmt::format("Crosstalk: {:.1f} % of a contact shows all along its rows",
                          finding.figure);
     case ArrayFault::column_crosstalk:
-      break;
+      return fmt::format("Crosstalk: {:.1f} % of a contact shows all along its columns",
+                         finding.figure);
+    case ArrayFault::ghosts:
+      return fmt::format(
+          "Ghosts: {}, reading up to {} counts only while the other three corners "
+          "of a rectangle are pressed, at {}; the wiring lacks diodes or a virtual "
+          "ground, and no calibration step mends it",
+          count_text(finding), rounded(finding.figure), places_of(finding));
+    default:
+      return finding.text;
   }
-  return fmt::format("Crosstalk: {:.1f} % of a contact shows all along its columns",
-                     finding.figure);
 }
 
 }  // namespace
@@ -92,6 +100,8 @@ const char* name_of(ArrayFault fault) {
       return "stuck";
     case ArrayFault::saturated:
       return "saturated";
+    case ArrayFault::noisy:
+      return "noisy";
     case ArrayFault::dead_row:
       return "dead row";
     case ArrayFault::dead_column:
@@ -107,9 +117,25 @@ const char* name_of(ArrayFault fault) {
     case ArrayFault::row_crosstalk:
       return "row crosstalk";
     case ArrayFault::column_crosstalk:
+      return "column crosstalk";
+    case ArrayFault::ghosts:
+      return "ghosts";
+    case ArrayFault::missing_frames:
+      return "missing frames";
+    case ArrayFault::repeated_frames:
+      return "repeated frames";
+    case ArrayFault::frozen:
+      return "frozen";
+    case ArrayFault::normalised:
+      return "normalised";
+    case ArrayFault::two_values:
+      return "two values";
+    case ArrayFault::byte_order:
+      return "byte order";
+    case ArrayFault::stuck_bit:
       break;
   }
-  return "column crosstalk";
+  return "stuck bit";
 }
 
 const char* name_of(Polarity polarity) {

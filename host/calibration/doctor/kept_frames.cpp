@@ -13,13 +13,33 @@ KeptFrames::KeptFrames(std::uint32_t rows, std::uint32_t cols)
     : sensels_(std::size_t{rows} * cols),
       most_(std::clamp(kMostKeptReadings / sensels_, kLeastKeptFrames, kMostKeptFrames)) {}
 
-void KeptFrames::add(const FrameView& frame, double time_s) {
+template <class Keep>
+void KeptFrames::keep(Keep is_kept) {
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    if (!is_kept(i)) continue;
+    times_[left] = times_[i];
+    numbers_[left] = numbers_[i];
+    kinds_[left] = kinds_[i];
+    if (left != i) std::ranges::copy(frame(i), frame(left).begin());
+    ++left;
+  }
+  times_.resize(left);
+  numbers_.resize(left);
+  kinds_.resize(left);
+  readings_.resize(left * sensels_);
+}
+
+void KeptFrames::add(const FrameView& frame, double time_s, FrameKind kind) {
   if (added_++ % stride_ != 0) return;
   if (times_.size() == most_) {
-    drop_every_second();
+    keep([](std::size_t index) { return index % 2 == 0; });
+    stride_ *= 2;
     if ((added_ - 1) % stride_ != 0) return;
   }
   times_.push_back(time_s);
+  numbers_.push_back(added_ - 1);
+  kinds_.push_back(kind);
   for_each_row(frame, [&](std::size_t, const auto* readings) {
     for (std::size_t col = 0; col < frame.cols; ++col) {
       const auto reading = static_cast<float>(readings[col]);
@@ -40,15 +60,8 @@ void KeptFrames::read_sensel(std::size_t sensel, SenselReadings& to) const {
   }
 }
 
-void KeptFrames::drop_every_second() {
-  const std::size_t left = (times_.size() + 1) / 2;
-  for (std::size_t i = 1; i < left; ++i) {
-    times_[i] = times_[2 * i];
-    std::ranges::copy(frame(2 * i), frame(i).begin());
-  }
-  times_.resize(left);
-  readings_.resize(left * sensels_);
-  stride_ *= 2;
+void KeptFrames::drop(FrameKind kind) {
+  keep([&](std::size_t index) { return kinds_[index] != kind; });
 }
 
 }  // namespace pillarfield

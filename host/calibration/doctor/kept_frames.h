@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "calibration/doctor/frame_watch.h"
 #include "pillarfield/frame.h"
 
 namespace pillarfield {
@@ -25,11 +26,15 @@ class KeptFrames {
  public:
   KeptFrames(std::uint32_t rows, std::uint32_t cols);
 
-  void add(const FrameView& frame, double time_s);
+  void add(const FrameView& frame, double time_s, FrameKind kind);
+  /// Drops the frames of a kind.
+  void drop(FrameKind kind);
 
   [[nodiscard]] std::size_t frames() const { return times_.size(); }
   /// One of so many frames is kept.
   [[nodiscard]] std::uint64_t stride() const { return stride_; }
+  /// The number of a kept frame among all, from 0.
+  [[nodiscard]] std::uint64_t number(std::size_t index) const { return numbers_[index]; }
   [[nodiscard]] std::size_t sensels() const { return sensels_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
   void read_sensel(std::size_t sensel, SenselReadings& to) const;
@@ -42,7 +47,8 @@ class KeptFrames {
   }
 
  private:
-  void drop_every_second();
+  template <class Keep>
+  void keep(Keep is_kept);
 
   std::size_t sensels_;
   std::size_t most_;
@@ -50,6 +56,8 @@ class KeptFrames {
   std::uint64_t stride_ = 1;
   std::vector<float> readings_;
   std::vector<double> times_;
+  std::vector<std::uint64_t> numbers_;
+  std::vector<FrameKind> kinds_;
 };
 
 }  // namespace pillarfield

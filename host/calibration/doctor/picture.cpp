@@ -22,8 +22,10 @@ constexpr MarkColour kPaper = {24, 24, 24};
 constexpr MarkColour kInk = {225, 225, 225};
 constexpr MarkColour kFaintInk = {90, 90, 100};
 constexpr MarkColour kOfOtherFaults = {0, 255, 255};
-constexpr std::array<std::pair<ArrayFault, MarkColour>, 7> kFaultColours = {
-    {{ArrayFault::stuck, {255, 150, 0}},
+constexpr std::array<std::pair<ArrayFault, MarkColour>, 9> kFaultColours = {
+    {{ArrayFault::absent, {70, 110, 255}},
+     {ArrayFault::noisy, {255, 150, 0}},
+     {ArrayFault::stuck, {255, 150, 0}},
      {ArrayFault::saturated, {255, 0, 255}},
      {ArrayFault::dead, {255, 40, 40}},
      {ArrayFault::dead_row, {255, 40, 40}},

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,131 +12,151 @@ namespace {
 
 /// Ratio of the evidence for one polarity and for the other that decides.
 constexpr double kDecisive = 3;
-/// Share of readings at 0 or at full scale from which the others can only be load.
-constexpr double kAtRail = 0.3;
+/// Share of the largest span from which a change is load: drift is below.
+constexpr double kLoadChange = 0.3;
+/// Share of the sensels ever loaded that is loaded at a time: up to the first contacts move all
+/// over the array, so that each sensel is mostly at rest; from the second on they need not.
+constexpr double kMovingShare = 0.12;
+constexpr double kStandingShare = 0.5;
+constexpr double kMovedOver = 0.3;  ///< least share of the array that moving contacts load
+constexpr double kStillShare = 0.2;
+constexpr std::size_t kLeastStill = 8;
+constexpr double kTrimmed = 0.02;
 
 /// Evidence that readings rise and that they fall, such as squares of changes to either side.
 struct Evidence {
   double rise = 0;
   double fall = 0;
 
-  void add_change(double change, double least) {
-    if (change > least) rise += change * change;
-    if (change < -least) fall += change * change;
-  }
-  [[nodiscard]] Polarity polarity() const {
-    if (rise > kDecisive * fall) return Polarity::rises;
-    if (fall > kDecisive * rise) return Polarity::falls;
-    return Polarity::unknown;
+  void add_change(double change) { (change > 0 ? rise : fall) += change * change; }
+  [[nodiscard]] Polarity polarity(double ratio = kDecisive) const {
+    if (rise > ratio * fall) return Polarity::rises;
+    return fall > ratio * rise ? Polarity::falls : Polarity::unknown;
   }
 };
 
-/// Mean square of the deviations from the median, without the largest half of them.
-double robust_variance(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const float middle = median(values);
-  for (float& value : values) value = std::abs(value - middle);
-  return std::pow(median(values), 2);
-}
-
-/// What those that are known agree on.
-Polarity agreed(std::initializer_list<Polarity> polarities) {
-  const auto has = [&](Polarity polarity) { return std::ranges::count(polarities, polarity) > 0; };
-  if (has(Polarity::rises) == has(Polarity::falls)) return Polarity::unknown;
-  return has(Polarity::rises) ? Polarity::rises : Polarity::falls;
-}
-
-/// By readings at 0 or at full scale.
-Polarity polarity_by_rails(const Examination& seen) {
-  Evidence at_rails;
-  std::size_t readings = 0;
-  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
-    const auto values = std::as_const(seen.kept).frame(frame);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (seen.constant[i] != 0 || std::isnan(values[i])) continue;
-      ++readings;
-      at_rails.rise += values[i] == 0 ? 1 : 0;
-      at_rails.fall += values[i] >= seen.full_scale ? 1 : 0;
-    }
+/// Variance without the largest and the smallest values.
+double trimmed_variance(std::vector<double> values) {
+  std::ranges::sort(values);
+  const auto cut = static_cast<std::ptrdiff_t>(kTrimmed * static_cast<double>(values.size()));
+  double mean = 0;
+  double squares = 0;
+  double count = 0;
+  for (auto at = values.begin() + cut; at != values.end() - cut; ++at) {
+    const double step = *at - mean;
+    mean += step / ++count;
+    squares += step * (*at - mean);
   }
-  const double least = kAtRail * static_cast<double>(readings);
-  return std::max(at_rails.rise, at_rails.fall) > least ? at_rails.polarity() : Polarity::unknown;
+  return count > 0 ? squares / count : 0;
 }
 
-/// What the readings of all sensels tell, without drift.
+/// The ways to tell load from rest, by the places of changes.
 class Changes {
  public:
-  Changes(const Examination& seen, const std::vector<float>& slopes) : seen_(seen) {
+  explicit Changes(const Examination& seen) : seen_(seen), least_(kLoadChange * seen.span) {
     SenselReadings readings;
-    for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
-      if (seen.constant[i] != 0) continue;
+    middles_.resize(seen.kept.sensels());
+    for (std::size_t i = 0; i < middles_.size(); ++i) {
+      if (!seen.is_steady(i)) continue;
       seen.kept.read_sensel(i, readings);
-      for (std::size_t n = 0; n < readings.values.size(); ++n) {
-        readings.values[n] -= slopes[i] * static_cast<float>(readings.frames[n]);
-      }
-      add(readings.values, seen.threshold(i));
+      middles_[i] = median(readings.values);
+      const bool changes = seen.highest[i] - seen.lowest[i] > least_;
+      (changes ? changing_ : still_).push_back(i);
     }
+    weigh_frames();
   }
 
   [[nodiscard]] Polarity polarity() const {
-    const Polarity by_median = from_median_.polarity();
-    // Readings without load resemble each other more than loaded ones.
-    const Polarity by_spread =
-        Evidence{.rise = robust_variance(high_), .fall = robust_variance(low_)}.polarity();
-    const Polarity by_still = by_still_sensels();
-    return by_still != Polarity::unknown ? by_still
-                                         : agreed({by_median, by_spread, at_ends_.polarity()});
+    const bool moves = share_<kMovingShare&& static_cast<double>(ever_)> kMovedOver *
+                       static_cast<double>(middles_.size());
+    const Evidence rest = by_rest();
+    for (const Polarity found :
+         {moves ? from_median_.polarity() : Polarity::unknown, rest.polarity(),
+          share_ < kStandingShare ? from_median_.polarity() : Polarity::unknown,
+          by_first_frames().polarity(), rest.polarity(1)}) {
+      if (found != Polarity::unknown) return found;
+    }
+    return Polarity::unknown;
   }
 
  private:
-  void add(std::vector<float>& readings, double least) {
-    const float middle = median(readings);
-    const float low = quantile(readings, 0.02);
-    const float high = quantile(readings, 0.98);
-    for (const float value : readings) from_median_.add_change(value - middle, least);
-    if (high - low < least) {
-      still_.push_back(middle);
-      return;
+  /// Changes from the medians, and the share of the sensels that change at a time.
+  void weigh_frames() {
+    std::vector<std::uint8_t> ever(middles_.size());
+    double loaded = 0;
+    double frames = 0;
+    for (std::size_t frame = 0; frame < seen_.kept.frames(); ++frame) {
+      const auto values = std::as_const(seen_.kept).frame(frame);
+      std::size_t count = 0;
+      for (const std::size_t i : changing_) {
+        const double change = values[i] - middles_[i];
+        if (!(std::abs(change) > std::max(least_, seen_.threshold(i)))) continue;
+        from_median_.add_change(change);
+        ever[i] = 1;
+        ++count;
+      }
+      loaded += static_cast<double>(count);
+      frames += count > 0 ? 1 : 0;
     }
-    low_.push_back(low);
-    high_.push_back(high);
-    if (high - low < 2 * least) return;
-    for (const float value : readings) {
-      at_ends_.rise += value - low < least ? 1 : 0;
-      at_ends_.fall += high - value < least ? 1 : 0;
-    }
+    ever_ = static_cast<std::size_t>(std::ranges::count(ever, 1));
+    if (ever_ > 0) share_ = loaded / frames / static_cast<double>(ever_);
   }
 
-  /// By the extremes of sensels that change, against those that do not, if these are many.
-  [[nodiscard]] Polarity by_still_sensels() const {
-    std::vector<float> still = still_;
-    if (still.size() < std::max<std::size_t>(8, seen_.kept.sensels() / 5)) {
-      return Polarity::unknown;
-    }
-    const float lowest = quantile(still, 0.02);
-    const float highest = quantile(still, 0.98);
+  /// At rest, sensels that change read as those that do not; if all change, their readings resemble
+  /// each other more than under load.
+  [[nodiscard]] Evidence by_rest() const {
     Evidence evidence;
-    for (const auto* const extremes : {&low_, &high_}) {
-      for (const float value : *extremes) {
-        evidence.add_change(value - std::clamp(value, lowest, highest), 3 * seen_.typical_noise);
+    const auto reading = [](const std::vector<float>& of, const std::vector<std::size_t>& sensels) {
+      std::vector<double> values;
+      for (const std::size_t i : sensels) values.push_back(of[i]);
+      return values;
+    };
+    std::vector<double> low = reading(seen_.lowest, changing_);
+    std::vector<double> high = reading(seen_.highest, changing_);
+    const double steady = static_cast<double>(changing_.size() + still_.size());
+    if (static_cast<double>(still_.size()) < std::max<double>(kLeastStill, kStillShare * steady)) {
+      return {trimmed_variance(std::move(high)), trimmed_variance(std::move(low))};
+    }
+    std::vector<double> still_low = reading(seen_.lowest, still_);
+    std::vector<double> still_high = reading(seen_.highest, still_);
+    const double rest_low = median(still_low);
+    const double rest_high = median(still_high);
+    for (std::size_t n = 0; n < low.size(); ++n) {
+      evidence.rise += std::pow(high[n] - rest_high, 2);
+      evidence.fall += std::pow(low[n] - rest_low, 2);
+    }
+    return evidence;
+  }
+
+  /// Most recordings begin at rest.
+  [[nodiscard]] Evidence by_first_frames() const {
+    Evidence evidence;
+    const std::size_t first = std::max<std::size_t>(3, seen_.kept.frames() / 100);
+    for (std::size_t frame = 0; frame < std::min(first, seen_.kept.frames()); ++frame) {
+      const auto values = std::as_const(seen_.kept).frame(frame);
+      for (const std::size_t i : changing_) {
+        if (std::isnan(values[i])) continue;
+        evidence.rise += std::pow(seen_.highest[i] - values[i], 2);
+        evidence.fall += std::pow(values[i] - seen_.lowest[i], 2);
       }
     }
-    return evidence.polarity();
+    return evidence;
   }
 
   const Examination& seen_;
-  Evidence from_median_;  ///< most sensels are without load for most of the time
-  Evidence at_ends_;      ///< readings near the lowest and near the highest one
-  std::vector<float> still_;
-  std::vector<float> low_;
-  std::vector<float> high_;
+  double least_;
+  std::vector<float> middles_;
+  std::vector<std::size_t> changing_;
+  std::vector<std::size_t> still_;
+  Evidence from_median_;
+  std::size_t ever_ = 0;
+  double share_ = 1;
 };
 
 }  // namespace
 
-Polarity find_polarity(const Examination& seen, const std::vector<float>& slopes) {
-  const Polarity by_rails = polarity_by_rails(seen);
-  return by_rails != Polarity::unknown ? by_rails : Changes(seen, slopes).polarity();
+Polarity find_polarity(const Examination& seen) {
+  return seen.span > 0 ? Changes(seen).polarity() : Polarity::unknown;
 }
 
 }  // namespace pillarfield

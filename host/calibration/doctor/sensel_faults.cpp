@@ -73,7 +73,7 @@ LyingSignals::LyingSignals(const Examination& seen, std::uint32_t frame)
 
 const float* LyingSignals::at(std::uint32_t row, std::uint32_t col) const {
   if (row >= seen_.rows || col >= seen_.cols) return nullptr;
-  const std::size_t i = seen_.sensel_lying_at(row, col);
+  const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
   return seen_.good[i] != 0 ? &signals_[i] : nullptr;
 }
 
@@ -120,92 +120,72 @@ float LyingSignals::least_beside_peak(std::uint32_t row, std::uint32_t col) cons
   return *opposite <= flank ? kBesidePeak * flank : kBesidePeak * flank * flank / *opposite;
 }
 
-/// Least share of sensels that must vary for a constant one to be stuck.
-constexpr double kMostVary = 0.8;
-/// Noise, counts, and frames from which a reading cannot be constant by chance.
-constexpr double kVisibleNoise = 0.4;
-constexpr std::uint32_t kVisibleFrames = 100;
-/// SenselResponse relative to that of the neighbours below which a sensel is dead, and what is
-/// added to it for each part of crosstalk.
+/// Response relative to that of the neighbours below which a sensel is dead, and what is added to
+/// it for each part of crosstalk.
 constexpr double kDeadResponse = 0.12;
 constexpr double kDeadCrosstalk = 3;
 constexpr double kMostDeadResponse = 0.42;
 /// The same where no small contact was swept over the array: large ones have edges and holes.
 constexpr double kSilentResponse = 0.04;
-/// Frames in which the neighbours of a sensel must be loaded, and the least precision of the
-/// response.
-constexpr std::uint32_t kLeastEvidence = 6;
-constexpr double kLeastPrecision = 0.025;
-/// Deviations by which a response of less precision must be below that of a dead sensel.
-constexpr double kSureDead = 4;
 /// Load of neighbours that tests a sensel, relative to the usual largest signal and to the noise.
 constexpr double kTestShare = 0.2;
 constexpr double kSweepShare = 0.08;
 constexpr double kTestNoise = 4;
 /// Share of a line's sensels that must be faulty, while none responds, for a dead line.
 constexpr double kDeadLineShare = 0.15;
+/// Mean number of sensels that a finger loads on a coarse array, and least share of its sensels
+/// that it must have loaded for the others to be dead.
+constexpr double kFewSensels = 4;
+constexpr double kAllSensels = 0.8;
 
-/// How a sensel responds where its neighbours are loaded.
-struct SenselResponse {
-  std::uint32_t frames = 0;
-  double products = 0;
-  double squares = 0;
+/// The kind of finding of a verdict.
+ArrayFault finding_of(SenselFault fault) {
+  switch (fault) {
+    case SenselFault::not_a_number:
+    case SenselFault::absent:
+      return ArrayFault::absent;
+    case SenselFault::stuck:
+      return ArrayFault::stuck;
+    case SenselFault::saturated:
+      return ArrayFault::saturated;
+    case SenselFault::noisy:
+      return ArrayFault::noisy;
+    default:
+      return ArrayFault::dead;
+  }
+}
 
-  void add(double signal, double expected) {
-    ++frames;
-    products += signal * expected;
-    squares += expected * expected;
-  }
-  [[nodiscard]] bool is_tested(double noise) const {
-    return frames >= kLeastEvidence && deviation(noise) < kLeastPrecision;
-  }
-  [[nodiscard]] bool is_below(double most, double noise) const {
-    if (is_tested(noise)) return ratio() < most;
-    return frames >= kLeastEvidence && ratio() + kSureDead * deviation(noise) < most;
-  }
-  [[nodiscard]] double ratio() const { return products / squares; }
-  [[nodiscard]] double deviation(double noise) const { return noise / std::sqrt(squares); }
-};
-
-/// The verdicts on sensels: kinds of ArrayFault, where there are any.
-class SenselVerdicts {
+/// The verdicts on sensels by those around them, after those by their readings.
+class NeighbourVerdicts {
  public:
-  /// `idle_counts` is the usual reading without load.
-  SenselVerdicts(Examination& seen, double idle_counts)
+  explicit NeighbourVerdicts(Examination& seen)
       : seen_(seen),
-        idle_counts_(idle_counts),
         was_swept_(is_swept(seen, LineAxis::rows) || is_swept(seen, LineAxis::columns)),
-        faults_(seen.kept.sensels()),
-        responses_(seen.kept.sensels()) {}
+        responses_(seen.kept.sensels()),
+        in_dead_line_(seen.kept.sensels()) {}
 
-  /// Judges sensels by their readings alone.
-  void judge_readings() {
-    judge_saturated();
-    judge_constant();
-  }
-
-  /// Judges the others by those around them.
-  void judge_by_neighbours(double crosstalk) {
+  void judge(double crosstalk) {
     dead_response_ = was_swept_
                          ? std::min(kMostDeadResponse, kDeadResponse + kDeadCrosstalk * crosstalk)
                          : kSilentResponse;
     // The second time, dead neighbours do not count.
     for (int pass = 0; pass < 2; ++pass) judge_responses();
+    judge_untouched();
   }
 
   void report(Diagnosis& found) {
     report_lines(LineAxis::rows, ArrayFault::dead_row, found);
     report_lines(LineAxis::columns, ArrayFault::dead_column, found);
-    for (const ArrayFault fault :
-         {ArrayFault::absent, ArrayFault::dead, ArrayFault::stuck, ArrayFault::saturated}) {
+    for (const ArrayFault fault : {ArrayFault::absent, ArrayFault::dead, ArrayFault::stuck,
+                                   ArrayFault::saturated, ArrayFault::noisy}) {
       report_sensels(fault, found);
     }
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
-      if (faults_[i]) seen_.good[i] = 0;
-      if (!faults_[i] && seen_.touched[i] == 0 && !is_tested(i)) {
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      if (!seen_.verdicts[i] && seen_.touched[i] == 0 && !is_tested(i)) {
         found.untouched.push_back(place(i));
       }
     }
+    found.verdicts = seen_.verdicts;
   }
 
  private:
@@ -214,54 +194,59 @@ class SenselVerdicts {
             static_cast<std::uint32_t>(sensel % seen_.cols)};
   }
   [[nodiscard]] const SenselStatistics& read(std::size_t sensel) const {
-    return seen_.statistics.sensels()[sensel];
+    return seen_.read[sensel];
   }
-  void accuse(std::size_t sensel, ArrayFault fault) {
-    faults_[sensel] = fault;
+  void accuse(std::size_t sensel) {
+    if (!seen_.verdicts[sensel]) seen_.verdicts[sensel] = SenselFault::unresponsive;
     seen_.good[sensel] = 0;
   }
 
-  void judge_saturated() {
-    if (idle_counts_ > 0.9 * seen_.full_scale) return;
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
-      const SenselStatistics& sensel = read(i);
-      if (2 * sensel.saturated > sensel.readings) accuse(i, ArrayFault::saturated);
-    }
-  }
-
-  /// Judges sensels that read one value only, by the readings of the others without load.
-  void judge_constant() {
-    std::vector<float> others;
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
-      if (seen_.constant[i] == 0) others.push_back(seen_.idle[i]);
-    }
-    const bool most_vary =
-        static_cast<double>(others.size()) >= kMostVary * static_cast<double>(faults_.size());
-    const bool shows_noise = most_vary && seen_.typical_noise > kVisibleNoise &&
-                             seen_.statistics.frames() >= kVisibleFrames;
-    const double far = 4 * seen_.typical_noise + 1;
-    const bool zero_is_odd = most_vary && quantile(others, 0.02) > far;
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
-      if (seen_.constant[i] == 0 || faults_[i]) continue;
-      if (read(i).readings == 0 || (read(i).highest == 0 && zero_is_odd)) {
-        accuse(i, ArrayFault::absent);
-      } else if (shows_noise && read(i).lowest > far) {
-        accuse(i, ArrayFault::stuck);
+  /// A finger that pressed nearly all sensels of a coarse array, each by itself, pressed the others
+  /// too.
+  void judge_untouched() {
+    double loaded = 0;
+    for (const std::uint32_t count : seen_.touched) loaded += count;
+    if (loaded > kFewSensels * static_cast<double>(seen_.contacts.size())) return;
+    const auto is_touched = [&](LineAxis axis, std::size_t line) {
+      const std::size_t length = responses_.size() / seen_.lines(axis);
+      for (std::size_t along = 0; line < seen_.lines(axis) && along < length; ++along) {
+        if (seen_.touched[seen_.sensel(axis, line, along)] > 0) return true;
       }
+      return line >= seen_.lines(axis);
+    };
+    const auto may_be_dead = [&](LineAxis axis, std::size_t line) {
+      return is_touched(axis, line) || (is_touched(axis, line - 1) && is_touched(axis, line + 1));
+    };
+    double tested = 0;
+    double touched = 0;
+    std::vector<std::size_t> silent;
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      const std::size_t row = i / seen_.cols;
+      const std::size_t col = i % seen_.cols;
+      if (seen_.good[i] == 0) continue;
+      if (seen_.touched[i] == 0 && may_be_dead(LineAxis::rows, row) &&
+          may_be_dead(LineAxis::columns, col)) {
+        silent.push_back(i);
+      }
+      if (!is_touched(LineAxis::rows, row) || !is_touched(LineAxis::columns, col)) continue;
+      ++tested;
+      touched += seen_.touched[i] > 0 ? 1 : 0;
     }
+    if (touched < kAllSensels * tested) return;
+    for (const std::size_t i : silent) accuse(i);
   }
 
   void judge_responses() {
     const double least = (was_swept_ ? kSweepShare : kTestShare) * seen_.contact_counts;
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
       if (seen_.good[i] != 0) responses_[i] = SenselResponse();
     }
     for (const std::uint32_t frame : seen_.contacts) {
       if (was_swept_ && !centre_of_small_contact(seen_, frame)) continue;
       add_responses(frame, least);
     }
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
-      if (seen_.good[i] != 0 && is_dead(i)) accuse(i, ArrayFault::dead);
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      if (seen_.good[i] != 0 && is_dead(i)) accuse(i);
     }
   }
 
@@ -270,8 +255,8 @@ class SenselVerdicts {
     const LyingSignals signals(seen_, frame);
     for (std::uint32_t row = 0; row < seen_.rows; ++row) {
       for (std::uint32_t col = 0; col < seen_.cols; ++col) {
-        const std::size_t i = seen_.sensel_lying_at(row, col);
-        if (seen_.good[i] == 0 || seen_.has_doubtful_place(row, col)) continue;
+        const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
+        if (seen_.good[i] == 0) continue;
         const double expected = was_swept_ ? signals.least_under_small_contact(row, col)
                                            : signals.least_under_contact(row, col);
         if (expected > std::max(least, kTestNoise * noise(i))) {
@@ -307,9 +292,12 @@ class SenselVerdicts {
   };
 
   void count(std::size_t sensel, LineCount& line) const {
-    const bool is_faulty = faults_[sensel] && *faults_[sensel] != ArrayFault::saturated;
+    const auto& verdict = seen_.verdicts[sensel];
+    const bool is_faulty = verdict && *verdict != SenselFault::saturated &&
+                           *verdict != SenselFault::noisy &&
+                           !(*verdict == SenselFault::absent && read(sensel).lowest != 0);
     line.faulty += is_faulty ? 1U : 0U;
-    line.dead += faults_[sensel] == ArrayFault::dead ? 1U : 0U;
+    line.dead += verdict == SenselFault::unresponsive ? 1U : 0U;
     line.silent += is_faulty || seen_.constant[sensel] != 0 ? 1U : 0U;
     line.sound += !is_faulty && (seen_.touched[sensel] > 0 || is_tested(sensel)) ? 1U : 0U;
     if (is_tested(sensel)) line.most = std::max(line.most, responses_[sensel].ratio());
@@ -325,7 +313,8 @@ class SenselVerdicts {
       if (!counted.is_dead(length)) continue;
       for (std::size_t along = 0; along < length; ++along) {
         const std::size_t i = seen_.sensel(axis, line, along);
-        accuse(i, fault);
+        accuse(i);
+        in_dead_line_[i] = 1;
       }
       ArrayFinding finding = {.fault = fault, .lines = {static_cast<std::uint32_t>(line)}};
       finding.figure = 100 * counted.most;
@@ -336,40 +325,52 @@ class SenselVerdicts {
   void report_sensels(ArrayFault fault, Diagnosis& found) {
     ArrayFinding finding = {.fault = fault};
     std::vector<double> means;
+    std::vector<double> noises;
     double most = 0;
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
-      if (faults_[i] != fault) continue;
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      if (!seen_.verdicts[i] || in_dead_line_[i] != 0 || finding_of(*seen_.verdicts[i]) != fault) {
+        continue;
+      }
       finding.sensels.push_back(place(i));
       means.push_back(read(i).mean);
+      noises.push_back(seen_.noise[i]);
       if (is_tested(i)) most = std::max(most, responses_[i].ratio());
     }
     if (finding.sensels.empty()) return;
-    finding.figure = fault == ArrayFault::dead ? 100 * most : median(means);
+    finding.figure = fault == ArrayFault::dead    ? 100 * most
+                     : fault == ArrayFault::noisy ? median(noises) / seen_.typical_noise
+                                                  : median(means);
     add(found, std::move(finding));
   }
 
   Examination& seen_;
-  double idle_counts_;
   bool was_swept_;
   double dead_response_ = kDeadResponse;
-  std::vector<std::optional<ArrayFault>> faults_;
   std::vector<SenselResponse> responses_;
+  std::vector<std::uint8_t> in_dead_line_;
 };
 
 }  // namespace
 
-void find_odd_readings(Examination& seen, Diagnosis& found) {
-  SenselVerdicts(seen, found.idle_counts).judge_readings();
+void find_odd_readings(Examination& seen) {
+  std::vector<SenselEvidence> evidence;
+  for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
+    evidence.push_back({seen.read[i], seen.idle[i], seen.noise[i]});
+  }
+  const SenselJudge judge(std::move(evidence), seen.frames_with_readings, seen.full_scale, {});
+  for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
+    seen.verdicts.push_back(judge.verdict(i));
+    seen.good[i] = seen.verdicts.back() ? 0 : 1;
+  }
 }
 
 void find_faulty_sensels(Examination& seen, Diagnosis& found) {
-  SenselVerdicts verdicts(seen, found.idle_counts);
-  verdicts.judge_readings();
+  NeighbourVerdicts verdicts(seen);
   // Shear unloads some sensels of a pillar, so that its neighbours do not tell.
-  if (!may_have_pillars(found)) {
-    verdicts.judge_by_neighbours((std::max(found.row_crosstalk_percent.value_or(0), 0.0) +
-                                  std::max(found.column_crosstalk_percent.value_or(0), 0.0)) /
-                                 100);
+  if (!may_have_pillars(found) && !seen.is_out_of_order && !found.is_no_force()) {
+    verdicts.judge((std::max(found.row_crosstalk_percent.value_or(0), 0.0) +
+                    std::max(found.column_crosstalk_percent.value_or(0), 0.0)) /
+                   100);
   }
   verdicts.report(found);
 }

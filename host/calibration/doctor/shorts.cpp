@@ -2,7 +2,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/finding_text.h"
@@ -21,6 +23,7 @@ constexpr double kShortRatio = 0.3;
 constexpr std::size_t kLeastShared = 3;  ///< sensels of a line
 constexpr double kLeastPower = 4;        ///< of the signals of loaded sensels, over that of noise
 constexpr double kMostProducts = 4e9;
+constexpr std::size_t kLeastHeaviest = 4;  ///< lines that are the most loaded ones in turn
 
 /// Frames of contacts, thinned so that all pairs of lines can be compared.
 std::vector<std::uint32_t> compared_frames(const Examination& seen, LineAxis axis) {
@@ -149,7 +152,25 @@ bool share_pillars(const Diagnosis& found, std::uint32_t a, std::uint32_t b) {
   return may_have_pillars(found) && a % 2 == 0 && b == a + 1;
 }
 
+/// Whether loads differ so much that two lines do not resemble each other by chance: many lines
+/// carry the largest load at some time.
+bool are_loads_unlike(const Examination& seen, LineAxis axis) {
+  const std::size_t lines = seen.lines(axis);
+  std::set<std::size_t> heaviest;
+  for (const std::uint32_t frame : seen.contacts) {
+    const auto signals = std::as_const(seen.kept).frame(frame);
+    std::vector<double> loads(lines);
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      const std::size_t line = axis == LineAxis::rows ? i / seen.cols : i % seen.cols;
+      if (seen.good[i] != 0 && signals[i] > seen.threshold(i)) loads[line] += signals[i];
+    }
+    heaviest.insert(static_cast<std::size_t>(std::ranges::max_element(loads) - loads.begin()));
+  }
+  return heaviest.size() >= kLeastHeaviest && 3 * heaviest.size() >= lines;
+}
+
 void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
+  if (!are_loads_unlike(seen, axis)) return;
   const bool was_swept = is_swept(seen, axis);
   const LineSignals signals(seen, axis);
   const std::size_t lines = seen.lines(axis);

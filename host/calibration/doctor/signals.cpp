@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/quantile.h"
@@ -14,14 +15,19 @@ constexpr std::size_t kLeastDriftWindows = 6;
 /// Least share of the largest signal of a frame that counts as load.
 constexpr double kLoadShare = 0.1;
 constexpr std::size_t kLeastLoaded = 3;
+/// The same of a frame in which fewer sensels than that are loaded, in the usual largest signal.
+constexpr double kSingleShare = 0.3;
+/// Share of the largest span up to which a sensel may be at rest: drift is below a quarter.
+constexpr double kAtRest = 0.35;
+constexpr double kMostDrift = 0.3;
+constexpr std::size_t kLeastRest = 10;  ///< frames
+constexpr double kOddSpans = 0.01;      ///< share of the sensels
 /// Deviation of a rounded number.
 const double kRounding = 1 / std::sqrt(12.0);
 
-/// What a sensel reads in each window of frames.
-struct ReadingWindows {
-  std::vector<double> middle;  ///< means of readings near the median
-  std::vector<double> centre;  ///< frame in the middle of the window
-  double noise = 0;
+/// A sensel's readings without load in each window of frames, as far as there are enough of them.
+struct RestWindows {
+  std::vector<std::optional<double>> middle;
 };
 
 /// Mean of the readings no farther from `about` than noise is; it is finer than whole counts.
@@ -36,41 +42,35 @@ double mean_near(const std::vector<float>& readings, double about, double noise)
   return count > 0 ? sum / count : about;
 }
 
-/// Middles of the windows, and the noise: the lower quartile of the windows' differences from
-/// frame to frame.
-ReadingWindows windows_of(const SenselReadings& readings) {
-  ReadingWindows windows;
-  const std::size_t size = readings.values.size();
-  const std::size_t count = std::clamp<std::size_t>(size / kLeastWindowFrames, 1, kWindows);
-  std::vector<double> squares;
-  std::vector<float> part;
-  for (std::size_t w = 0; w < count; ++w) {
-    const std::size_t first = w * size / count;
-    const std::size_t end = (w + 1) * size / count;
-    if (end - first < 2) continue;
-    part.assign(readings.values.begin() + static_cast<std::ptrdiff_t>(first),
-                readings.values.begin() + static_cast<std::ptrdiff_t>(end));
-    double sum = 0;
-    for (std::size_t i = 1; i < part.size(); ++i) sum += std::pow(part[i] - part[i - 1], 2);
-    squares.push_back(sum / (2.0 * static_cast<double>(part.size() - 1)));
-    const double middle = median(part);
-    windows.middle.push_back(mean_near(part, middle, std::sqrt(squares.back())));
-    windows.centre.push_back((readings.frames[first] + readings.frames[end - 1]) / 2.0);
-  }
-  if (!squares.empty()) windows.noise = std::sqrt(quantile(squares, 0.25));
-  return windows;
+std::size_t window_count(std::size_t frames) {
+  return std::clamp<std::size_t>(frames / kLeastWindowFrames, 1, kWindows);
 }
 
-/// Median slope between windows, counts per frame.
-double slope_of(const ReadingWindows& windows) {
+/// The lower quartile of the windows' differences from frame to frame.
+double noise_of_windows(const std::vector<float>& readings) {
+  std::vector<double> squares;
+  const std::size_t count = window_count(readings.size());
+  for (std::size_t w = 0; w < count; ++w) {
+    const std::size_t first = w * readings.size() / count;
+    const std::size_t end = (w + 1) * readings.size() / count;
+    double sum = 0;
+    for (std::size_t n = first + 1; n < end; ++n) sum += std::pow(readings[n] - readings[n - 1], 2);
+    if (end - first >= 2) squares.push_back(sum / (2.0 * static_cast<double>(end - first - 1)));
+  }
+  return squares.empty() ? 0 : std::sqrt(quantile(squares, 0.25));
+}
+
+/// Median slope between windows, counts per window.
+double slope_of(const RestWindows& windows, const std::vector<double>& without) {
   std::vector<double> slopes;
-  for (std::size_t a = 0; a < windows.middle.size(); ++a) {
-    for (std::size_t b = a + 1; b < windows.middle.size(); ++b) {
-      const double frames = windows.centre[b] - windows.centre[a];
-      if (frames > 0) slopes.push_back((windows.middle[b] - windows.middle[a]) / frames);
+  for (std::size_t a = 0; a < without.size(); ++a) {
+    for (std::size_t b = a + 1; b < without.size() && windows.middle[a]; ++b) {
+      if (!windows.middle[b]) continue;
+      slopes.push_back((*windows.middle[b] - without[b] - *windows.middle[a] + without[a]) /
+                       static_cast<double>(b - a));
     }
   }
-  return slopes.size() < kLeastDriftWindows ? 0 : median(slopes);
+  return slopes.size() < kLeastDriftWindows * (kLeastDriftWindows - 1) / 2 ? 0 : median(slopes);
 }
 
 /// Median of the values of sensels that vary, and the one farthest from it.
@@ -95,24 +95,22 @@ SenselFigure figure_of(const Examination& seen, const std::vector<float>& values
 }
 
 /// The mean of the readings near their lowest tenth: that without load, of a sensel without load a
-/// tenth of the time. SenselReadings rise under load and do not drift.
+/// tenth of the time. The readings rise under load and do not drift.
 double idle_of(std::vector<float> readings, double noise) {
   constexpr double kTenth = 1.2816;  // of a normal distribution, in deviations
   const double about = quantile(readings, 0.1) + kTenth * noise;
   return mean_near(readings, about, noise);
 }
 
-/// Slopes of single sensels, no farther from the common one than most are.
-void limit_slopes(const Examination& seen, std::vector<float>& slopes, double common) {
-  std::vector<double> distances;
+/// Slopes of single sensels, no farther from 0 than most are.
+void limit_slopes(const Examination& seen, std::vector<float>& slopes) {
+  std::vector<double> sizes;
   for (std::size_t i = 0; i < slopes.size(); ++i) {
-    if (seen.constant[i] == 0) distances.push_back(std::abs(slopes[i] - common));
+    if (seen.is_steady(i)) sizes.push_back(std::abs(slopes[i]));
   }
-  if (distances.empty()) return;
-  const double most = 3 * median(distances);
-  for (float& slope : slopes) {
-    slope = static_cast<float>(std::clamp<double>(slope, common - most, common + most));
-  }
+  if (sizes.empty()) return;
+  const auto most = static_cast<float>(3 * median(sizes));
+  for (float& slope : slopes) slope = std::clamp(slope, -most, most);
 }
 
 double seconds_per_frame(const KeptFrames& kept) {
@@ -121,74 +119,252 @@ double seconds_per_frame(const KeptFrames& kept) {
   return seconds > 0 ? seconds : 0;
 }
 
-/// Noise and slopes of the sensels, and what becomes of the diagnosis.
-std::vector<float> find_noise_and_drift(Examination& seen, Diagnosis& found) {
+/// Noise of the sensels, and the range of what they read.
+void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   const std::size_t sensels = seen.kept.sensels();
-  std::vector<float> slopes(sensels);
   SenselReadings readings;
-  std::size_t windows_used = 0;
   for (std::size_t i = 0; i < sensels; ++i) {
     if (seen.constant[i] != 0) continue;
     seen.kept.read_sensel(i, readings);
-    const ReadingWindows windows = windows_of(readings);
-    seen.noise[i] = static_cast<float>(windows.noise);
-    slopes[i] = static_cast<float>(slope_of(windows));
-    windows_used = std::max(windows_used, windows.middle.size());
+    if (readings.values.empty()) continue;
+    seen.noise[i] = static_cast<float>(noise_of_windows(readings.values));
+    // Without the one lowest and the one highest reading, which may be a slip.
+    const auto second =
+        static_cast<std::ptrdiff_t>(std::min<std::size_t>(1, readings.values.size() - 1));
+    std::ranges::nth_element(readings.values, readings.values.begin() + second);
+    seen.lowest[i] = readings.values[static_cast<std::size_t>(second)];
+    std::ranges::nth_element(readings.values, readings.values.end() - 1 - second);
+    seen.highest[i] =
+        readings.values[readings.values.size() - 1 - static_cast<std::size_t>(second)];
   }
   found.noise = figure_of(seen, seen.noise);
   seen.typical_noise = found.noise.median;
   if (seen.statistics.type() != SenselType::f32) {
     seen.typical_noise = std::max(seen.typical_noise, kRounding);
   }
-  if (windows_used < kLeastDriftWindows) {
-    slopes.assign(sensels, 0);
-    return slopes;
+  std::vector<double> spans;
+  for (std::size_t i = 0; i < sensels; ++i) {
+    if (seen.is_steady(i)) spans.push_back(double{seen.highest[i]} - seen.lowest[i]);
   }
-  limit_slopes(seen, slopes, figure_of(seen, slopes).median);
+  if (!spans.empty()) seen.span = quantile(spans, 1 - kOddSpans);
+}
+
+/// Readings without load as a function of time: one curve for all sensels, a slope for each.
+class Baseline {
+ public:
+  explicit Baseline(const Examination& seen)
+      : seen_(seen),
+        windows_(window_count(seen.kept.frames())),
+        common_(windows_),
+        slopes_(seen.kept.sensels()) {
+    if (windows_ < kLeastDriftWindows) return;
+    std::vector<RestWindows> rest;
+    for (std::size_t i = 0; i < slopes_.size(); ++i) rest.push_back(rest_of(i));
+    find_common(rest);
+    for (std::size_t i = 0; i < slopes_.size(); ++i) {
+      slopes_[i] = static_cast<float>(slope_of(rest[i], common_));
+    }
+    limit_slopes(seen, slopes_);
+  }
+
+  [[nodiscard]] double of(std::size_t sensel, std::size_t frame) const {
+    const double at = std::clamp(place_of(frame), 0.0, static_cast<double>(windows_ - 1));
+    const auto before = static_cast<std::size_t>(at);
+    const double next = before + 1 < windows_ ? common_[before + 1] : common_[before];
+    return std::lerp(common_[before], next, at - static_cast<double>(before)) + -common_.front() +
+           slopes_[sensel] * (place_of(frame) - place_of(0));
+  }
+
+  /// Counts per kept frame.
+  [[nodiscard]] std::optional<std::vector<float>> drifts() const {
+    if (windows_ < kLeastDriftWindows) return std::nullopt;
+    RestWindows curve;
+    for (const double each : common_) curve.middle.emplace_back(each);
+    const double slope = slope_of(curve, std::vector<double>(windows_));
+    std::vector<float> drifts = slopes_;
+    for (float& each : drifts) {
+      each = static_cast<float>((each + slope) * static_cast<double>(windows_) /
+                                static_cast<double>(seen_.kept.frames()));
+    }
+    return drifts;
+  }
+
+ private:
+  [[nodiscard]] double place_of(std::size_t frame) const {
+    return (static_cast<double>(frame) + 0.5) * static_cast<double>(windows_) /
+               static_cast<double>(seen_.kept.frames()) -
+           0.5;
+  }
+
+  [[nodiscard]] RestWindows rest_of(std::size_t sensel) const {
+    RestWindows rest = {.middle = std::vector<std::optional<double>>(windows_)};
+    if (!seen_.is_steady(sensel)) return rest;
+    const std::size_t frames = seen_.kept.frames();
+    const double most = seen_.lowest[sensel] + kAtRest * seen_.span;
+    std::vector<float> part;
+    for (std::size_t w = 0; w < windows_; ++w) {
+      const std::size_t first = w * frames / windows_;
+      const std::size_t end = (w + 1) * frames / windows_;
+      part.clear();
+      for (std::size_t frame = first; frame < end; ++frame) {
+        const float reading = std::as_const(seen_.kept).frame(frame)[sensel];
+        if (reading < most) part.push_back(reading);
+      }
+      if (2 * part.size() < end - first || part.size() < 3) continue;
+      const double middle = median(part);
+      rest.middle[w] = mean_near(part, middle, seen_.noise[sensel]);
+    }
+    return rest;
+  }
+
+  /// Levels of sensels and a curve that explain the windows: medians of either, by turns. By the
+  /// sensels that are mostly at rest, if there are enough of them.
+  void find_common(const std::vector<RestWindows>& rest) {
+    std::vector<const RestWindows*> used;
+    for (const std::size_t least : {2 * windows_ / 3, std::size_t{1}}) {
+      used.clear();
+      for (const RestWindows& each : rest) {
+        const auto count =
+            std::ranges::count_if(each.middle, [](const auto& m) { return m.has_value(); });
+        if (static_cast<std::size_t>(count) >= least) used.push_back(&each);
+      }
+      if (used.size() >= std::max<std::size_t>(4, rest.size() / 10)) break;
+    }
+    std::vector<double> levels(used.size());
+    std::vector<double> values;
+    for (int turn = 0; turn < 4; ++turn) {
+      for (std::size_t n = 0; n < used.size(); ++n) {
+        values.clear();
+        for (std::size_t w = 0; w < windows_; ++w) {
+          if (used[n]->middle[w]) values.push_back(*used[n]->middle[w] - common_[w]);
+        }
+        levels[n] = median(values);
+      }
+      double last = 0;
+      for (std::size_t w = 0; w < windows_; ++w) {
+        values.clear();
+        for (std::size_t n = 0; n < used.size(); ++n) {
+          if (used[n]->middle[w]) values.push_back(*used[n]->middle[w] - levels[n]);
+        }
+        if (!values.empty()) last = median(values);
+        common_[w] = last;
+      }
+    }
+    // A curve that goes as far as loads do is load.
+    const auto [least, most] = std::ranges::minmax(common_);
+    if (most - least > kMostDrift * seen_.span) common_.assign(windows_, 0);
+  }
+
+  const Examination& seen_;
+  std::size_t windows_;
+  std::vector<double> common_;  ///< at the middle of each window, counts
+  std::vector<float> slopes_;   ///< counts per window
+};
+
+void report_drift(const Examination& seen, const Baseline& baseline, Diagnosis& found) {
+  const auto drifts = baseline.drifts();
+  if (!drifts) return;
   const double seconds = seconds_per_frame(seen.kept);
-  const double factor = seconds > 0 ? 60 / seconds : static_cast<double>(seen.kept.frames());
-  SenselFigure drift = figure_of(seen, slopes);
+  const double factor = (found.polarity == Polarity::falls ? -1 : 1) *
+                        (seconds > 0 ? 60 / seconds : static_cast<double>(seen.kept.frames()));
+  SenselFigure drift = figure_of(seen, *drifts);
   drift.median *= factor;
   drift.worst *= factor;
   found.drift = drift;
-  return slopes;
 }
 
-/// Replaces the readings of a sensel by its signals.
-void take_signals(Examination& seen, std::size_t sensel, float slope, float sign) {
-  KeptFrames& kept = seen.kept;
-  SenselReadings readings;
-  kept.read_sensel(sensel, readings);
-  for (std::size_t frame = 0; frame < kept.frames(); ++frame) kept.frame(frame)[sensel] = 0;
-  if (readings.values.empty()) return;
-  std::vector<float> still = readings.values;
-  for (std::size_t n = 0; n < still.size(); ++n) {
-    still[n] = sign * (still[n] - slope * static_cast<float>(readings.frames[n]));
+/// Makes readings that fall under load rise.
+void turn_over(Examination& seen) {
+  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
+    for (float& reading : seen.kept.frame(frame)) reading = -reading;
   }
-  const double idle = idle_of(still, seen.noise[sensel]);
-  seen.idle[sensel] = sign * static_cast<float>(idle);
-  for (std::size_t n = 0; n < still.size(); ++n) {
-    kept.frame(readings.frames[n])[sensel] = still[n] - static_cast<float>(idle);
+  seen.lowest.swap(seen.highest);
+  for (auto* const plane : {&seen.lowest, &seen.highest}) {
+    for (float& reading : *plane) reading = -reading;
   }
 }
 
-/// Frames with a contact: at least three loaded sensels.
-void find_contacts(Examination& seen) {
-  std::vector<float> peaks;
-  for (std::uint32_t frame = 0; frame < seen.kept.frames(); ++frame) {
-    const auto signals = std::as_const(seen.kept).frame(frame);
-    float peak = 0;
-    std::size_t loaded = 0;
-    for (std::size_t i = 0; i < signals.size(); ++i) {
-      if (!(signals[i] > 1.5 * seen.threshold(i))) continue;
-      ++loaded;
-      peak = std::max(peak, signals[i]);
+/// Kept frames in which no sensel is loaded; none if they are few.
+std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline& baseline) {
+  std::vector<std::uint8_t> at_rest(seen.kept.frames(), 1);
+  std::size_t count = 0;
+  for (std::size_t frame = 0; frame < at_rest.size(); ++frame) {
+    const auto readings = std::as_const(seen.kept).frame(frame);
+    for (std::size_t i = 0; i < readings.size() && at_rest[frame] != 0; ++i) {
+      const double most = seen.lowest[i] + kAtRest * seen.span;
+      if (seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most) {
+        at_rest[frame] = 0;
+      }
     }
-    if (loaded < kLeastLoaded) continue;
-    seen.contacts.push_back(frame);
-    peaks.push_back(peak);
+    count += at_rest[frame];
   }
-  if (!peaks.empty()) seen.contact_counts = median(peaks);
+  if (count < kLeastRest) at_rest.clear();
+  return at_rest;
+}
+
+/// Replaces the readings by signals.
+void take_signals(Examination& seen, float sign) {
+  KeptFrames& kept = seen.kept;
+  const Baseline baseline(seen);
+  const std::vector<std::uint8_t> at_rest = frames_at_rest(seen, baseline);
+  SenselReadings readings;
+  std::vector<float> rest;
+  for (std::size_t i = 0; i < kept.sensels(); ++i) {
+    kept.read_sensel(i, readings);
+    for (std::size_t frame = 0; frame < kept.frames(); ++frame) kept.frame(frame)[i] = 0;
+    rest.clear();
+    for (std::size_t n = 0; n < readings.values.size(); ++n) {
+      readings.values[n] -= static_cast<float>(baseline.of(i, readings.frames[n]));
+      const float most = seen.lowest[i] + static_cast<float>(kAtRest * seen.span);
+      const bool is_rest =
+          at_rest.empty() ? readings.values[n] < most : at_rest[readings.frames[n]] != 0;
+      if (is_rest) rest.push_back(readings.values[n]);
+    }
+    if (rest.empty()) rest = readings.values;
+    if (rest.empty()) continue;
+    const double idle = idle_of(rest, seen.noise[i]);
+    seen.idle[i] = sign * static_cast<float>(idle);
+    for (std::size_t n = 0; n < readings.values.size(); ++n) {
+      kept.frame(readings.frames[n])[i] = readings.values[n] - static_cast<float>(idle);
+    }
+  }
+}
+
+/// The largest signal of the steady sensels, and how many are loaded.
+struct FrameLoad {
+  float peak = 0;
+  std::size_t loaded = 0;
+};
+
+FrameLoad load_of(const Examination& seen, std::size_t frame) {
+  const auto signals = std::as_const(seen.kept).frame(frame);
+  FrameLoad load;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (!seen.is_steady(i) || !(signals[i] > 1.5 * seen.threshold(i))) continue;
+    ++load.loaded;
+    load.peak = std::max(load.peak, signals[i]);
+  }
+  return load;
+}
+
+/// Frames with a contact: some loaded sensels, or one that is loaded as much as usual.
+void find_contacts(Examination& seen, Diagnosis& found) {
+  std::vector<FrameLoad> loads;
+  std::vector<float> peaks;
+  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
+    loads.push_back(load_of(seen, frame));
+    if (loads.back().loaded > 0) peaks.push_back(loads.back().peak);
+  }
+  if (peaks.empty()) return;
+  const double usual = quantile(peaks, 0.9);
+  peaks.clear();
+  for (std::uint32_t frame = 0; frame < loads.size(); ++frame) {
+    const FrameLoad& load = loads[frame];
+    if (!(load.peak > (load.loaded < kLeastLoaded ? kSingleShare : kLoadShare) * usual)) continue;
+    seen.contacts.push_back(frame);
+    peaks.push_back(load.peak);
+  }
+  seen.contact_counts = median(peaks);
   for (const std::uint32_t frame : seen.contacts) {
     const auto signals = std::as_const(seen.kept).frame(frame);
     for (std::size_t i = 0; i < signals.size(); ++i) {
@@ -197,6 +373,10 @@ void find_contacts(Examination& seen) {
       }
     }
   }
+  const auto first =
+      std::ranges::find_if(loads, [](const FrameLoad& load) { return load.loaded > 0; });
+  const auto idle = static_cast<std::uint64_t>(first - loads.begin());
+  found.idle_frames = idle == 0 ? 0 : seen.kept.number(idle - 1) + 1;
 }
 
 }  // namespace
@@ -205,19 +385,22 @@ double Examination::threshold(std::size_t sensel) const {
   return kBeyondIdleNoise * std::max<double>(noise[sensel], typical_noise);
 }
 
+bool Examination::is_steady(std::size_t sensel) const {
+  return constant[sensel] == 0 && noise[sensel] <= kNoisy * typical_noise;
+}
+
 void find_signals(Examination& seen, Diagnosis& found) {
-  const std::vector<float> slopes = find_noise_and_drift(seen, found);
-  found.polarity = find_polarity(seen, slopes);
-  const float sign = found.polarity == Polarity::falls ? -1 : 1;
-  for (std::size_t i = 0; i < seen.kept.sensels(); ++i) take_signals(seen, i, slopes[i], sign);
+  find_noise_and_ranges(seen, found);
+  found.polarity = find_polarity(seen);
+  if (found.polarity == Polarity::falls) turn_over(seen);
+  report_drift(seen, Baseline(seen), found);
+  take_signals(seen, found.polarity == Polarity::falls ? -1 : 1);
   found.idle_counts = figure_of(seen, seen.idle).median;
   found.idle_frames = found.frames;
-  if (found.polarity == Polarity::unknown) return;
-  find_contacts(seen);
+  find_contacts(seen, found);
   if (seen.contacts.empty()) found.polarity = Polarity::unknown;
   found.contact_counts = seen.contact_counts;
   found.contact_frames = seen.contacts.size();
-  if (!seen.contacts.empty()) found.idle_frames = seen.contacts.front() * seen.kept.stride();
 }
 
 }  // namespace pillarfield

@@ -10,6 +10,7 @@
 
 #include "pillarfield/frame.h"
 #include "pillarfield/rgb_picture.h"
+#include "pillarfield/sensel_finding.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
@@ -30,14 +31,23 @@ enum class ArrayFault : std::uint8_t {
   dead,              ///< sensels that do not respond although their neighbours do
   stuck,             ///< sensels whose reading is constant while those of the others vary
   saturated,         ///< sensels that are at full scale most of the time
+  noisy,             ///< sensels that vary far more than the others without load
   dead_row,          ///< a row of dead, absent or stuck sensels
   dead_column,       ///< the same for a column
   shorted_rows,      ///< two rows that show the same contacts
   shorted_columns,   ///< the same for columns
-  row_order,         ///< rows are wired in another order than they lie
+  row_order,         ///< rows that are wired in another order than they lie
   column_order,      ///< the same for columns
   row_crosstalk,     ///< a contact shows in all of its rows
   column_crosstalk,  ///< a contact shows in all of its columns
+  ghosts,            ///< sensels that read only while the other corners of a rectangle do
+  missing_frames,    ///< frames without readings of their own: NaN, or one value everywhere
+  repeated_frames,   ///< frames that repeat the one before
+  frozen,            ///< all frames are equal
+  normalised,        ///< every frame has the same largest reading
+  two_values,        ///< sensels read one of two values only
+  byte_order,        ///< the two bytes of a reading are swapped
+  stuck_bit,         ///< a bit of the readings never changes
 };
 
 /// "absent", "dead", "dead row", ...
@@ -53,11 +63,12 @@ struct ArrayFinding {
   ArrayFault fault = ArrayFault::dead;
   std::vector<SenselPlace> sensels = {};     ///< of faults of sensels
   std::vector<std::uint32_t> lines = {};     ///< rows or columns of faults of lines
-  std::vector<std::uint32_t> in_order = {};  ///< of row_order: rows in the order in which they lie
   /// absent, stuck, saturated: median reading, counts. dead and dead lines: largest response in
   /// per cent of that of the neighbours. Shorted lines: difference of the lines in per cent of
   /// their signal. Order: number of lines out of place. Crosstalk: per cent of the largest signal
-  /// of the row or column.
+  /// of the row or column. noisy: multiple of the noise of the others. ghosts: largest reading,
+  /// counts. Frames: their number. normalised, two_values: the largest reading. byte_order: change
+  /// from frame to frame in per cent of the range. stuck_bit: its number, from 0.
   double figure = 0;
   /// One sentence for people, with the figure and the place.
   std::string text = {};
@@ -113,6 +124,11 @@ struct Diagnosis {
   std::optional<double> row_crosstalk_percent = {};  ///< unset: no small contact showed it
   std::optional<double> column_crosstalk_percent = {};
   std::vector<ArrayFinding> findings = {};
+  std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel; unset: may be sound
+  /// Whether the readings show no force, whatever is done: they are all equal, scaled frame by frame,
+  /// cut to two values, or their bytes are swapped.
+  [[nodiscard]] bool is_no_force() const;
+
   std::vector<float> picture = {};  ///< largest change of each sensel under load, counts
 };
 

@@ -8,6 +8,7 @@ namespace pillarfield {
 /// A fault of a sensel, certain or suspected.
 enum class SenselFault : std::uint8_t {
   not_a_number,  ///< most of its readings are NaN
+  absent,        ///< its reading stands for "no sensel"
   saturated,     ///< at full scale, unlike the others
   stuck,         ///< its reading is constant and out of place
   noisy,         ///< it varies far more than the others

@@ -3,15 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <utility>
 
+#include "calibration/sensel_judge.h"
 #include "io/hdf5/stored_frames.h"
 #include "io/layout_note.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
+#include "skin/raw_reading.h"
 
 namespace pillarfield {
 namespace {
+
+/// Frames from which a constant reading is no chance.
+constexpr std::uint64_t kLeastAbsentLooks = 10;
 
 class ArraySource final : public FileSource {
  public:
@@ -28,6 +35,7 @@ class ArraySource final : public FileSource {
   void take_as_frame();
   void take_lines(const FrameSize& size);
   void check_size(const ReadOptions& options) const;
+  void note_absent();
 
   std::unique_ptr<NumberArray> array_;
   std::vector<double> times_s_;     // empty: see assumed_time()
@@ -44,6 +52,7 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
   type_ = sensel_type_for(array_->type());
   take_shape(options);
   check_size(options);
+  note_absent();
   take_constants({}, options);
   check(skin_, path.c_str());
   if (times_s_.empty()) {
@@ -124,6 +133,33 @@ void ArraySource::check_size(const ReadOptions& options) const {
                             hdf5::kMaxProbedValues),
                 "read larger ones from a trusted file, with --trust-input");
   }
+}
+
+/// Marks the cells whose reading stands for "no sensel", by some of the frames.
+void ArraySource::note_absent() {
+  constexpr std::uint64_t kMostLooks = 64;
+  const std::uint64_t looks = std::min(frames_, kMostLooks);
+  std::vector<SenselEvidence> sensels(skin_.sensels());
+  FrameBuffer frame(type_, skin_.rows, skin_.cols);
+  const bool mirrors = std::exchange(mirrors_, false);
+  for (std::uint64_t look = 0; look < looks; ++look) {
+    read(look * frames_ / looks, frame);
+    for (std::size_t i = 0; i < sensels.size(); ++i) {
+      const auto row = i / skin_.cols;
+      sensels[i].read.add(raw_reading(frame.view(), row, i - row * skin_.cols),
+                          std::numeric_limits<float>::infinity());
+    }
+  }
+  mirrors_ = mirrors;
+  const std::optional<float> value = absent_value(sensels);
+  if (!value || looks < kLeastAbsentLooks) return;
+  calibration_.mask.assign(sensels.size(), kGood);
+  for (std::size_t i = 0; i < sensels.size(); ++i) {
+    if (sensels[i].is_constant() && sensels[i].read.lowest == *value)
+      calibration_.mask[i] = kAbsent;
+  }
+  warnings_.push_back(fmt::format("{} of {} cells always read {} and have no sensel.",
+                                  count_absent(calibration_), sensels.size(), *value));
 }
 
 double ArraySource::time(std::uint64_t index) {

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "calibration/doctor/examination.h"
+#include "calibration/doctor/finding_text.h"
+
+namespace pillarfield {
+namespace {
+
+/// Signals of pressed corners and of a ghost, in the usual largest signal, and the most that a
+/// ghost reads of the weakest corner.
+constexpr double kPressedShare = 0.3;
+constexpr double kGhostShare = 0.1;
+constexpr double kMostOfCorners = 0.9;
+constexpr std::size_t kMostPeaks = 12;
+constexpr std::size_t kLeastFrames = 5;   ///< with the ghost
+constexpr std::size_t kLeastWithout = 3;  ///< with two of its corners, without the ghost
+
+using Rectangle = std::array<std::uint32_t, 4>;  ///< row and column of a ghost, and opposite
+
+/// Looks for sensels that read in step with the other corners of a rectangle.
+class GhostSearch {
+ public:
+  explicit GhostSearch(const Examination& seen) : seen_(seen) {
+    for (const std::uint32_t frame : seen.contacts) add_rectangles(frame);
+  }
+
+  /// The ghosts, and the largest reading of each.
+  [[nodiscard]] std::map<SenselPlace, double> ghosts() const {
+    std::map<SenselPlace, double> ghosts;
+    for (const auto& [rectangle, frames] : rectangles_) {
+      if (frames < kLeastFrames) continue;
+      const double most = reading_of_ghost(rectangle);
+      double& largest = ghosts[{rectangle[0], rectangle[1]}];
+      largest = std::max(largest, most);
+    }
+    std::erase_if(ghosts, [](const auto& ghost) { return ghost.second == 0; });
+    return ghosts;
+  }
+
+ private:
+  [[nodiscard]] float signal(std::uint32_t frame, std::uint32_t row, std::uint32_t col) const {
+    const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
+    return seen_.good[i] != 0 ? std::as_const(seen_.kept).frame(frame)[i] : 0;
+  }
+
+  /// Whether a sensel is loaded more than all around it.
+  [[nodiscard]] bool is_peak(std::uint32_t frame, std::uint32_t row, std::uint32_t col) const {
+    const float here = signal(frame, row, col);
+    for (std::uint32_t r = row == 0 ? 0 : row - 1; r < std::min(row + 2, seen_.rows); ++r) {
+      for (std::uint32_t c = col == 0 ? 0 : col - 1; c < std::min(col + 2, seen_.cols); ++c) {
+        if ((r != row || c != col) && signal(frame, r, c) >= here) return false;
+      }
+    }
+    return true;
+  }
+
+  void add_rectangles(std::uint32_t frame) {
+    std::vector<SenselPlace> peaks;
+    for (std::uint32_t row = 0; row < seen_.rows; ++row) {
+      for (std::uint32_t col = 0; col < seen_.cols && peaks.size() <= kMostPeaks; ++col) {
+        if (signal(frame, row, col) > kGhostShare * seen_.contact_counts &&
+            is_peak(frame, row, col)) {
+          peaks.emplace_back(row, col);
+        }
+      }
+    }
+    if (peaks.size() > kMostPeaks) return;
+    for (const auto& [row, col] : peaks) {
+      for (const auto& [other_row, other_col] : peaks) {
+        const bool has_corners = row != other_row && col != other_col &&
+                                 std::ranges::count(peaks, SenselPlace(row, other_col)) > 0 &&
+                                 std::ranges::count(peaks, SenselPlace(other_row, col)) > 0;
+        const Rectangle rectangle = {row, col, other_row, other_col};
+        if (has_corners && pressed(frame, rectangle) == 3 && shows(frame, rectangle)) {
+          ++rectangles_[rectangle];
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::array<float, 3> corners(std::uint32_t frame, const Rectangle& at) const {
+    return {signal(frame, at[0], at[3]), signal(frame, at[2], at[1]), signal(frame, at[2], at[3])};
+  }
+  /// Number of pressed corners.
+  [[nodiscard]] std::ptrdiff_t pressed(std::uint32_t frame, const Rectangle& at) const {
+    return std::ranges::count_if(corners(frame, at), [&](float each) {
+      return each > kPressedShare * seen_.contact_counts;
+    });
+  }
+  /// Whether the fourth sensel reads, and less than the corners.
+  [[nodiscard]] bool shows(std::uint32_t frame, const Rectangle& at) const {
+    const float ghost = signal(frame, at[0], at[1]);
+    return ghost > kGhostShare * seen_.contact_counts &&
+           ghost < kMostOfCorners * std::ranges::min(corners(frame, at));
+  }
+
+  /// The largest reading of a sensel that reads always with three corners and never with two; 0 if
+  /// it does not.
+  [[nodiscard]] double reading_of_ghost(const Rectangle& at) const {
+    std::size_t with = 0;
+    std::size_t missing = 0;
+    std::size_t without = 0;
+    float most = 0;
+    for (const std::uint32_t frame : seen_.contacts) {
+      const std::ptrdiff_t corners = pressed(frame, at);
+      if (corners == 3) {
+        ++(shows(frame, at) ? with : missing);
+        most = std::max(most, signal(frame, at[0], at[1]));
+      } else if (corners == 2) {
+        if (signal(frame, at[0], at[1]) > kGhostShare * seen_.contact_counts) return 0;
+        ++without;
+      }
+    }
+    return 20 * missing <= with && without >= kLeastWithout ? most : 0;
+  }
+
+  const Examination& seen_;
+  std::map<Rectangle, std::size_t> rectangles_;  ///< frames in which they show a ghost
+};
+
+}  // namespace
+
+void find_ghosts(Examination& seen, Diagnosis& found) {
+  ArrayFinding finding = {.fault = ArrayFault::ghosts};
+  for (const auto& [place, reading] : GhostSearch(seen).ghosts()) {
+    finding.sensels.push_back(place);
+    finding.figure = std::max(finding.figure, reading);
+  }
+  if (!finding.sensels.empty()) add(found, std::move(finding));
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/number_text.h"
+#include "base/quantile.h"
+#include "calibration/doctor/examination.h"
+#include "calibration/doctor/finding_text.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr double kNearlyAll = 0.99;
+constexpr std::size_t kLeastPeaks = 3;  ///< different sensels with the largest reading
+/// Change from frame to frame in the range of readings from which their bytes may be swapped, and
+/// its ratio to that with the bytes swapped back.
+constexpr double kWild = 0.02;
+constexpr double kCalmer = 8;
+constexpr std::size_t kLeastValues = 24;  ///< different readings that use all of their bits
+
+void report_odd(Diagnosis& found, ArrayFault fault, double figure, std::string text) {
+  found.findings.push_back({.fault = fault, .figure = figure, .text = std::move(text)});
+}
+
+/// Calls `use(frame, sensel, reading)` for the readings of sensels that vary.
+template <class Use>
+void for_each_varying(const Examination& seen, Use use) {
+  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
+    const auto readings = std::as_const(seen.kept).frame(frame);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      if (seen.constant[i] == 0 && !std::isnan(readings[i])) use(frame, i, readings[i]);
+    }
+  }
+}
+
+/// Each frame divided by its largest reading.
+void find_normalised(const Examination& seen, Diagnosis& found) {
+  struct Peak {
+    float reading = -std::numeric_limits<float>::infinity();
+    std::size_t sensel = 0;
+    std::size_t count = 0;
+  };
+  std::vector<Peak> peaks(seen.kept.frames());
+  for_each_varying(seen, [&](std::size_t frame, std::size_t sensel, float reading) {
+    Peak& peak = peaks[frame];
+    if (reading > peak.reading) peak = {reading, sensel, 0};
+    if (reading == peak.reading) ++peak.count;
+  });
+  if (peaks.empty()) return;
+  std::set<std::size_t> places;
+  std::vector<std::size_t> counts;
+  double equal = 0;
+  for (const Peak& peak : peaks) {
+    equal += peak.reading == peaks.front().reading ? 1 : 0;
+    places.insert(peak.sensel);
+    counts.push_back(peak.count);
+  }
+  if (equal < kNearlyAll * static_cast<double>(peaks.size()) || places.size() < kLeastPeaks ||
+      median(counts) > 2) {
+    return;
+  }
+  report_odd(
+      found, ArrayFault::normalised, peaks.front().reading,
+      fmt::format("Normalised: the largest reading of every frame is {}, so that no force can "
+                  "be had; record frames that are not scaled",
+                  rounded(peaks.front().reading)));
+}
+
+void find_two_values(const Examination& seen, Diagnosis& found) {
+  std::set<float> values;
+  for_each_varying(seen, [&](std::size_t, std::size_t, float reading) {
+    if (values.size() < 3) values.insert(reading);
+  });
+  if (values.size() != 2) return;
+  const double low = *values.begin();
+  const double high = *values.rbegin();
+  // Noise without load takes two neighbouring values, too.
+  if (high - low <= 1 && low != 0 && seen.statistics.type() != SenselType::f32) return;
+  report_odd(
+      found, ArrayFault::two_values, high,
+      fmt::format("Two values: sensels read {} or {}, which shows contact, not force; record "
+                  "readings that no threshold has cut",
+                  rounded(low), rounded(high)));
+}
+
+std::uint16_t swapped(std::uint16_t value) {
+  return static_cast<std::uint16_t>(value << 8U | value >> 8U);
+}
+
+/// Mean change of a reading from frame to frame, relative to the range of the readings.
+double relative_change(const Examination& seen, bool swap) {
+  const auto number = [&](float reading) {
+    const auto value = static_cast<std::uint16_t>(reading);
+    return static_cast<double>(swap ? swapped(value) : value);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  double changes = 0;
+  double count = 0;
+  for_each_varying(seen, [&](std::size_t frame, std::size_t i, float reading) {
+    least = std::min(least, number(reading));
+    most = std::max(most, number(reading));
+    const float before = frame > 0 ? std::as_const(seen.kept).frame(frame - 1)[i] : reading;
+    if (std::isnan(before)) return;
+    changes += std::abs(number(reading) - number(before));
+    ++count;
+  });
+  return most > least ? changes / count / (most - least) : 0;
+}
+
+using SeenNumbers = std::bitset<65536>;
+
+/// Whether numbers without a bit, or with it, are dense up to the gaps that the others leave.
+bool shows_stuck_bit(const SeenNumbers& numbers, std::uint32_t mask, bool is_set) {
+  const std::uint32_t edge = std::max(1U, mask / 4);
+  const auto is_dense = [&](std::uint32_t first) {
+    std::uint32_t count = 0;
+    for (std::uint32_t n = first; n < first + edge; ++n) count += numbers.test(n) ? 1U : 0U;
+    return 4 * count >= 3 * edge;
+  };
+  std::size_t gaps = 0;
+  for (std::uint32_t gap = is_set ? 2 * mask : mask; gap + mask + edge <= numbers.size();
+       gap += 2 * mask) {
+    gaps += is_dense(gap - edge) && is_dense(gap + mask) ? 1U : 0U;
+  }
+  return gaps >= (mask < 16 ? 4U : 1U);
+}
+
+/// Bytes in the wrong order and bits that never change, of readings that are 16-bit numbers.
+void find_odd_bits(const Examination& seen, Diagnosis& found) {
+  const auto numbers = std::make_unique<SeenNumbers>();
+  bool are_whole = true;
+  for_each_varying(seen, [&](std::size_t, std::size_t, float reading) {
+    are_whole = are_whole && reading >= 0 && reading < 65536 && reading == std::floor(reading);
+    if (are_whole) numbers->set(static_cast<std::size_t>(reading));
+  });
+  if (!are_whole || numbers->count() < kLeastValues) return;
+  std::uint32_t set = 0;
+  std::uint32_t always_set = 65535;
+  for (std::uint32_t number = 0; number < numbers->size(); ++number) {
+    if (!numbers->test(number)) continue;
+    set |= number;
+    always_set &= number;
+  }
+  if (set > 255) {
+    const double change = relative_change(seen, false);
+    if (change > kWild && change > kCalmer * relative_change(seen, true)) {
+      report_odd(found, ArrayFault::byte_order, 100 * change,
+                 fmt::format("Byte order: readings jump by {:.0f} % of their range from frame to "
+                             "frame, and do not with the two bytes of each swapped; swap them",
+                             100 * change));
+      return;
+    }
+  }
+  for (std::uint32_t bit = 0; bit < 16; ++bit) {
+    const std::uint32_t mask = 1U << bit;
+    const bool is_set = (always_set & mask) != 0;
+    if ((!is_set && (set & mask) != 0) || !shows_stuck_bit(*numbers, mask, is_set)) continue;
+    report_odd(found, ArrayFault::stuck_bit, bit,
+               fmt::format("Stuck bit: bit {} (value {}) is {} in every reading while others "
+                           "change; check the converter and its wiring",
+                           bit, mask, is_set ? 1 : 0));
+  }
+}
+
+}  // namespace
+
+void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis& found) {
+  const std::string all = counted(found.frames, "frame");
+  if (watch.is_frozen()) {
+    report_odd(found, ArrayFault::frozen, static_cast<double>(found.frames),
+               fmt::format("Frozen: each of the {} is equal to the first; check that the board "
+                           "still scans",
+                           all));
+    return;
+  }
+  if (const auto& [count, first] = watch.empty(); count > 0) {
+    report_odd(found, ArrayFault::missing_frames, static_cast<double>(count),
+               fmt::format("Missing: {} of {} have no reading, the first is frame {}",
+                           grouped(count), all, first));
+  }
+  if (const auto& [count, first] = watch.lost(); count > 0 && watch.uniform_are_lost()) {
+    report_odd(found, ArrayFault::missing_frames, static_cast<double>(count),
+               fmt::format("Missing: {} of {} read {} everywhere between others that do not, the "
+                           "first is frame {}",
+                           grouped(count), all, rounded(watch.uniform_value()), first));
+  }
+  if (const auto& [count, first] = watch.repeated(); watch.repeats_are_odd()) {
+    report_odd(found, ArrayFault::repeated_frames, static_cast<double>(count),
+               fmt::format("Repeated: {} of {} equal the one before although readings are noisy, "
+                           "the first is frame {}",
+                           grouped(count), all, first));
+  }
+  find_normalised(seen, found);
+  find_two_values(seen, found);
+  find_odd_bits(seen, found);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,151 @@
+#include "calibration/sensel_judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "base/quantile.h"
+
+namespace pillarfield {
+namespace {
+
+/// Distance from the typical level, in spreads, beyond which a level is an outlier.
+constexpr double kFar = 6;
+/// Least distance of a value that means nothing from the readings, in their range.
+constexpr double kClear = 0.2;
+/// Least share of sensels that must vary for a constant 0 to be odd, and for a constant reading at
+/// the typical level to be stuck.
+constexpr double kMostVary = 0.8;
+/// Noise, counts, and frames from which a reading cannot be constant by chance.
+constexpr double kVisibleNoise = 0.4;
+constexpr std::uint32_t kVisibleFrames = 100;
+/// Share of the full scale from which readings without load are at full scale.
+constexpr double kIdleAtFullScale = 0.9;
+/// Frames in which others must predict a response, and its least precision.
+constexpr std::uint32_t kLeastEvidence = 6;
+constexpr double kLeastPrecision = 0.025;
+/// Deviations by which a response of less precision must be below the limit.
+constexpr double kSure = 4;
+
+}  // namespace
+
+double least_noise(SenselType type) { return type == SenselType::f32 ? 0 : 1 / std::sqrt(12.0); }
+
+std::vector<SenselEvidence> evidence_without_load(const FrameStatistics& unloaded) {
+  std::vector<SenselEvidence> evidence;
+  for (const SenselStatistics& read : unloaded.sensels()) {
+    evidence.push_back({read, read.mean, std::max(read.deviation(), least_noise(unloaded.type()))});
+  }
+  return evidence;
+}
+
+std::optional<float> absent_value(std::span<const SenselEvidence> sensels) {
+  std::map<float, std::size_t> constant;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const SenselEvidence& each : sensels) {
+    if (each.read.readings == 0) continue;
+    if (each.is_constant()) {
+      ++constant[each.read.lowest];
+    } else {
+      lowest = std::min<double>(lowest, each.read.lowest);
+      highest = std::max<double>(highest, each.read.highest);
+    }
+  }
+  std::optional<float> found;
+  std::size_t most = 0;
+  for (const auto& [value, count] : constant) {
+    const bool is_minus_one = value == -1 && lowest >= 0;
+    const double clear = kClear * (highest - lowest);
+    const bool is_clear = value < lowest - clear || value > highest + clear;
+    if (!(is_minus_one || (count > 1 && value != 0 && is_clear)) || count <= most) continue;
+    found = value;
+    most = count;
+  }
+  return highest > lowest ? found : std::nullopt;
+}
+
+SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames,
+                         double full_scale, std::span<const std::uint8_t> mask)
+    : sensels_(std::move(sensels)),
+      frames_(frames),
+      full_scale_(full_scale),
+      absent_(absent_value(sensels_)) {
+  std::vector<double> levels;
+  std::vector<double> noises;
+  std::size_t varying = 0;
+  for (std::size_t i = 0; i < sensels_.size(); ++i) {
+    const SenselEvidence& each = sensels_[i];
+    if (!each.is_constant()) ++varying;
+    const bool is_excluded = !mask.empty() && mask[i] != 1;
+    if (is_excluded || lacks_readings(each.read, frames_) || is_saturated(each.read)) continue;
+    if (each.is_constant() && absent_ && each.read.lowest == *absent_) continue;
+    levels.push_back(each.level);
+    noises.push_back(each.noise);
+  }
+  vary_share_ = static_cast<double>(varying) / static_cast<double>(sensels_.size());
+  typical_.count = levels.size();
+  if (levels.empty()) return;
+  typical_.level = median(levels);
+  typical_.noise = median(noises);
+  for (double& level : levels) level = std::abs(level - typical_.level);
+  // The median deviation of a normal distribution is 0.6745 of its standard deviation.
+  typical_.spread = std::max(1.4826 * median(levels), typical_.noise);
+}
+
+bool lacks_readings(const SenselStatistics& read, std::uint32_t frames) {
+  return 2 * std::uint64_t{read.readings} < frames || read.readings < 2;
+}
+
+bool is_saturated(const SenselStatistics& read) {
+  return 2 * std::uint64_t{read.saturated} > read.readings;
+}
+
+bool SenselJudge::is_far_above(std::size_t sensel) const {
+  return sensels_[sensel].level > typical_.level + kFar * typical_.spread;
+}
+
+bool SenselJudge::is_far_below(std::size_t sensel) const {
+  return sensels_[sensel].level < typical_.level - kFar * typical_.spread;
+}
+
+std::optional<SenselFault> SenselJudge::verdict(std::size_t sensel) const {
+  const SenselEvidence& each = sensels_[sensel];
+  if (lacks_readings(each.read, frames_)) return SenselFault::not_a_number;
+  const bool idles_there = typical_.level > kIdleAtFullScale * full_scale_;
+  if (is_saturated(each.read) && !idles_there) return SenselFault::saturated;
+  if (each.is_constant()) return verdict_of_constant(sensel);
+  const bool is_noisy = typical_.noise > 0 && each.noise > kNoisy * typical_.noise;
+  return is_noisy ? std::optional(SenselFault::noisy) : std::nullopt;
+}
+
+std::optional<SenselFault> SenselJudge::verdict_of_constant(std::size_t sensel) const {
+  const float value = sensels_[sensel].read.lowest;
+  if (absent_ && value == *absent_) return SenselFault::absent;
+  const bool most_vary = vary_share_ >= kMostVary;
+  const bool is_far = is_far_above(sensel) || is_far_below(sensel);
+  if (value == 0) {
+    return most_vary && is_far ? std::optional(SenselFault::absent) : std::nullopt;
+  }
+  const bool shows_noise = typical_.noise > kVisibleNoise && frames_ >= kVisibleFrames;
+  return is_far || (most_vary && shows_noise) ? std::optional(SenselFault::stuck) : std::nullopt;
+}
+
+bool is_still(const SenselStatistics& read, double noise, double still_factor) {
+  return double{read.highest} - read.lowest <= still_factor * noise;
+}
+
+bool SenselResponse::is_tested(double noise) const {
+  return frames >= kLeastEvidence && deviation(noise) < kLeastPrecision;
+}
+
+bool SenselResponse::is_below(double most, double noise) const {
+  if (is_tested(noise)) return ratio() < most;
+  return frames >= kLeastEvidence && ratio() + kSure * deviation(noise) < most;
+}
+
+double SenselResponse::deviation(double noise) const { return noise / std::sqrt(squares); }
+
+}  // namespace pillarfield

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pillarfield/frame_statistics.h"
+#include "pillarfield/sensel_finding.h"
+
+namespace pillarfield {
+
+// The judge of sensels of the doctor, the tare, the search for faults and the live watch: evidence
+// in, verdict out, with one set of constants.
+
+/// Multiple of the typical noise above which a sensel is noisy.
+inline constexpr double kNoisy = 8;
+
+/// Evidence of one sensel from raw readings, counts.
+struct SenselEvidence {
+  SenselStatistics read = {};
+  double level = 0;  ///< reading without load
+  double noise = 0;  ///< standard deviation of that
+
+  [[nodiscard]] bool is_constant() const { return read.lowest == read.highest; }
+};
+
+/// The evidence of frames without load.
+[[nodiscard]] std::vector<SenselEvidence> evidence_without_load(const FrameStatistics& unloaded);
+
+/// Medians of the sensels that may be sound.
+struct TypicalSensel {
+  std::size_t count = 0;
+  double level = 0;
+  double spread = 0;  ///< robust standard deviation of the levels, at least the noise
+  double noise = 0;
+};
+
+/// The least standard deviation of a reading: that of rounding to whole counts.
+[[nodiscard]] double least_noise(SenselType type);
+
+/// The value that stands for "no sensel": at least two constant sensels read it, or one if it is
+/// -1, and the sensels that vary stay clear of it. Unset: there is none.
+[[nodiscard]] std::optional<float> absent_value(std::span<const SenselEvidence> sensels);
+
+/// Verdicts by the readings of single sensels.
+class SenselJudge {
+ public:
+  /// `full_scale` in counts, infinite if unknown. Sensels that `mask` excludes, where it is not
+  /// empty, are not typical.
+  SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames, double full_scale,
+              std::span<const std::uint8_t> mask);
+
+  /// not_a_number, absent, saturated, stuck or noisy; unset: nothing is wrong with its readings.
+  [[nodiscard]] std::optional<SenselFault> verdict(std::size_t sensel) const;
+
+  /// Whether a reading without load is far from the typical one.
+  [[nodiscard]] bool is_far_above(std::size_t sensel) const;
+  [[nodiscard]] bool is_far_below(std::size_t sensel) const;
+
+  [[nodiscard]] const TypicalSensel& typical() const { return typical_; }
+  [[nodiscard]] std::span<const SenselEvidence> sensels() const { return sensels_; }
+
+ private:
+  [[nodiscard]] std::optional<SenselFault> verdict_of_constant(std::size_t sensel) const;
+
+  std::vector<SenselEvidence> sensels_;
+  std::uint32_t frames_;
+  double full_scale_;
+  TypicalSensel typical_;
+  double vary_share_ = 0;  ///< share of the sensels that vary
+  std::optional<float> absent_;
+};
+
+/// Whether most of the frames have no reading.
+[[nodiscard]] bool lacks_readings(const SenselStatistics& read, std::uint32_t frames);
+
+/// Whether most of the readings are at full scale.
+[[nodiscard]] bool is_saturated(const SenselStatistics& read);
+
+/// Whether the range of readings is that of noise alone.
+[[nodiscard]] bool is_still(const SenselStatistics& read, double noise, double still_factor);
+
+/// Response of a sensel where others predict one.
+struct SenselResponse {
+  std::uint32_t frames = 0;
+  double products = 0;
+  double squares = 0;
+
+  void add(double signal, double expected) {
+    ++frames;
+    products += signal * expected;
+    squares += expected * expected;
+  }
+  [[nodiscard]] bool is_tested(double noise) const;
+  /// Whether the response is below `most`, for sure.
+  [[nodiscard]] bool is_below(double most, double noise) const;
+  [[nodiscard]] double ratio() const { return products / squares; }
+  [[nodiscard]] double deviation(double noise) const;
+};
+
+}  // namespace pillarfield
