@@ -12,9 +12,11 @@ void print_file_warnings(const std::string& file, const std::vector<std::string>
   }
 }
 
-std::unique_ptr<FrameSource> open_frames_with_warnings(const std::string& file,
+std::unique_ptr<FrameSource> open_frames_with_warnings(const std::vector<std::string>& files,
                                                        const ReadOptions& options, bool quiet) {
-  std::unique_ptr<FrameSource> source = open_frames(file, options);
+  const std::string& file = files.front();
+  std::unique_ptr<FrameSource> source =
+      open_frames(std::vector<std::filesystem::path>(files.begin(), files.end()), options);
   print_file_warnings(file, source->warnings());
   const std::string read_as = source->read_as();
   if (!quiet && !read_as.empty()) print_file_warnings(file, {fmt::format("Read {}", read_as)});

@@ -72,13 +72,14 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info,
       unit_(info.pressure_unit) {
   const ContactOptions& options = info.contacts.value();
   const auto& friction = options.friction.given;
-  file_.write(
-      fmt::format("{},\"version\":1,\"source\":{},"
-                  "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
-                  "\"reach_mm\":{},\"frames\":[",
-                  kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
-                  info.element_pitch_mm, options.minimum_pillars,
-                  friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
+  const Pitch& pitch = info.element_pitch_mm;
+  file_.write(fmt::format(
+      "{},\"version\":1,\"source\":{},"
+      "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+      "\"reach_mm\":{},\"frames\":[",
+      kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
+      pitch.is_square() ? text_of(pitch) : fmt::format("[{},{}]", pitch.row_mm, pitch.col_mm),
+      options.minimum_pillars, friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
 }
 
 void JsonSink::append(const SolvedFrame& frame) {

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "io/file_source.h"
+
+namespace pillarfield {
+
+/// The files of a series: those given, and those of folders, in natural order of their names, in
+/// which frame_2 comes before frame_10. Hidden files, folders within folders and metadata.yaml of a
+/// ROS 2 bag are left out. Throws Error if there is none, or a folder holds several kinds of files.
+[[nodiscard]] std::vector<std::filesystem::path> series_files(
+    const std::vector<std::filesystem::path>& paths);
+
+using OpenFile =
+    std::function<std::unique_ptr<FileSource>(const std::filesystem::path&, const ReadOptions&)>;
+
+/// Files of one or several frames as one source, which has their frames one after another, and has
+/// one of them open at a time. `open` opens one of them. Throws Error if one differs from the first
+/// in size, layout, constants or calibration.
+[[nodiscard]] std::unique_ptr<FileSource> frame_series(std::vector<std::filesystem::path> files,
+                                                       const ReadOptions& options, OpenFile open);
+
+}  // namespace pillarfield
