@@ -9,8 +9,8 @@
 namespace pillarfield {
 
 std::string text_of(const Pitch& pitch) {
-  if (pitch.is_square() || std::isnan(pitch.row_mm)) return fmt::format("{}", pitch.row_mm);
-  return fmt::format("{}x{}", pitch.row_mm, pitch.col_mm);
+  if (pitch.is_square() || std::isnan(pitch.row_mm)) return fmt::format("{:g}", pitch.row_mm);
+  return fmt::format("{:g}x{:g}", pitch.row_mm, pitch.col_mm);
 }
 
 std::optional<Pitch> parse_pitch(std::string_view text) {

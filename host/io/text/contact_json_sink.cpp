@@ -78,7 +78,8 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info,
       "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
       "\"reach_mm\":{},\"frames\":[",
       kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
-      pitch.is_square() ? text_of(pitch) : fmt::format("[{},{}]", pitch.row_mm, pitch.col_mm),
+      pitch.is_square() ? fmt::format("{}", pitch.col_mm)
+                        : fmt::format("[{},{}]", pitch.row_mm, pitch.col_mm),
       options.minimum_pillars, friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
 }
 

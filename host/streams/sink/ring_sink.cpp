@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "pillarfield/error.h"
 #include "streams/live_sink.h"
 #include "streams/message/host_clock.h"
 #include "streams/ring/ring_contact.h"
@@ -23,14 +20,8 @@ constexpr std::string_view kRingPrefix = "shm:";
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 RingLayout layout_of_results(const Skin& skin) {
-  if (!skin.sensel_pitch_mm.is_square()) {
-    throw Error(
-        "shm",
-        fmt::format("a ring holds one pitch, and this one is {} mm", text_of(skin.sensel_pitch_mm)),
-        "send the results elsewhere, or leave out the second pitch");
-  }
   return {skin.has_pillars() ? PILLARFIELD_RING_RESULTS : PILLARFIELD_RING_PRESSURES,
-          skin.element_rows(), skin.element_cols(), 0, skin.element_pitch_mm().col_mm};
+          skin.element_rows(), skin.element_cols(), 0, skin.element_pitch_mm()};
 }
 
 double sum_of(std::span<const float> plane) {
