@@ -21,7 +21,7 @@
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
 #include "io/file_kind.h"
-#include "io/frame_series.h"
+#include "io/series_files.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"

@@ -16,6 +16,7 @@
 
 #include "io/file_kind.h"
 #include "io/layout_note.h"
+#include "io/series_files.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -200,11 +201,12 @@ double FrameSeries::read(std::uint64_t index, FrameBuffer& frame) {
     narrow_.emplace(member.sensel_type(), skin_.rows, skin_.cols);
   }
   member.read(at, *narrow_);
-  const bool is_bytes = member.sensel_type() == SenselType::u8;
-  const NumberType type = {NumberType::Kind::unsigned_integer, is_bytes ? 1U : 2U};
-  const std::vector<double> numbers = doubles_of(type, narrow_->bytes());
-  std::ranges::transform(numbers, frame.readings<float>().begin(),
-                         [](double number) { return static_cast<float>(number); });
+  const auto floats = frame.readings<float>().begin();
+  if (member.sensel_type() == SenselType::u8) {
+    std::ranges::copy(narrow_->readings<std::uint8_t>(), floats);
+  } else {
+    std::ranges::copy(narrow_->readings<std::uint16_t>(), floats);
+  }
   return time(index);
 }
 

@@ -9,12 +9,6 @@
 
 namespace pillarfield {
 
-/// The files of a series: those given, and those of folders, in natural order of their names, in
-/// which frame_2 comes before frame_10. Hidden files, folders within folders and metadata.yaml of a
-/// ROS 2 bag are left out. Throws Error if there is none, or a folder holds several kinds of files.
-[[nodiscard]] std::vector<std::filesystem::path> series_files(
-    const std::vector<std::filesystem::path>& paths);
-
 using OpenFile =
     std::function<std::unique_ptr<FileSource>(const std::filesystem::path&, const ReadOptions&)>;
 

@@ -10,6 +10,7 @@
 #include "io/foreign_file.h"
 #include "io/frame_series.h"
 #include "io/hdf5/readers.h"
+#include "io/series_files.h"
 #include "pillarfield/error.h"
 #include "pillarfield/frame_stream.h"
 

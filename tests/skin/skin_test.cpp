@@ -63,8 +63,14 @@ TEST(Skin, RefusesValuesOutOfRangeByName) {
       {"cols", [](Skin& s) { s.cols = 0; }},
       {"sensel_pitch_mm", [](Skin& s) { s.sensel_pitch_mm = 0; }},
       {"sensel_pitch_mm", [](Skin& s) { s.sensel_pitch_mm = kNan; }},
-      {"sensel_pitch_mm", [](Skin& s) { s.sensel_pitch_mm = {1, 2000}; }},
-      {"a pitch of 1x2 mm, and pillars", [](Skin& s) { s.sensel_pitch_mm = {1, 2}; }},
+      {"sensel_pitch_mm",
+       [](Skin& s) {
+         s.sensel_pitch_mm = {1, 2000};
+       }},
+      {"a pitch of 1x2 mm, and pillars",
+       [](Skin& s) {
+         s.sensel_pitch_mm = {1, 2};
+       }},
       {"counts_per_newton", [](Skin& s) { s.counts_per_newton = -1; }},
       {"counts_per_newton", [](Skin& s) { s.counts_per_newton = INFINITY; }},
       {"threshold_counts", [](Skin& s) { s.threshold_counts = -0.5; }},
