@@ -66,7 +66,7 @@ Scene scene_of(Indenters indenters, std::size_t frames) {
   scene.frames = static_cast<std::uint32_t>(frames);
   std::vector<ClosedFormContact> contacts;
   contacts.reserve(kIndenters);
-  const double size_mm = scene.skin.sensel_pitch_mm * scene.skin.rows;
+  const double size_mm = scene.skin.sensel_pitch_mm.row_mm * scene.skin.rows;
   for (int i = 0; i < kIndenters; ++i) {
     contacts.push_back(ball(i, indenters == Indenters::mixed ? kMixed[i] : kSlipping[i], size_mm));
   }

@@ -8,6 +8,7 @@
 #include "pillarfield/resultant_comparison.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
+#include "python/pitch.h"
 
 namespace pillarfield::python {
 namespace {
@@ -18,7 +19,8 @@ ForceFieldView with_shear(ForceFieldView forces, const std::vector<float>& zeros
   return forces;
 }
 
-py::tuple compare(const py::dict& solved_planes, const py::dict& true_planes, double pitch_mm) {
+py::tuple compare(const py::dict& solved_planes, const py::dict& true_planes,
+                  const Pitch& pitch_mm) {
   const ForceArrays solved(solved_planes);
   const ForceArrays truth(true_planes);
   if (solved.frames() != truth.frames()) {

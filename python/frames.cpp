@@ -12,6 +12,8 @@
 #include <numeric>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
@@ -154,7 +156,8 @@ SkinCalibration calibration_of(const Frames& frames) {
 }
 
 std::unique_ptr<Frames> open(
-    const std::filesystem::path& path, bool trust, std::string dataset, std::string times,
+    const std::variant<std::filesystem::path, std::vector<std::filesystem::path>>& path, bool trust,
+    std::string dataset, std::string times,
     const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
     std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes,
     const std::string& layout, bool falling, bool untimed) {
@@ -176,7 +179,8 @@ std::unique_ptr<Frames> open(
                   "give 'pillars' or 'sensels'");
     }
   }
-  return std::make_unique<Frames>(open_frames(path, options));
+  return std::make_unique<Frames>(
+      std::visit([&](const auto& given) { return open_frames(given, options); }, path));
 }
 
 std::unique_ptr<Frames> of_array(const py::array& readings, const TimeArray& times,

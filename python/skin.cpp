@@ -12,6 +12,7 @@
 #include "pillarfield/status.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/pitch.h"
 
 namespace pillarfield::python {
 namespace {
@@ -27,7 +28,8 @@ Sensels are counted in rows from the top (+y) and in columns from the left (-x).
 stands on the sensels (2r..2r+1, 2c..2c+1).
 
 rows, cols: sensels, 2..65534
-sensel_pitch_mm: distance of sensels, mm
+sensel_pitch_mm: distance of sensels, mm; (7.62, 5.08) where rows lie 7.62 mm apart and columns
+    5.08 mm, without pillars
 counts_per_newton: counts that a sensel reads per newton on its pillar, 1e-2..1e6
 threshold_counts: a sensel is usable if its reading is above
 full_scale_counts: a reading is saturated from here on; None: never
@@ -74,7 +76,7 @@ SkinLayout layout_of(const std::string& name) {
   throw Error("Skin", fmt::format("'{}' is not a layout", name), "give 'pillars' or 'sensels'");
 }
 
-Skin make_skin(std::uint32_t rows, std::uint32_t cols, double sensel_pitch_mm,
+Skin make_skin(std::uint32_t rows, std::uint32_t cols, const Pitch& sensel_pitch_mm,
                double counts_per_newton, double threshold_counts,
                std::optional<double> full_scale_counts, const std::optional<Law>& power_law,
                std::optional<Surface> surface, const std::string& layout,
@@ -206,6 +208,9 @@ void bind_skin(py::module_& module) {
       .def_property_readonly("element_cols", &Skin::element_cols, "columns of the forces")
       .def_property_readonly("element_pitch_mm", &Skin::element_pitch_mm,
                              "distance of pillars, or of sensels without pillars, mm")
+      .def_property_readonly(
+          "element_area_mm2", [](const Skin& self) { return self.element_pitch_mm().area_mm2(); },
+          "area of a pillar, or of a sensel without pillars, mm²")
       .def("__repr__", &skin_text)
       .def(py::pickle(
           [](const py::object& self) {

@@ -15,6 +15,8 @@ vec4 special_colour(uint special) {
   return colour_of_word(colours.entries[kFirstSpecial + special].x);
 }
 
+vec2 pitch_mm() { return vec2(scene.sheet.z, scene.relief.z); }  // of columns, of rows
+
 bool has_plane(uint plane) { return plane != kNoPlane; }
 
 float plane_value(uint plane, uint pillar) { return uintBitsToFloat(field[plane + pillar]); }

@@ -44,5 +44,5 @@ void main() {
   const vec2 place =
       vec2(first) + vec2(places) / max(sum.w, 1.0) + 0.5 - 0.5 * vec2(scene.grid.yx);
   cells[index].force = sum;
-  cells[index].place = vec4(place.x * scene.sheet.z, -place.y * scene.sheet.z, 0.0, 0.0);
+  cells[index].place = vec4(vec2(place.x, -place.y) * pitch_mm(), 0.0, 0.0);
 }

@@ -11,7 +11,7 @@ float relief_of(float normal) {
 // Height at a corner of the mesh, mm: the mean of the four pillars that meet there, or, where a tile
 // of the mesh covers several pillars, the largest around it.
 float relief_at(vec2 sheet) {
-  const vec2 place = vec2(sheet.x, -sheet.y) / scene.sheet.z + 0.5 * vec2(scene.grid.yx);
+  const vec2 place = vec2(sheet.x, -sheet.y) / pitch_mm() + 0.5 * vec2(scene.grid.yx);
   const vec2 tile = max(vec2(scene.grid.yx) / vec2(scene.grid.zw), vec2(1.0));
   const vec2 count = min(ceil(tile) + 1.0, vec2(8.0));
   float sum = 0.0;

@@ -86,7 +86,7 @@ PF_CONSTANT uint kReadingsFloat = 2u;
 // Uniform data of one picture. Planes are offsets in the field's memory, in 4-byte words.
 struct Scene {
   mat4 clip_from_world;
-  vec4 sheet;           // width, height, pillar or sensel pitch: mm; kPa of a newton on it
+  vec4 sheet;           // width, height, pitch of columns: mm; kPa of a newton on it
   vec4 surface;         // as in surface.glsl
   uvec4 grid;           // rows and columns of pillars or sensels; columns and rows of the mesh
   uvec4 force;          // planes: shear_x, shear_y, normal, status
@@ -103,8 +103,9 @@ struct Scene {
   vec4 arrow;           // mm per newton; least length, half width: pixels; fraction of the length
                         // before the anchor
   uvec4 layer_colours;  // colours of an arrow's fill, its outline, a sector, the floor
-  vec4 relief;          // height: mm per newton of normal force, 0 without; largest: mm; none, none
-  vec4 ground;          // floor: height, distance of its lines, half its side: mm; none
+  vec4
+      relief;  // height: mm per newton of normal force, 0 without; largest, pitch of rows: mm; none
+  vec4 ground;  // floor: height, distance of its lines, half its side: mm; none
 };
 
 // 256 colours of the map and, from kFirstSpecial on, those of Special, for a single look-up. Each

@@ -30,7 +30,7 @@ void main() {
   const vec2 corners[6] = vec2[6](vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(-1, 1), vec2(1, -1), vec2(1, 1));
   local = corners[gl_VertexIndex] * radii.y * 1.02;
   const vec2 middle = vec2(index) + 0.5 - 0.5 * vec2(scene.grid.yx);
-  const vec2 sheet = vec2(middle.x, -middle.y) * scene.sheet.z;
+  const vec2 sheet = vec2(middle.x, -middle.y) * pitch_mm();
   const vec2 shear = vec2(plane_value(scene.force.x, pillar), plane_value(scene.force.y, pillar));
   const mat3 basis = surface_basis(sheet, scene.surface);
   const vec2 tail = local - scene.arrow.w * shear * scene.arrow.x;

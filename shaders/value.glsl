@@ -11,7 +11,7 @@ layout(constant_id = kMeansConstant) const bool kMeans = true;
 
 // Grid coordinates of a point of the sheet: columns from the left, rows from the top.
 vec2 pillar_place(vec2 sheet) {
-  return vec2(sheet.x, -sheet.y) / scene.sheet.z + 0.5 * vec2(scene.grid.yx);
+  return vec2(sheet.x, -sheet.y) / pitch_mm() + 0.5 * vec2(scene.grid.yx);
 }
 
 uint pillar_at(vec2 place) {

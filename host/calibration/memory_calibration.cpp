@@ -220,7 +220,7 @@ void MemoryFinder::add(const FrameView& frame, double time_s, double pressure_kp
     throw Error("memory", fmt::format("the time {} s follows {} s", time_s, time_s_),
                 "times must rise within a recording");
   }
-  const double area_mm2 = skin_.element_pitch_mm() * skin_.element_pitch_mm();
+  const double area_mm2 = skin_.element_pitch_mm().area_mm2();
   const double force_n = 1e-3 * pressure_kpa * area_mm2;
   const SensorEffects& effects = calibration_.planes.effects;
   samples_.push_back({begins_ ? 0 : time_s - time_s_,

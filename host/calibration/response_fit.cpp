@@ -197,7 +197,7 @@ ResponseFit::ResponseFit(std::span<const UniformPress> presses, const Calibratio
 
 double ResponseFit::force_n(const UniformPress& press, std::size_t sensel) const {
   const Skin& skin = press.frames.skin();
-  const double area_mm2 = skin.element_pitch_mm() * skin.element_pitch_mm();
+  const double area_mm2 = skin.element_pitch_mm().area_mm2();
   return press.pressure_kpa * area_mm2 * kNewtonsPerKpaMm2 *
          leak_sum(planes_.effects, skin, sensel);
 }
@@ -330,7 +330,7 @@ std::optional<LevelReadings> level_readings(const ResponseFit& fit,
       sum += responding->responses[p] * presses[p].frames.frames();
       frames += presses[p].frames.frames();
     }
-    const double area_mm2 = skin.element_pitch_mm() * skin.element_pitch_mm();
+    const double area_mm2 = skin.element_pitch_mm().area_mm2();
     const auto count = static_cast<double>(responding->count);
     at.readings.push_back(sum / frames / count);
     at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * responding->leaks / count);

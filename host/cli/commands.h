@@ -67,7 +67,8 @@ struct PartOptions {
 };
 
 struct SolveOptions : WriteOptions {
-  std::string input;
+  std::vector<std::string> inputs;  ///< files and folders
+  std::string input;                ///< the one, or the first; set by solve()
   PlanOptions plan;
   std::string device;         ///< for open_device()
   std::string contacts_file;  ///< empty: none

@@ -97,6 +97,11 @@ void add_surface(Json& facts, const std::optional<Surface>& surface) {
   if (surface->shape == SurfaceShape::cylinder) facts["surface_axis_deg"] = surface->axis_deg;
 }
 
+/// A number, or [from row to row, from column to column].
+Json pitch_json(const Pitch& pitch) {
+  return pitch.is_square() ? Json(pitch.col_mm) : Json::array({pitch.row_mm, pitch.col_mm});
+}
+
 void add_skin(Json& facts, const Skin& skin) {
   facts["sensel_rows"] = skin.rows;
   facts["sensel_cols"] = skin.cols;
@@ -106,7 +111,7 @@ void add_skin(Json& facts, const Skin& skin) {
     facts["pillar_rows"] = skin.pillar_rows();
     facts["pillar_cols"] = skin.pillar_cols();
   }
-  facts["sensel_pitch_mm"] = skin.sensel_pitch_mm;
+  facts["sensel_pitch_mm"] = pitch_json(skin.sensel_pitch_mm);
   facts["counts_per_newton"] = skin.counts_per_newton;
   facts["threshold_counts"] = skin.threshold_counts;
   if (skin.full_scale_counts) facts["full_scale_counts"] = *skin.full_scale_counts;
@@ -141,7 +146,7 @@ Json facts_of_forces(const std::string& file, const InfoOptions& options) {
   const std::string element = info.layout == SkinLayout::pillars ? "pillar" : "sensel";
   facts[element + "_rows"] = info.rows;
   facts[element + "_cols"] = info.cols;
-  facts[element + "_pitch_mm"] = info.element_pitch_mm;
+  facts[element + "_pitch_mm"] = pitch_json(info.element_pitch_mm);
   facts.update({{"estimator", info.estimator},
                 {"device", info.device},
                 {"source", info.source},

@@ -34,7 +34,7 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
     return;
   }
   if (options.quiet) return;
-  const double millimetres = skin.sensel_pitch_mm;
+  const double millimetres = skin.sensel_pitch_mm.col_mm;
   fmt::print(
       "Simulated '{}': {} at {} Hz of {} x {} sensels ({:.0f} x {:.0f} mm, {}) "
       "in {:.2f} s\nWrote {} with the true force of every {}\n",

@@ -4,6 +4,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -18,6 +21,7 @@
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
 #include "io/file_kind.h"
+#include "io/series_files.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -265,17 +269,55 @@ std::vector<PlannedOutput> outputs_of(const SolveOptions& options,
   return outputs;
 }
 
-}  // namespace
+/// Whether an output is a folder, for a file of each input.
+bool is_folder(const std::string& output) {
+  std::error_code ignored;
+  return output.ends_with('/') || std::filesystem::is_directory(output, ignored);
+}
 
-void solve(const SolveOptions& given) {
-  SolveOptions options = given;
+/// The output of an input: `output`, or a file in this folder, with the input's name.
+std::string output_of(const std::filesystem::path& input, const std::string& output,
+                      const char* ending) {
+  if (!is_folder(output)) return output;
+  std::filesystem::create_directories(output);
+  return (std::filesystem::path(output) / input.stem()).string() + ending;
+}
+
+/// A solve of each input into the folders that the options name.
+std::vector<SolveOptions> solves_of(const SolveOptions& options,
+                                    const std::vector<std::filesystem::path>& files) {
+  for (const std::string& output : {options.output, options.contacts_file}) {
+    if (output.empty() || is_folder(output)) continue;
+    throw Error(output, "is one file, and the other output a folder, with a file of each input",
+                "name two folders, or two files");
+  }
+  std::vector<SolveOptions> solves;
+  std::set<std::filesystem::path> stems;
+  for (const std::filesystem::path& file : files) {
+    if (!stems.insert(file.stem()).second) {
+      throw Error(file.string(), "has the name of another input, and so has its result",
+                  "solve them into different folders");
+    }
+    SolveOptions each = options;
+    each.inputs = {file.string()};
+    each.output = output_of(file, options.output, ".h5");
+    each.contacts_file = output_of(file, options.contacts_file, ".csv");
+    solves.push_back(std::move(each));
+  }
+  return solves;
+}
+
+void solve_series(SolveOptions options, const std::vector<std::filesystem::path>& files) {
+  options.input = options.inputs.front();
+  while (options.input.size() > 1 && options.input.ends_with('/')) options.input.pop_back();
   const Stopwatch watch;
   const std::optional<PlannedOutput> table = contact_table(options);
   check_part_options(options);
-  check_outputs({options.input, options.plan.scene, options.plan.calibration},
-                outputs_of(options, table), options.replace);
+  std::vector<std::filesystem::path> inputs = files;
+  inputs.insert(inputs.end(), {options.plan.scene, options.plan.calibration});
+  check_outputs(inputs, outputs_of(options, table), options.replace);
   const std::unique_ptr<FrameSource> source =
-      open_frames_with_warnings(options.input, frame_options(options.plan), options.quiet);
+      open_frames_with_warnings(options.inputs, frame_options(options.plan), options.quiet);
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device).for_plan(plan);
@@ -304,6 +346,17 @@ void solve(const SolveOptions& given) {
   } else if (!options.quiet) {
     print_text(options, plan, device, summary);
   }
+}
+
+}  // namespace
+
+void solve(const SolveOptions& options) {
+  const std::vector<std::filesystem::path> files =
+      series_files({options.inputs.begin(), options.inputs.end()});
+  if (!is_folder(options.output) && !is_folder(options.contacts_file)) {
+    return solve_series(options, files);
+  }
+  for (const SolveOptions& each : solves_of(options, files)) solve_series(each, {each.inputs[0]});
 }
 
 }  // namespace pillarfield::cli

@@ -13,9 +13,11 @@ void print_about(const std::string& file, const char* kind,
   }
 }
 
-std::unique_ptr<FrameSource> open_frames_with_warnings(const std::string& file,
+std::unique_ptr<FrameSource> open_frames_with_warnings(const std::vector<std::string>& files,
                                                        const ReadOptions& options, bool quiet) {
-  std::unique_ptr<FrameSource> source = open_frames(file, options);
+  const std::string& file = files.front();
+  std::unique_ptr<FrameSource> source =
+      open_frames(std::vector<std::filesystem::path>(files.begin(), files.end()), options);
   print_about(file, "warning", source->warnings());
   if (!quiet) print_about(file, "note", source->notes());
   return source;

@@ -31,12 +31,12 @@ struct Resultant {
 };
 
 /// Sum over all pillars, about the centre of the patch.
-Resultant resultant_of(const ForceFieldView& field, double pitch_mm) {
+Resultant resultant_of(const ForceFieldView& field, const Pitch& pitch_mm) {
   Resultant sum;
   for (std::uint32_t row = 0; row < field.rows; ++row) {
-    const double y_mm = ((field.rows - 1) / 2.0 - row) * pitch_mm;
+    const double y_mm = ((field.rows - 1) / 2.0 - row) * pitch_mm.row_mm;
     for (std::uint32_t col = 0; col < field.cols; ++col) {
-      const double x_mm = (col - (field.cols - 1) / 2.0) * pitch_mm;
+      const double x_mm = (col - (field.cols - 1) / 2.0) * pitch_mm.col_mm;
       const std::size_t pillar = std::size_t{row} * field.cols + col;
       const Vector force = {field.shear_x[pillar], field.shear_y[pillar], field.normal[pillar]};
       const Vector torque = {-y_mm * force[2], x_mm * force[2], x_mm * force[1] - y_mm * force[0]};
@@ -50,7 +50,7 @@ Resultant resultant_of(const ForceFieldView& field, double pitch_mm) {
 }
 
 std::vector<ContactQuantities> measure(const ForceFieldView& field, const ContactLabels& labels,
-                                       double pitch_mm) {
+                                       const Pitch& pitch_mm) {
   std::vector<ContactQuantities> contacts;
   contacts.reserve(labels.contacts());
   for (std::uint32_t label = 0; label < labels.contacts(); ++label) {
@@ -152,8 +152,8 @@ void ResultantComparison::add(const ForceFieldView& solved, const ForceFieldView
 }
 
 void ResultantComparison::add_patch(const ForceFieldView& solved, const ForceFieldView& truth) {
-  const Resultant found = resultant_of(solved, pillar_pitch_mm_);
-  const Resultant expected = resultant_of(truth, pillar_pitch_mm_);
+  const Resultant found = resultant_of(solved, element_pitch_mm_);
+  const Resultant expected = resultant_of(truth, element_pitch_mm_);
   patch_.force.add(error_between(found.force_n, expected.force_n), length(expected.force_n),
                    frames_);
   patch_.torque.add(error_between(found.torque_nmm, expected.torque_nmm),
@@ -170,8 +170,8 @@ void ResultantComparison::add_contacts(const ForceFieldView& solved, const Force
   solved_labels_.find(solved.status, solved.rows, solved.cols);
   ForceFieldView loaded = truth;
   loaded.status = true_status_;
-  const auto expected = measure(loaded, true_labels_, pillar_pitch_mm_);
-  const auto found = measure(solved, solved_labels_, pillar_pitch_mm_);
+  const auto expected = measure(loaded, true_labels_, element_pitch_mm_);
+  const auto found = measure(solved, solved_labels_, element_pitch_mm_);
   std::vector<bool> is_found(expected.size());
   std::vector<bool> is_true(found.size());
   for (const auto& [of_truth, of_solved] :

@@ -38,11 +38,12 @@ SlipState state_of(const ContactSum& sum, bool well_known) {
 
 }  // namespace
 
-ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm, bool has_shear) {
+ContactQuantities quantities_of(const ContactSum& sum, const Pitch& pitch_mm, bool has_shear) {
   ContactQuantities contact;
   contact.has_shear = has_shear;
   if (sum.pillars == 0) return contact;
-  const double half_pitch_mm = pitch_mm / 2;
+  const double half_x_mm = pitch_mm.col_mm / 2;
+  const double half_y_mm = pitch_mm.row_mm / 2;
   const auto pillars = static_cast<double>(sum.pillars);
   contact.pillars = static_cast<std::uint64_t>(sum.pillars);
   contact.ambiguous = static_cast<std::uint64_t>(sum.ambiguous);
@@ -50,20 +51,20 @@ ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm, bool has
   contact.shear_x_n = sum.shear_x;
   contact.shear_y_n = sum.shear_y;
   contact.normal_n = sum.normal;
-  contact.centre = {static_cast<double>(sum.x) / pillars * half_pitch_mm,
-                    static_cast<double>(sum.y) / pillars * half_pitch_mm};
+  contact.centre = {static_cast<double>(sum.x) / pillars * half_x_mm,
+                    static_cast<double>(sum.y) / pillars * half_y_mm};
   contact.centre_of_pressure = contact.centre;
   if (sum.normal > 0) {
-    contact.centre_of_pressure = {sum.normal_x / sum.normal * half_pitch_mm,
-                                  sum.normal_y / sum.normal * half_pitch_mm};
+    contact.centre_of_pressure = {sum.normal_x / sum.normal * half_x_mm,
+                                  sum.normal_y / sum.normal * half_y_mm};
   }
-  const double about_origin_nmm = (sum.shear_y_x - sum.shear_x_y) * half_pitch_mm;
+  const double about_origin_nmm = sum.shear_y_x * half_x_mm - sum.shear_x_y * half_y_mm;
   contact.torque_nmm = about_origin_nmm - (contact.centre_of_pressure.x_mm * contact.shear_y_n -
                                            contact.centre_of_pressure.y_mm * contact.shear_x_n);
-  contact.area_mm2 = pillars * pitch_mm * pitch_mm;
+  contact.area_mm2 = pillars * pitch_mm.area_mm2();
   contact.peak_n = sum.peak;
-  contact.peak = {static_cast<double>(sum.peak_x) * half_pitch_mm,
-                  static_cast<double>(sum.peak_y) * half_pitch_mm};
+  contact.peak = {static_cast<double>(sum.peak_x) * half_x_mm,
+                  static_cast<double>(sum.peak_y) * half_y_mm};
   contact.mean_pressure_kpa = 1000 * contact.normal_n / contact.area_mm2;
   return contact;
 }

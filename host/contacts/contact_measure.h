@@ -6,7 +6,7 @@
 namespace pillarfield {
 
 /// The quantities of a contact, except friction and slip.
-[[nodiscard]] ContactQuantities quantities_of(const ContactSum& sum, double pitch_mm,
+[[nodiscard]] ContactQuantities quantities_of(const ContactSum& sum, const Pitch& pitch_mm,
                                               bool has_shear = true);
 
 /// Tells slipping pillars by the friction, or where it is not known well, by the least that it may

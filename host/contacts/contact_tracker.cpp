@@ -91,10 +91,10 @@ ContactOptions checked(const ContactOptions& options) {
   return options;
 }
 
-FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& options) {
-  SegmentModel segment = segment_model(options.effects, pitch_mm);
+FrictionEstimator::Sensor sensor_of(const Pitch& pitch_mm, const ContactOptions& options) {
+  SegmentModel segment = segment_model(options.effects, pitch_mm.col_mm);
   segment.hidden_n = static_cast<float>(options.hidden_n);
-  return {.pitch_mm = pitch_mm,
+  return {.pitch_mm = pitch_mm.col_mm,  // of pillars, whose pitch is one
           .reach_mm = options.reach_mm,
           .noise_n = options.noise_n,
           .segment = segment};
@@ -156,7 +156,7 @@ void check(const ContactOptions& options, const std::string& where) {
 }
 
 struct ContactTracker::State {
-  State(double element_pitch_mm, const ContactOptions& contact_options);
+  State(const Pitch& element_pitch_mm, const ContactOptions& contact_options);
 
   [[nodiscard]] FrictionEstimator estimator() {
     return {sensor_of(pitch_mm, options),
@@ -171,7 +171,7 @@ struct ContactTracker::State {
   void measure_wrenches(const ForceFieldView& forces);
   void identify(double time_s);
 
-  double pitch_mm;
+  Pitch pitch_mm;
   ContactOptions options;
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
@@ -189,13 +189,14 @@ struct ContactTracker::State {
   ContactSnapshot earlier_snapshot;
 };
 
-ContactTracker::State::State(double element_pitch_mm, const ContactOptions& contact_options)
+ContactTracker::State::State(const Pitch& element_pitch_mm, const ContactOptions& contact_options)
     : pitch_mm(element_pitch_mm),
       options(checked(contact_options)),
       moments(options.threads),
       friction_estimator(estimator()) {
-  if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
-    throw Error(kPlace, fmt::format("a pitch of {} mm", pitch_mm), "it must be above zero");
+  if (!is_positive(pitch_mm)) {
+    throw Error(kPlace, fmt::format("a pitch of {} mm", text_of(pitch_mm)),
+                "it must be above zero");
   }
 }
 
@@ -327,7 +328,7 @@ const FrameContacts& ContactTracker::State::track(const ForceFieldView& forces, 
   return frame;
 }
 
-ContactTracker::ContactTracker(double element_pitch_mm, const ContactOptions& options)
+ContactTracker::ContactTracker(const Pitch& element_pitch_mm, const ContactOptions& options)
     : state_(std::make_unique<State>(element_pitch_mm, options)) {}
 ContactTracker::~ContactTracker() = default;
 ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;

@@ -38,20 +38,21 @@ void FileSource::require_fitting(const FrameBuffer& frame) const {
 }
 
 void FileSource::take_constants(const StoredSkin& stored, const ReadOptions& options) {
-  const auto take = [&](const char* name, const std::optional<double>& given,
-                        const std::optional<double>& constant, double& value) {
+  const auto take = [&](const char* name, const auto& given, const auto& constant, auto& value,
+                        double usual) {
     if (given || constant) {
       value = given ? *given : *constant;
     } else {
-      warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, value));
+      warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, usual));
     }
   };
-  take("sensel_pitch_mm", options.sensel_pitch_mm, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
+  take("sensel_pitch_mm", options.sensel_pitch_mm, stored.sensel_pitch_mm, skin_.sensel_pitch_mm,
+       skin_.sensel_pitch_mm.col_mm);
   take("counts_per_newton", options.counts_per_newton, stored.counts_per_newton,
-       skin_.counts_per_newton);
+       skin_.counts_per_newton, skin_.counts_per_newton);
   if (options.tare_frames == 0) {
     take("threshold_counts", options.threshold_counts, stored.threshold_counts,
-         skin_.threshold_counts);
+         skin_.threshold_counts, skin_.threshold_counts);
   }
   skin_.full_scale_counts =
       options.full_scale_counts ? options.full_scale_counts : stored.full_scale_counts;
@@ -67,6 +68,7 @@ void FileSource::assume_times(const ReadOptions& options, const char* failure) {
                 "it must be above zero");
   }
   rate_hz_ = options.rate_hz;
+  assumes_times_ = true;
   if (rate_hz_ || options.untimed || frames_ <= 1) return;
   throw Error(path_.string(), failure, "give their rate with --rate HZ");
 }
@@ -76,9 +78,24 @@ double FileSource::assumed_time(std::uint64_t index) const {
   return frames_ <= 1 ? 0 : std::numeric_limits<double>::quiet_NaN();
 }
 
-void FileSource::require_no_rate(const ReadOptions& options) const {
-  if (!options.rate_hz || options.untimed) return;
-  throw Error(path_.string(), "has times of its frames", "leave out --rate");
+bool FileSource::replaces_times(const TimeOrder& order, const ReadOptions& options) {
+  const bool is_given = options.rate_hz.has_value();
+  if (order.rises()) {
+    if (!is_given || options.untimed) return false;
+    throw Error(path_.string(), "has times of its frames", "leave out --rate");
+  }
+  warnings_.push_back(fmt::format(
+      "{}; {}.", order.faults(),
+      is_given ? fmt::format("frames are {:.6g} s apart instead", 1 / *options.rate_hz)
+               : "frames and times are kept in the order of the file (--rate HZ replaces them)"));
+  if (is_given) assume_times(options);
+  return is_given;
+}
+
+void FileSource::settle_times(std::vector<double>& times_s, const ReadOptions& options) {
+  TimeOrder order(path_.string());
+  order.add(times_s);
+  if (replaces_times(order, options)) times_s.clear();
 }
 
 void FileSource::take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
@@ -120,21 +137,30 @@ void FileSource::measure_tare(const ReadOptions& options) {
                   tare.findings.size(), options.tare_frames));
 }
 
-void RisingTimes::add(std::span<const double> times_s) {
+void TimeOrder::add(std::span<const double> times_s) {
   for (const double time_s : times_s) {
     if (!std::isfinite(time_s)) {
       throw Error(place_, fmt::format("frame {} has the time {}", frames_, time_s),
                   "store finite seconds");
     }
     if (time_s <= before_s_) {
-      throw Error(place_,
-                  fmt::format("frame {} has the time {}, and the frame before it {}", frames_,
-                              time_s, before_s_),
-                  "store times that rise from frame to frame");
+      if (rises()) first_fault_ = frames_;
+      ++(time_s == before_s_ ? ties_ : steps_back_);
     }
     before_s_ = time_s;
     ++frames_;
   }
+}
+
+std::string TimeOrder::faults() const {
+  const auto count = [](std::uint64_t times, const char* one, const char* many) {
+    return fmt::format("{} {}", times, times == 1 ? one : many);
+  };
+  std::string text;
+  if (ties_ > 0) text = count(ties_, "time equals the one before", "times equal the one before");
+  if (ties_ > 0 && steps_back_ > 0) text += ", ";
+  if (steps_back_ > 0) text += count(steps_back_, "time steps back", "times step back");
+  return fmt::format("{}, first at frame {}", text, first_fault_);
 }
 
 std::string layout_note(const Skin& skin) {

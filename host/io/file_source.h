@@ -14,6 +14,27 @@
 
 namespace pillarfield {
 
+/// Counts times that do not rise from frame to frame.
+class TimeOrder {
+ public:
+  explicit TimeOrder(std::string place) : place_(std::move(place)) {}
+
+  /// Adds the times of the next frames. Throws Error, naming the frame, if one is not finite.
+  void add(std::span<const double> times_s);
+
+  [[nodiscard]] bool rises() const { return ties_ + steps_back_ == 0; }
+  /// "9 times equal the one before, and 1 steps back, first at frame 5".
+  [[nodiscard]] std::string faults() const;
+
+ private:
+  std::string place_;
+  std::uint64_t frames_ = 0;
+  double before_s_ = -std::numeric_limits<double>::infinity();
+  std::uint64_t ties_ = 0;
+  std::uint64_t steps_back_ = 0;
+  std::uint64_t first_fault_ = 0;  // its frame
+};
+
 /// The part of FrameSource that all file formats share.
 class FileSource : public FrameSource {
  public:
@@ -27,6 +48,9 @@ class FileSource : public FrameSource {
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
   [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
   void read_truth(std::uint64_t index, ForceField& truth) override;
+
+  /// Whether the file has times of its frames.
+  [[nodiscard]] bool states_times() const { return !assumes_times_; }
 
   /// ReadOptions::tare_frames. Throws Error if the file has fewer, or as take_tare() does.
   void measure_tare(const ReadOptions& options);
@@ -44,8 +68,11 @@ class FileSource : public FrameSource {
   /// Sets the times of a file that stores none. Throws Error if they are used and no rate is given.
   void assume_times(const ReadOptions& options, const char* failure = "has no times of its frames");
   [[nodiscard]] double assumed_time(std::uint64_t index) const;
-  /// Throws Error if a rate is given to a file with times.
-  void require_no_rate(const ReadOptions& options) const;
+  /// Warns of times that tie or step back, and returns whether the rate of the options replaces
+  /// them. Throws Error for a rate where the times rise.
+  [[nodiscard]] bool replaces_times(const TimeOrder& order, const ReadOptions& options);
+  /// The same for the times of all frames, which it empties if they are replaced.
+  void settle_times(std::vector<double>& times_s, const ReadOptions& options);
 
   /// Converts the numbers of frame `index`. Throws Error if float32 does not hold one exactly.
   void take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
@@ -62,27 +89,11 @@ class FileSource : public FrameSource {
   Calibration calibration_;
   std::vector<std::string> warnings_;
   std::vector<std::string> notes_;
+  bool assumes_times_ = false;
 
  private:
   std::optional<double> rate_hz_;
   bool mirrors_ = false;  // falling readings
-};
-
-/// Checks that the times of all frames are finite and rise.
-class RisingTimes {
- public:
-  /// `before_s`: the time before the first frame.
-  explicit RisingTimes(std::string place,
-                       double before_s = -std::numeric_limits<double>::infinity())
-      : place_(std::move(place)), before_s_(before_s) {}
-
-  /// Adds the times of the next frames. Throws Error, naming the frame, if one does not rise.
-  void add(std::span<const double> times_s);
-
- private:
-  std::string place_;
-  std::uint64_t frames_ = 0;
-  double before_s_;
 };
 
 }  // namespace pillarfield

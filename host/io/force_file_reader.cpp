@@ -304,17 +304,17 @@ void OpenForces::read_info() {
   info.device = hdf5::read_text(file, root, force_format::kDevice).value_or("");
   info.source = hdf5::read_text(file, root, force_format::kSource).value_or("");
   const char* const pitch = force_format::pitch_of(info.layout);
-  const auto pitch_mm = hdf5::read_number(file, root, pitch);
+  const auto pitch_mm = read_pitch(file, root, pitch);
   if (!pitch_mm) {
     Skin usual;
     usual.layout = info.layout;
     info.element_pitch_mm = usual.element_pitch_mm();
-    warnings.push_back(
-        fmt::format("The file has no {}; {:.6g} mm is assumed.", pitch, info.element_pitch_mm));
+    warnings.push_back(fmt::format("The file has no {}; {:.6g} mm is assumed.", pitch,
+                                   info.element_pitch_mm.col_mm));
     return;
   }
-  if (!std::isfinite(*pitch_mm) || *pitch_mm <= 0) {
-    throw Error(file.path.string(), fmt::format("{} is {}", pitch, *pitch_mm),
+  if (!is_positive(*pitch_mm)) {
+    throw Error(file.path.string(), fmt::format("{} is {}", pitch, text_of(*pitch_mm)),
                 "it must be above zero");
   }
   info.element_pitch_mm = *pitch_mm;

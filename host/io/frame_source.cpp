@@ -3,10 +3,16 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io/file_kind.h"
+#include "io/foreign_file.h"
+#include "io/frame_series.h"
 #include "io/hdf5/readers.h"
+#include "io/series_files.h"
 #include "pillarfield/error.h"
 #include "pillarfield/frame_stream.h"
 
@@ -17,6 +23,7 @@ SourceFormat tekscan_format();
 SourceFormat npy_format();
 SourceFormat npz_format();
 SourceFormat mat_format();
+SourceFormat mcap_format();
 SourceFormat table_format();
 
 namespace {
@@ -35,6 +42,7 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
                 fmt::format("simulate it first: pillarfield simulate {0} -o {1}.h5", path.string(),
                             path.stem().string()));
   }
+  refuse_foreign(path, file.text_at(0, 4096));
   std::string known = "an HDF5 recording";
   for (const SourceFormat& format : source_formats()) known += std::string(" nor a ") + format.name;
   throw Error(path.string(), "is neither " + known, "docs/formats.md describes them");
@@ -43,8 +51,8 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
 }  // namespace
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format(), npy_format(), npz_format(), mat_format(),
-                                     table_format()};
+  static const std::array formats = {tekscan_format(), npy_format(),  npz_format(),
+                                     mat_format(),     mcap_format(), table_format()};
   return formats;
 }
 
@@ -69,8 +77,19 @@ void refuse_layout(const std::filesystem::path& path, const ReadOptions& options
 
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
                                          const ReadOptions& options) {
+  return open_frames(std::vector{path}, options);
+}
+
+std::unique_ptr<FrameSource> open_frames(const std::vector<std::filesystem::path>& paths,
+                                         const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  std::unique_ptr<FileSource> source = open_source(path, options);
+  for (const std::filesystem::path& path : paths) {
+    if (std::filesystem::is_directory(path)) refuse_foreign(path, "");
+  }
+  std::vector<std::filesystem::path> files = series_files(paths);
+  std::unique_ptr<FileSource> source = files.size() == 1
+                                           ? open_source(files.front(), options)
+                                           : frame_series(std::move(files), options, open_source);
   if (options.tare_frames > 0) source->measure_tare(options);
   return source;
 }

@@ -90,16 +90,16 @@ void Recording::open_times() {
 
 void Recording::check_times(const ReadOptions& options) {
   if (!time_) return assume_times(options, "has no /frames/time");
-  require_no_rate(options);
   if (file_.probing) return;
   constexpr std::uint64_t kBlock = 1U << 16U;
-  RisingTimes rising(place(recording_format::kTime));
+  TimeOrder order(place(recording_format::kTime));
   std::vector<double> times_s;
   for (std::uint64_t first = 0; first < frames_; first += kBlock) {
     times_s.resize(std::min(kBlock, frames_ - first));
     time_->get_all(first, times_s.size(), H5T_NATIVE_DOUBLE, times_s.data());
-    rising.add(times_s);
+    order.add(times_s);
   }
+  if (replaces_times(order, options)) time_.reset();
 }
 
 /// Float readings say so themselves.

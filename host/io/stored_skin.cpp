@@ -87,12 +87,31 @@ SensorEffects read_effects(const hdf5::File& file, const char* place) {
                     fmt::format("{}: {}", file.path.string(), place));
 }
 
+void write_pitch(const hdf5::File& file, hid_t object, const char* name, const Pitch& pitch) {
+  if (pitch.is_square()) {
+    hdf5::write_attribute(file, object, name, pitch.col_mm);
+  } else {
+    hdf5::write_attribute(file, object, name, std::vector{pitch.row_mm, pitch.col_mm});
+  }
+}
+
+std::optional<Pitch> read_pitch(const hdf5::File& file, hid_t object, const char* name) {
+  const auto numbers = hdf5::read_numbers(file, object, name);
+  if (!numbers) return std::nullopt;
+  if (numbers->size() == 1) return Pitch(numbers->front());
+  if (numbers->size() == 2) return Pitch(numbers->front(), numbers->back());
+  throw Error(file.path.string(), fmt::format("{} has {} numbers", name, numbers->size()),
+              "store one, or two: from row to row and from column to column, mm");
+}
+
 hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
   hdf5::Handle group = hdf5::create_group(file, recording_format::kSkin);
   const auto write = [&](const char* name, const std::optional<double>& value) {
     if (value) hdf5::write_attribute(file, group.get(), name, *value);
   };
-  write(recording_format::kPitch, skin.sensel_pitch_mm);
+  if (skin.sensel_pitch_mm) {
+    write_pitch(file, group.get(), recording_format::kPitch, *skin.sensel_pitch_mm);
+  }
   write(recording_format::kCountsPerNewton, skin.counts_per_newton);
   write(recording_format::kThreshold, skin.threshold_counts);
   write(recording_format::kFullScale, skin.full_scale_counts);
@@ -117,7 +136,7 @@ StoredSkin read_skin(const hdf5::File& file) {
   const hdf5::Handle object = open_skin(file);
   if (!object.valid()) return {};
   const auto read = [&](const char* name) { return hdf5::read_number(file, object.get(), name); };
-  return {read(recording_format::kPitch),
+  return {read_pitch(file, object.get(), recording_format::kPitch),
           read(recording_format::kCountsPerNewton),
           read(recording_format::kThreshold),
           read(recording_format::kFullScale),

@@ -11,7 +11,7 @@ namespace pillarfield {
 
 /// Constants of a skin in the group /skin of recordings and calibration files; each may be absent.
 struct StoredSkin {
-  std::optional<double> sensel_pitch_mm;
+  std::optional<Pitch> sensel_pitch_mm;
   std::optional<double> counts_per_newton;
   std::optional<double> threshold_counts;
   std::optional<double> full_scale_counts;
@@ -26,6 +26,13 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);
 /// Reads /skin; all constants are unset if it is absent. Throws Error if one is not a number or one
 /// of the two power-law constants is missing.
 [[nodiscard]] StoredSkin read_skin(const hdf5::File& file);
+
+/// Writes a pitch as one number, or as two: from row to row, from column to column.
+void write_pitch(const hdf5::File& file, hid_t object, const char* name, const Pitch& pitch);
+
+/// Reads such a pitch; unset if it is absent. Throws Error if it has neither one nor two numbers.
+[[nodiscard]] std::optional<Pitch> read_pitch(const hdf5::File& file, hid_t object,
+                                              const char* name);
 
 /// The object /skin; invalid if absent.
 [[nodiscard]] hdf5::Handle open_skin(const hdf5::File& file);

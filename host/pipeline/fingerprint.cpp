@@ -64,7 +64,8 @@ void add(Hash& hash, const SolverPlan& plan) {
   hash.add(std::uint64_t(plan.baseline_interval));
   hash.add(plan.frame_interval_s);
   hash.add(std::uint64_t{plan.pressure});
-  hash.add(plan.skin.sensel_pitch_mm);
+  hash.add(plan.skin.sensel_pitch_mm.col_mm);
+  if (!plan.skin.sensel_pitch_mm.is_square()) hash.add(plan.skin.sensel_pitch_mm.row_mm);
   hash.add(plan.skin.counts_per_newton);
   add(hash, plan.friction);
   const Calibration& planes = plan.calibration;

@@ -258,7 +258,7 @@ struct Simulator::State {
       for (auto* plane : {&truth.shear_x, &truth.shear_y}) plane->resize(truth.elements());
     }
     clear(truth);
-    const double pitch_mm = scene.skin.element_pitch_mm();
+    const double pitch_mm = scene.skin.element_pitch_mm().col_mm;
     for (const ClosedFormContact& contact : std::get<std::vector<ClosedFormContact>>(scene.load)) {
       const ContactKey state = state_at(contact, time_of(index));
       add_contact(contact, state, pitch_mm, truth);

@@ -59,7 +59,17 @@ double straightened(const PowerLaw& law, double reading) {
 void check(const Skin& skin, std::string_view where) {
   check_range(where, "rows", skin.rows, 2, kMaxSensels);
   check_range(where, "cols", skin.cols, 2, kMaxSensels);
-  check_range(where, "sensel_pitch_mm", skin.sensel_pitch_mm, 1e-3, 1e3);
+  if (!is_valid(skin.sensel_pitch_mm)) {
+    throw Error(where, "sensel_pitch_mm is " + text_of(skin.sensel_pitch_mm),
+                "it must lie in [0.001, 1000]");
+  }
+  if (skin.has_pillars() && !skin.sensel_pitch_mm.is_square()) {
+    throw Error(where,
+                fmt::format("a pitch of {} mm, and pillars need the same from row to row and from "
+                            "column to column",
+                            text_of(skin.sensel_pitch_mm)),
+                "give one pitch, or the layout sensels");
+  }
   check_range(where, "counts_per_newton", skin.counts_per_newton, kMinCountsPerNewton,
               kMaxCountsPerNewton);
   check_range(where, "threshold_counts", skin.threshold_counts, 0, kMaxCounts);

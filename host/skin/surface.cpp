@@ -55,11 +55,11 @@ Pose on_sphere(const Surface& surface, double x_mm, double y_mm) {
 }
 
 double x_of(const ElementGrid& pillars, std::uint32_t col) {
-  return (col - 0.5 * (pillars.cols - 1)) * pillars.pitch_mm;
+  return (col - 0.5 * (pillars.cols - 1)) * pillars.pitch_mm.col_mm;
 }
 
 double y_of(const ElementGrid& pillars, std::uint32_t row) {
-  return (0.5 * (pillars.rows - 1) - row) * pillars.pitch_mm;
+  return (0.5 * (pillars.rows - 1) - row) * pillars.pitch_mm.row_mm;
 }
 
 /// Slope by central differences, at the rim one-sided: of `count` heights, `stride` apart.
@@ -75,9 +75,10 @@ double slope(const float* heights, std::size_t stride, std::uint32_t count, std:
 Pose on_heights(const Surface& surface, const ElementGrid& pillars, std::uint32_t row,
                 std::uint32_t col) {
   const float* const heights = surface.heights_mm.data();
-  const double slope_x =
-      slope(heights + std::size_t{row} * pillars.cols, 1, pillars.cols, col, pillars.pitch_mm);
-  const double slope_down = slope(heights + col, pillars.cols, pillars.rows, row, pillars.pitch_mm);
+  const double slope_x = slope(heights + std::size_t{row} * pillars.cols, 1, pillars.cols, col,
+                               pillars.pitch_mm.col_mm);
+  const double slope_down =
+      slope(heights + col, pillars.cols, pillars.rows, row, pillars.pitch_mm.row_mm);
   Pose pose;
   pose.position_mm = {x_of(pillars, col), y_of(pillars, row),
                       heights[std::size_t{row} * pillars.cols + col]};
@@ -107,8 +108,8 @@ void check_heights(const Surface& surface, const ElementGrid& pillars, std::stri
 
 /// Half of the longest arc that the skin covers.
 double half_arc_mm(const Surface& surface, const ElementGrid& pillars) {
-  const double half_width = 0.5 * pillars.cols * pillars.pitch_mm;
-  const double half_height = 0.5 * pillars.rows * pillars.pitch_mm;
+  const double half_width = 0.5 * pillars.cols * pillars.pitch_mm.col_mm;
+  const double half_height = 0.5 * pillars.rows * pillars.pitch_mm.row_mm;
   if (surface.shape == SurfaceShape::sphere) return std::hypot(half_width, half_height);
   const double axis = surface.axis_deg * std::numbers::pi / 180;
   return half_width * std::abs(std::sin(axis)) + half_height * std::abs(std::cos(axis));

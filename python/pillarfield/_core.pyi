@@ -112,7 +112,8 @@ class FrameSource:
     skin: Skin
     times: npt.NDArray[np.float64]
     warnings: list[str]
-    def __init__(self, path: _Path, *, trust: bool = ..., dataset: str = ..., times: str = ...,
+    def __init__(self, path: Union[_Path, Sequence[_Path]], *, trust: bool = ...,
+                 dataset: str = ..., times: str = ...,
                  frame_size: Optional[tuple[int, int]] = ..., rate_hz: Optional[float] = ...,
                  tare_frames: int = ..., axes: str = ..., layout: str = ...,
                  falling: bool = ..., untimed: bool = ...) -> None: ...
@@ -200,18 +201,20 @@ class Skin:
     cols: int
     pillar_rows: int
     pillar_cols: int
-    sensel_pitch_mm: float
+    sensel_pitch_mm: Union[float, tuple[float, float]]
     pillar_pitch_mm: float
     layout: str
     element_rows: int
     element_cols: int
-    element_pitch_mm: float
+    element_pitch_mm: Union[float, tuple[float, float]]
+    element_area_mm2: float
     counts_per_newton: float
     threshold_counts: float
     full_scale_counts: Optional[float]
     power_law: Optional[tuple[float, float]]
     surface: Optional[Surface]
-    def __init__(self, rows: int, cols: int, *, sensel_pitch_mm: float = ...,
+    def __init__(self, rows: int, cols: int, *,
+                 sensel_pitch_mm: Union[float, tuple[float, float]] = ...,
                  counts_per_newton: float = ..., threshold_counts: float = ...,
                  full_scale_counts: Optional[float] = ...,
                  power_law: Optional[tuple[float, float]] = ...,

@@ -189,7 +189,7 @@ class ForceField:
         if kpa is None:
             raise Error("ForceField.pressure", f"'{unit}' is not a unit of pressure",
                         f"give {' or '.join(_core.pressure_units)}")
-        return self.normal * np.float32(1000 / kpa / self._skin.element_pitch_mm**2)
+        return self.normal * np.float32(1000 / kpa / self._skin.element_area_mm2)
 
     @property
     def shear_x(self) -> Floats:
@@ -412,10 +412,10 @@ class ForceField:
         import xarray
 
         rows, cols = self.shape[-2:]
-        pitch_mm = self._skin.element_pitch_mm if self._skin else 1.0
+        row_mm, col_mm = np.broadcast_to(self._skin.element_pitch_mm if self._skin else 1.0, 2)
         coordinates: dict[str, Any] = {
-            "y": ("y", (np.arange(rows)[::-1] - (rows - 1) / 2) * pitch_mm, {"units": "mm"}),
-            "x": ("x", (np.arange(cols) - (cols - 1) / 2) * pitch_mm, {"units": "mm"})}
+            "y": ("y", (np.arange(rows)[::-1] - (rows - 1) / 2) * row_mm, {"units": "mm"}),
+            "x": ("x", (np.arange(cols) - (cols - 1) / 2) * col_mm, {"units": "mm"})}
         axes = ("y", "x")
         if len(self.shape) == 3:
             axes = ("time", *axes)  # type: ignore[assignment]

@@ -36,6 +36,13 @@ def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
     return chosen.start, chosen.step, len(chosen)
 
 
+def is_files(frames: Any) -> bool:
+    """Whether these are a path, or a list of paths, of files or folders."""
+    if isinstance(frames, (list, tuple)):
+        return len(frames) > 0 and all(isinstance(each, (str, os.PathLike)) for each in frames)
+    return isinstance(frames, (str, os.PathLike))
+
+
 def warn(sentences: Iterable[str]) -> None:
     """Warns by each sentence, in the name of the line that called the package."""
     level, frame = 1, sys._getframe()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Axes, Path, Readings, axis_words, frames_first, range_of, readings_of, times_of
+from ._frames import Axes, Path, Readings, axis_words, frames_first, is_files, range_of, readings_of, times_of
 from ._scene import Simulation
 
 
@@ -22,6 +22,7 @@ class Recording(_core.FrameSource):
     recording[10] is a frame [R, C], recording[1000:2000:10] an array [T, R, C], of uint8, uint16 or
     float32 counts.
 
+    path: a file, a folder or a list of files: several are one source in order of their names
     trust: the file comes from your own programs, so it is not examined first
     dataset, times: names of the arrays of frames and times in an HDF5 file, .npz archive or .mat file
     frame_size: (R, C) of frames that lie in one line of a table or array
@@ -36,7 +37,8 @@ class Recording(_core.FrameSource):
     Raises Error if it holds no frames, is damaged, or an option does not fit it.
     """
 
-    def __init__(self, path: Path, *, trust: bool = False, dataset: str = "", times: str = "",
+    def __init__(self, path: Union[Path, Sequence[Path]], *, trust: bool = False,
+                 dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
                  tare_frames: int = 0, axes: Axes = "", layout: str = "",
                  falling: bool = False) -> None:
@@ -112,7 +114,7 @@ def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _cor
 
     trust: it comes from your own programs, so it is not examined first.
     """
-    kind = _core.kind_of(path)
+    kind = "frames" if os.path.isdir(path) else _core.kind_of(path)
     if kind == "calibration":
         return _core.Calibration.load(path, trust=trust)
     return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust)
@@ -129,7 +131,7 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
     skin, times, rate_hz, axes, calibration: as in solve()
     overwrite: replace an existing recording. Raises Error if it cannot be written.
     """
-    if isinstance(frames, (str, os.PathLike)) and (skin or calibration or times is not None):
+    if is_files(frames) and (skin or calibration or times is not None):
         frames = Recording(frames, rate_hz=rate_hz if times is None else 1.0, axes=axes)
         rate_hz, axes = None, ""
     if isinstance(frames, Recording) and (skin or calibration or times is not None):
@@ -147,9 +149,9 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
 
     axes: of an array, or that of a path.
     """
-    if isinstance(frames, (str, os.PathLike, Recording)) and times is not None:
+    if (is_files(frames) or isinstance(frames, Recording)) and times is not None:
         raise Error("times", "files have times of their own", "give times with an array")
-    if isinstance(frames, (str, os.PathLike)):
+    if is_files(frames):
         return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes))
     if isinstance(frames, Recording):
         if rate_hz is not None:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import ArgumentError, Error
 from ._field import ForceField
-from ._frames import Axes, Path, array_of, readings_of, timed, warn
+from ._frames import Axes, Path, array_of, is_files, readings_of, timed, warn
 from ._recording import Recording, skin_of, source_of
 from ._scene import Simulation
 from .calibrate import Step, tare
@@ -31,7 +31,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           axes: Axes = "", contacts: bool = False, device: str = "", **options: Any) -> ForceField:
     """Solves frames of readings into forces.
 
-    frames: path of a recording or Tekscan export; readings, counts, [T, R, C] or [R, C]; an iterator
+    frames: path of a recording or Tekscan export, of a folder of files, or a list of paths, which are
+        one source in order of names; readings, counts, [T, R, C] or [R, C]; an iterator
         of arrays [R, C]; a Recording or a Simulation
     skin: constants of the skin; by default those of the file, or Skin() for arrays, without pillars
     calibration: replaces that of the file; a step of pf.calibrate holds one
@@ -70,7 +71,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
                         "give calibration=pf.calibrate.tare(unloaded)")
         _warn([_SCALE_ASSUMED], _constants_given(skin, calibration, options))
         return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
-    if isinstance(frames, (list, tuple)):
+    if isinstance(frames, (list, tuple)) and not is_files(frames):
         frames = array_of(frames)
     source = source_of(frames, skin, times, rate_hz, axes=axes)
     if not isinstance(tare_frames, numbers.Integral):

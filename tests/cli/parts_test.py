@@ -155,7 +155,7 @@ class PartsTest(PartsFolder):
             del file["force/normal"]
             file["force/normal"] = normal
             file["force/time"][:] = times - times[0]
-        self.assert_fails("join", self.output, names=["00002.h5", "rise from frame to frame"])
+        self.assert_fails("join", self.output, names=["00002.h5", "and the part before it"])
         self.assertFalse(self.output.exists())
 
     def test_trust_reaches_parts(self):

@@ -1,14 +1,20 @@
 """Plain data: .npy, .npz, .mat, tables of numbers and HDF5 datasets give the forces of the same recording."""
 
+import importlib.util
 import itertools
+import json
+import pickle
+import sqlite3
 import struct
+import subprocess
+import sys
 import unittest
 import zlib
 
 import h5py
 import numpy as np
 
-from command import CommandTest, run, run_json
+from command import PROGRAM, CommandTest, run, run_json
 
 CONSTANTS = ("--counts-per-newton", 200, "--threshold", 2, "--pitch-mm", 0.5, "--layout", "pillars")
 
@@ -238,8 +244,13 @@ class PlainData(CommandTest):
         np.testing.assert_array_equal(self.solve(self.recording, "--rate", 100)[2], times)
         with h5py.File(self.recording, "r+") as file:
             file["frames/time"] = [0, 1, 3, 2, 4.0]
-        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"),
-                          names=["frame 3 has the time 2"])
+        solve = ("solve", self.recording, "-o", self.path("f.h5"), "--overwrite")
+        self.assertIn("1 time steps back, first at frame 3", run(*solve).stderr)
+        with h5py.File(self.path("f.h5")) as file:
+            np.testing.assert_array_equal(file["force/time"], [0, 1, 3, 2, 4])
+        self.assertIn("0.01 s apart", run(*solve, "--rate", 100).stderr)
+        with h5py.File(self.path("f.h5")) as file:
+            np.testing.assert_allclose(file["force/time"], times)
 
     def test_recordings_of_other_types(self):
         for dtype in ("i2", "i4", "f8", ">i8"):
@@ -304,6 +315,102 @@ class PlainData(CommandTest):
         self.assert_fails("stream", array, "--record", self.path("s.h5"), names=["--rate"])
         run("stream", array, "--rate", 200, "--record", self.path("s.h5"), "-q")
         self.assertGreater(run_json("info", self.path("s.h5"))["frames"], 0)  # A busy computer drops some.
+
+    def test_files_of_a_folder_are_one_source_or_one_each(self):
+        folder, out = self.path("in"), self.path("out")
+        folder.mkdir()
+        for i, frame in enumerate(readings()):
+            np.save(folder / f"{i + 7}.npy", frame)  # 10 and 11 come last, not first
+        for names in ((folder,), sorted(folder.iterdir())):
+            self.assert_solved(names[0], *names[1:], "--rate", 100)
+        run("solve", *folder.iterdir(), "-o", f"{out}/", "--contacts", f"{out}/", *CONSTANTS)
+        self.assertEqual(sorted(path.name for path in out.iterdir()),
+                         sorted(f"{i + 7}.{ending}" for i in range(5) for ending in ("csv", "h5")))
+        with h5py.File(out / "10.h5") as file:
+            np.testing.assert_array_equal(file["force/normal"], self.expected[0][3:4, ..., 2])
+        self.assert_fails("solve", folder, "-o", out, "--contacts", self.path("c.csv"), names=["c.csv", "folder"])
+        self.assert_fails("solve", folder, self.recording, "-o", self.path("f.h5"), "--rate", 1,
+                          names=["recording.h5", "7.npy", "-o a folder"])
+
+    def test_two_pitches(self):
+        """c27: the load lies three columns of 5.08 mm right of the middle, and half a row of 7.62 mm up or down."""
+        frames = np.zeros((10, 20, 21), "u2")
+        frames[:, 9, 13] = 100
+        np.save(self.path("a.npy"), frames)
+        solve = ("solve", self.path("a.npy"), "--rate", 10, "--counts-per-newton", 100, "--overwrite")
+        run(*solve, "--pitch-mm", "7.62x5.08", "--contacts", self.path("c.csv"), "--outputs", "pressure",
+            "-o", self.path("f.h5"))
+        head, total = (line.split(",") for line in self.path("c.csv").read_text().splitlines()[:2])
+        total = {name: float(value) for name, value in zip(head, total) if value and name != "row"}
+        self.assertAlmostEqual(total["centre_of_pressure_x_mm"], 15.24, places=4)
+        self.assertAlmostEqual(total["peak_y_mm"] if "peak_y_mm" in total else 3.81, 3.81, places=4)
+        self.assertAlmostEqual(total["centre_of_pressure_y_mm"], 3.81, places=4)
+        self.assertAlmostEqual(total["area_mm2"], 38.7096, places=3)
+        self.assertAlmostEqual(total["peak_pressure_kpa"], 25.8334, places=3)
+        with h5py.File(self.path("f.h5")) as file:
+            np.testing.assert_array_equal(file.attrs["sensel_pitch_mm"], [7.62, 5.08])
+            self.assertAlmostEqual(file["force/pressure"][0, 9, 13], 25.8334, places=3)
+        self.assertEqual(run_json("info", self.path("f.h5"))["sensel_pitch_mm"], [7.62, 5.08])
+        self.assert_fails(*solve, "--pitch-mm", "7.62x5.08", "--layout", "pillars", "-o", self.path("g.h5"),
+                          names=["7.62x5.08", "pillars"])
+        self.assert_fails(*solve, "--pitch-mm", "7.62x", "-o", self.path("g.h5"), status=2, names=["--pitch-mm", "7.62x5.08"])
+
+    def test_the_mcap_of_a_stream_is_read(self):
+        path = self.path("a.mcap")
+        run("stream", self.recording, "--to", path, "-q")
+        self.assert_solved(path)
+        whole = path.read_bytes()
+        for name in (b"/skin/raw", b"sensor_msgs/msg/Image", b"zstd"):
+            path.write_bytes(whole.replace(name, bytes(reversed(name))))
+            self.assert_fails("solve", path, "-o", self.path("f.h5"), names=["a.mcap"])
+        path.write_bytes(whole.replace(b"/skin/raw", b"/other/it"))
+        self.assert_fails("solve", path, "-o", self.path("f.h5"), names=["/other/it (sensor_msgs/msg/Image)", "mcap_ros2"])
+        for at in range(0, len(whole), len(whole) // 20):  # Each ends in a line, or is read.
+            path.write_bytes(whole[:at] + bytes([whole[at] ^ 255]) + whole[at + 1:])
+            self.assertNotIn("terminate", subprocess.run([PROGRAM, "info", path], capture_output=True, text=True,
+                                                         timeout=60, check=False).stderr)
+
+    def test_the_printed_line_of_python_reads_other_formats(self):
+        frames, path = readings(), self.path("other")
+        lines = frames.reshape(5, -1)
+
+        def sqlite():
+            bag = sqlite3.connect(path)
+            bag.executescript("CREATE TABLE topics(id INTEGER, name TEXT, type TEXT);"
+                              "CREATE TABLE messages(id INTEGER, topic_id INTEGER, timestamp INTEGER, data BLOB);")
+            bag.execute("INSERT INTO topics VALUES(3, '/pad', 'std_msgs/msg/UInt16MultiArray')")
+            for n, line in enumerate(lines):
+                data = bytes([0, 1, 0, 0]) + struct.pack("<3I", 0, 0, 48) + line.tobytes()
+                bag.execute("INSERT INTO messages VALUES(?, 3, ?, ?)", (9 - n, n, data))
+            bag.commit()
+            bag.close()
+
+        def text(write, **options):
+            return lambda: path.write_bytes(write(**options))
+
+        cases = [
+            (lines, text(lambda: pickle.dumps({"images": list(lines), "mass": [70.0] * 5}))),
+            (lines, sqlite),
+            (frames, text(lambda: json.dumps(frames.tolist()).encode())),
+            (lines, text(lambda: ("<log>" + "".join(f"<f>{' '.join(map(str, x))}</f>" for x in lines) + "</log>").encode())),
+        ]
+        if importlib.util.find_spec("PIL"):
+            from PIL import Image
+            pages = [Image.fromarray(frame) for frame in frames]
+            cases.append((frames, lambda: pages[0].save(path, "TIFF", save_all=True, append_images=pages[1:])))
+            cases.append((frames[:1], lambda: pages[0].save(path, "PNG")))
+        for expected, write in cases:
+            path.unlink(missing_ok=True)
+            write()
+            line = self.assert_fails("solve", path, "-o", self.path("f.h5"), names=["run python3 -c"])
+            command = line.split("; run ", 1)[1].replace("python3", sys.executable, 1)
+            subprocess.run(command, shell=True, check=True, cwd=self.folder)
+            with self.subTest(line=line):
+                np.testing.assert_array_equal(np.load(self.path("other.npy")), expected)
+
+    def test_small_archives_of_much_are_refused(self):
+        np.savez_compressed(self.path("a.npz"), raw=np.zeros((300, 1000, 1000), "u1"))
+        self.assert_fails("info", self.path("a.npz"), names=["300000128 bytes", "268435456", "numpy.savez"])
 
     def test_a_dash_is_no_file(self):
         for arguments in (("solve", "-", "-o", "f.h5"), ("solve", self.recording, "-o", "-"),

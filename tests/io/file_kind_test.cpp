@@ -53,6 +53,44 @@ TEST(FileKind, NamesTheMistake) {
   EXPECT_TRUE(has_all(error(directory / "."), {"is a directory"}));
 }
 
+TEST(FileKind, OtherFormatsAreNamedWithALineOfPython) {
+  const TemporaryDirectory directory;
+  struct Case {
+    std::string bytes;
+    const char* name;
+    const char* code;
+  };
+  using namespace std::string_literals;
+  for (const Case& each : {
+           Case{"\x80\x04\x95"s, "pickle", "pickle.load(open("},
+           Case{"SQLite format 3\0"s, "SQLite", "sqlite3"},
+           Case{"\x89PNG\r\n\x1a\n"s, "PNG", "Image.open"},
+           Case{"II*\0"s, "TIFF", "ImageSequence"},
+           Case{"\xff\xd8\xff\xe0"s, "JPEG", "Image.open"},
+           Case{"PAR1"s, "Parquet", "read_parquet"},
+           Case{"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"s, "XLS", "read_excel"},
+           Case{"\x1f\x8b\x08"s, "gzip", "gzip.open"},
+           Case{"{\"frames\": [[1, 2], [3, 4]]}"s, "JSON", "json.load"},
+           Case{"[[1, 2], [3, 4]]"s, "JSON", "json.load"},
+           Case{"<?xml version='1.0'?><a/>"s, "XML", "etree"},
+           Case{"#ROSBAG V2.0\n"s, "ROS 1", "rosbags"},
+           Case{std::string(257, '\0') + "ustar", "tar", "unpack_archive"},
+       }) {
+    SCOPED_TRACE(each.name);
+    write_bytes(directory / "file.bin", each.bytes + std::string(40, ' '));
+    const std::string error =
+        error_of([&] { static_cast<void>(open_frames(directory / "file.bin")); });
+    EXPECT_TRUE(has_all(error, {"is not read; run python3 -c", each.name, each.code})) << error;
+  }
+  write_bytes(directory / "it's.p", "\x80\x04\x95");
+  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_frames(directory / "it's.p")); }),
+                      {"open('FILE', 'rb')"}));
+  std::filesystem::create_directory(directory / "store.zarr");
+  write_bytes(directory / "store.zarr" / ".zgroup", "{}");
+  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_frames(directory / "store.zarr")); }),
+                      {"Zarr", "zarr.open"}));
+}
+
 TEST(FileKind, ARenamedFileGivesOnlyOurErrors) {
   const TemporaryDirectory directory;
   const auto here = directory / "here";

@@ -231,7 +231,6 @@ TEST_F(PlainTable, MistakesNameTheirLine) {
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n\n5,6\n"), {"a frame of 1 rows", "2"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n5,6\n", shape), {"holds 3 rows"}));
   EXPECT_TRUE(has_all(refused("1,2,3\n", shape), {"has 3 numbers", "2 x 2 needs 4"}));
-  EXPECT_TRUE(has_all(refused("1,1,2,3,4\n1,1,2,3,4\n", shape), {"frame 1 has the time 1"}));
   EXPECT_TRUE(has_all(refused("1,2\n"), {"1 x 2", "2 to 65534"}));
   EXPECT_TRUE(has_all(refused("1,2\n3,4\n\n5,6\n7,8\n", {}), {"no times", "--rate"}));
   EXPECT_TRUE(has_all(refused("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status\n"
@@ -240,6 +239,61 @@ TEST_F(PlainTable, MistakesNameTheirLine) {
   std::string line;
   for (int i = 0; i < (1 << 19); ++i) line += "1,1,";
   EXPECT_TRUE(has_all(refused(line), {"table.csv:1", "longer", ".npy"}));
+}
+
+TEST_F(PlainTable, TimesThatDoNotRiseAreKeptOrReplacedByARate) {
+  const std::string text = "0,1,2,3,4\n0,5,6,7,8\n2,1,2,3,4\n1,1,2,3,4\n1,1,1,1,1\n";
+  const auto named = [](const FrameSource& source, const std::vector<std::string>& words) {
+    return std::ranges::count_if(source.warnings(), [&](const std::string& warning) {
+      return bool{has_all(warning, words)};
+    });
+  };
+  const auto kept = open(text, square());
+  EXPECT_EQ(times_of(*kept), (std::vector<double>{0, 0, 2, 1, 1}));
+  EXPECT_EQ(named(*kept, {"2 times equal the one before, 1 time steps back, first at frame 1;",
+                          "order of the file", "--rate"}),
+            1);
+  ReadOptions rated = square();
+  rated.rate_hz = 10;
+  const auto replaced = open(text, rated);
+  EXPECT_EQ(times_of(*replaced), (std::vector<double>{0, 0.1, 0.2, 0.3, 0.4}));
+  EXPECT_EQ(named(*replaced, {"frames are 0.1 s apart"}), 1);
+  EXPECT_TRUE(has_all(refused("0,1,2,3,4\n1,5,6,7,8\n", rated), {"has times", "leave out --rate"}));
+}
+
+TEST(FrameSeriesOf, FilesAndFoldersAreOneSourceInNaturalOrder) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path folder = directory / "session";
+  std::filesystem::create_directory(folder);
+  const auto write = [&](const char* name, const std::string& text) {
+    write_bytes(folder / name, text);
+    return folder / name;
+  };
+  const auto last = write("frame_10.csv", "9,0.5\n1,1\n");
+  const auto first = write("frame_2.csv", "1,2\n3,4\n");
+  write("frame_09.csv", "5,6\n7,8\n");
+  write(".hidden", "no frame");
+  const ReadOptions rated = {.rate_hz = 10};
+  for (const auto& source :
+       {open_frames(folder, rated),
+        open_frames(std::vector{last, folder / "frame_09.csv", first}, rated)}) {
+    EXPECT_EQ(source->frames(), 3);
+    EXPECT_EQ(source->sensel_type(), SenselType::f32);  // as one of them needs
+    EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.5, 1, 1}));
+    EXPECT_EQ(times_of(*source), (std::vector<double>{0, 0.1, 0.2}));
+    EXPECT_TRUE(has_all(source->read_as(), {"3 files", "frame_2.csv to frame_10.csv", "2 x 2"}));
+  }
+  const auto refused = [&](const ReadOptions& options) {
+    return error_of([&] { static_cast<void>(open_frames(folder, options)); });
+  };
+  EXPECT_TRUE(has_all(refused({}), {"no times", "--rate"}));
+  write("frame_11.csv", "1,2,3\n4,5,6\n");
+  EXPECT_TRUE(has_all(refused(rated), {"frame_11.csv", "2 x 3", "frame_2.csv"}));
+  write("notes.txt", "nothing");
+  EXPECT_TRUE(has_all(refused(rated), {"several kinds", "4 .csv", "1 .txt", "session/*.csv"}));
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directory(folder);
+  EXPECT_TRUE(has_all(refused(rated), {"session", "without files"}));
 }
 
 TEST(PlainData, OptionsThatAFileContradictsAreRefused) {
@@ -267,7 +321,7 @@ TEST(PlainData, ConstantsOfTheOptionsNeedNoWarning) {
                                                                    .threshold_counts = 3,
                                                                    .full_scale_counts = 255});
   EXPECT_TRUE(source->warnings().empty());
-  EXPECT_EQ(source->skin().sensel_pitch_mm, 0.5);
+  EXPECT_EQ(source->skin().sensel_pitch_mm, Pitch(0.5));
   EXPECT_EQ(source->skin().counts_per_newton, 100);
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->skin().full_scale_counts, 255);

@@ -37,7 +37,7 @@ void print_header(const FrameSource& source) {
   const Skin& skin = source.skin();
   std::printf("%s %u %u %s %llu\n", source.format().c_str(), skin.rows, skin.cols,
               name_of(source.sensel_type()), static_cast<unsigned long long>(source.frames()));
-  std::printf("skin %.17g %.17g %.17g %.17g\n", skin.sensel_pitch_mm, skin.counts_per_newton,
+  std::printf("skin %.17g %.17g %.17g %.17g\n", skin.sensel_pitch_mm.col_mm, skin.counts_per_newton,
               skin.threshold_counts, skin.full_scale_counts.value_or(-1));
   const Calibration& calibration = source.calibration();
   print_values<float>("tare", calibration.tare);

@@ -178,6 +178,18 @@ TEST_F(Tekscan, WidensToSixteenBitsAnywhere) {
   }
 }
 
+TEST_F(Tekscan, RowsAndColumnsMayBeAtDifferentDistances) {
+  Export written;
+  written.set("ROW_SPACING", "ROW_SPACING 7.62 mm");
+  written.set("COL_SPACING", "COL_SPACING 5.08 mm");
+  const auto source = open(written.text());
+  EXPECT_EQ(source->skin().sensel_pitch_mm, Pitch(7.62, 5.08));
+  EXPECT_FALSE(warnings(*source, "is used for both"));
+  const auto pillars = open(written.text(), SkinLayout::pillars);
+  EXPECT_EQ(pillars->skin().sensel_pitch_mm, Pitch(std::sqrt(7.62 * 5.08)));
+  EXPECT_TRUE(warnings(*pillars, "is used for both"));
+}
+
 TEST_F(Tekscan, KnowsTheUnitsOfSpacing) {
   const std::map<std::string, double> spacings = {
       {"0.127 centimeters", 1.27}, {"0.05 cm", 0.5}, {"1.5 mm", 1.5},  {"2 millimeters", 2},
@@ -186,7 +198,8 @@ TEST_F(Tekscan, KnowsTheUnitsOfSpacing) {
     Export written;
     written.set("ROW_SPACING", "ROW_SPACING " + spacing);
     written.set("COL_SPACING", "COL_SPACING " + spacing);
-    EXPECT_DOUBLE_EQ(open(written.text())->skin().sensel_pitch_mm, pitch_mm) << spacing;
+    EXPECT_DOUBLE_EQ(open(written.text())->skin().sensel_pitch_mm.row_mm, pitch_mm) << spacing;
+    EXPECT_DOUBLE_EQ(open(written.text())->skin().sensel_pitch_mm.col_mm, pitch_mm) << spacing;
   }
 }
 
@@ -415,7 +428,7 @@ TEST(RealTekscan, AgreesWithTheRawSumsOfItsSoftware) {
   ASSERT_EQ(source->frames(), 309u);
   EXPECT_EQ(source->skin().rows, 28u);
   EXPECT_EQ(source->skin().cols, 28u);
-  EXPECT_DOUBLE_EQ(source->skin().sensel_pitch_mm, 1.27);
+  EXPECT_DOUBLE_EQ(source->skin().sensel_pitch_mm.col_mm, 1.27);
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->sensel_type(), SenselType::u8);
 

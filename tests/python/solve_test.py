@@ -379,6 +379,26 @@ class Warnings(unittest.TestCase):
         for value, words in ((0, "No sensel is in contact"), (32, "there is no tare")):
             self.assertIn(words, self.warnings_of(np.full_like(self.FRAMES, value), counts_per_newton=320))
 
+    def test_files_in_order_of_names_and_two_pitches(self):
+        folder, frames = WORK / "frames", RANDOM.integers(100, 120, (3, 8, 12)).astype(np.uint8)
+        folder.mkdir(exist_ok=True)
+        for number, frame in zip((9, 10, 11), frames):
+            np.save(folder / f"{number}.npy", frame)
+        pads = pf.Skin(8, 12, layout="sensels", sensel_pitch_mm=(7.62, 5.08), counts_per_newton=10)
+        self.assertEqual((pads.sensel_pitch_mm, pads.element_area_mm2), ((7.62, 5.08), 7.62 * 5.08))
+        self.assertEqual(pf.Skin(8, 12, sensel_pitch_mm=2).sensel_pitch_mm, 2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = [pf.solve(files, rate_hz=5, skin=pads, contacts=True)
+                     for files in (folder, sorted(folder.iterdir(), reverse=True))]
+            self.assertEqual(len(pf.Recording([str(folder)], rate_hz=5)), 3)
+        for forces in found:
+            np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
+            np.testing.assert_allclose(forces.pressure_kpa, frames * 100 / (7.62 * 5.08), rtol=1e-6)
+            self.assertAlmostEqual(forces[0].contacts.total.area_mm2, 96 * 7.62 * 5.08, places=3)
+        with self.assertRaisesRegex(pf.Error, "pillars need the same"):
+            pf.Skin(8, 12, sensel_pitch_mm=(7.62, 5.08))
+
     def test_axes_are_given_or_refused_where_doubtful(self):
         time, row, col = np.ogrid[-1:1:80j, -1:1:12j, -1:1:8j]
         frames = (200 * (1 - time**2) * np.exp(-4 * (row**2 + col**2))).astype(np.uint8)

@@ -15,7 +15,7 @@ PICTURE = 0
 
 class PageClient(WebSocket):
     def __init__(self, port):
-        super().__init__(port, protocols=("pillarfield.page.v1",))
+        super().__init__(port, protocols=("pillarfield.page.v2",))
 
     def settle(self):
         self.write(b"done", PING)
@@ -40,16 +40,17 @@ class WebTest(SinkTest):
 
     def check_picture(self, content, file):
         """Returns the number of its frame."""
-        rows, cols, planes, pitch_mm = struct.unpack_from("<3If", content, 4)
-        count, end = rows * cols, 20 + 4 * planes * rows * cols
+        rows, cols, planes, row_mm, col_mm = struct.unpack_from("<3I2f", content, 4)
+        count, end = rows * cols, 24 + 4 * planes * rows * cols
         text = json.loads(content[end + count:])
         frame = text["sequence"]
-        forces = np.frombuffer(content, "<f4", planes * count, 20).reshape(planes, rows, cols)
+        forces = np.frombuffer(content, "<f4", planes * count, 24).reshape(planes, rows, cols)
         for name, plane in zip(("shear_x", "shear_y", "normal"), forces, strict=True):
             np.testing.assert_array_equal(plane, file[f"force/{name}"][frame])
         status = np.frombuffer(content, np.uint8, count, end).reshape(rows, cols)
         np.testing.assert_array_equal(status, file["force/status"][frame])
-        self.assertAlmostEqual(pitch_mm, file.attrs["pillar_pitch_mm"], places=6)
+        for pitch_mm in (row_mm, col_mm):
+            self.assertAlmostEqual(pitch_mm, file.attrs["pillar_pitch_mm"], places=6)
         total = np.sum(forces[-1], dtype=float)
         self.assertAlmostEqual(text["total"]["force"]["normal"], total, places=9)
         return frame

@@ -89,7 +89,7 @@ class PageTest(SinkTest):
         threading.Thread(target=other.serve_forever, daemon=True).start()
         self.addCleanup(other.shutdown)
         connect = f"""new Promise(done => {{
-          const socket = new WebSocket("{self.url.replace("http", "ws")}", "pillarfield.page.v1");
+          const socket = new WebSocket("{self.url.replace("http", "ws")}", "pillarfield.page.v2");
           socket.onopen = () => done("open");
           socket.onerror = () => done("refused");
         }})"""

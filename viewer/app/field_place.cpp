@@ -80,8 +80,8 @@ std::optional<PillarIndex> pillar_at(const FieldPlace& place, const RenderSettin
   const auto point = sheet_point(place, settings, pixel);
   if (!point) return std::nullopt;
   const Skin& skin = place.source->skin;
-  const double col = point->x / skin.element_pitch_mm() + 0.5 * skin.element_cols();
-  const double row = 0.5 * skin.element_rows() - point->y / skin.element_pitch_mm();
+  const double col = point->x / skin.element_pitch_mm().col_mm + 0.5 * skin.element_cols();
+  const double row = 0.5 * skin.element_rows() - point->y / skin.element_pitch_mm().row_mm;
   if (col < 0 || row < 0 || col >= skin.element_cols() || row >= skin.element_rows()) {
     return std::nullopt;
   }
@@ -90,23 +90,23 @@ std::optional<PillarIndex> pillar_at(const FieldPlace& place, const RenderSettin
 
 std::optional<PillarRect> pillars_between(const FieldPlace& place, Vec2 corner_mm, Vec2 other_mm) {
   const Skin& skin = place.source->skin;
-  const double pitch = skin.element_pitch_mm();
+  const auto [row_mm, col_mm] = skin.element_pitch_mm();
   const double middle_col = 0.5 * skin.element_cols();
   const double middle_row = 0.5 * skin.element_rows();
   const auto [left, right] = std::minmax(corner_mm.x, other_mm.x);
   const auto [below, above] = std::minmax(corner_mm.y, other_mm.y);
   const auto [col_begin, col_end] =
-      touched(left / pitch + middle_col, right / pitch + middle_col, skin.element_cols());
+      touched(left / col_mm + middle_col, right / col_mm + middle_col, skin.element_cols());
   const auto [row_begin, row_end] =
-      touched(middle_row - above / pitch, middle_row - below / pitch, skin.element_rows());
+      touched(middle_row - above / row_mm, middle_row - below / row_mm, skin.element_rows());
   if (col_begin >= col_end || row_begin >= row_end) return std::nullopt;
   return PillarRect{row_begin, row_end, col_begin, col_end};
 }
 
 Vec2 corner_of(const FieldPlace& place, std::uint32_t row, std::uint32_t col) {
   const Skin& skin = place.source->skin;
-  return {(col - 0.5 * skin.element_cols()) * skin.element_pitch_mm(),
-          (0.5 * skin.element_rows() - row) * skin.element_pitch_mm()};
+  return {(col - 0.5 * skin.element_cols()) * skin.element_pitch_mm().col_mm,
+          (0.5 * skin.element_rows() - row) * skin.element_pitch_mm().row_mm};
 }
 
 std::optional<Vec2> pixel_of(const FieldPlace& place, const RenderSettings& settings,

@@ -60,8 +60,8 @@ double Ground::height_of_corner(int row, int col) const {
 double Ground::height_at(Vec2 sheet_mm) const {
   if (relief_.mm_per_newton == 0) return 0;
   const Skin& skin = source_->skin;
-  const double col = sheet_mm.x / skin.element_pitch_mm() + 0.5 * skin.element_cols();
-  const double row = 0.5 * skin.element_rows() - sheet_mm.y / skin.element_pitch_mm();
+  const double col = sheet_mm.x / skin.element_pitch_mm().col_mm + 0.5 * skin.element_cols();
+  const double row = 0.5 * skin.element_rows() - sheet_mm.y / skin.element_pitch_mm().row_mm;
   const double left = std::floor(col);
   const double above = std::floor(row);
   const auto corner = [&](int down, int right) {
@@ -81,7 +81,7 @@ bool Ground::is_hidden(Vec2 sheet_mm, Vec3 place) const {
   if (!std::holds_alternative<OrbitView>(settings_->view)) return false;
   const Camera camera = camera_of(settings_->view, surface_, plot_);
   const Vec3 to_eye = camera.eye - place;
-  const double pitch = source_->skin.element_pitch_mm();
+  const double pitch = arrow_pitch_mm(*source_);
   if (surface_.kind != SurfaceKind::plane) {  // The skin itself is in the way.
     const Vec3 base = frame_at(surface_, sheet_mm).position;
     const auto first = first_hit({camera.eye, base - camera.eye}, surface_, size_);
@@ -112,11 +112,11 @@ std::optional<Vec2> Ground::beside(Vec2 sheet_mm, Vec2 aside_mm) const {
 
 std::vector<SeenPoint> Ground::outline(const PillarRect& rect) const {
   const Skin& skin = source_->skin;
-  const double pitch = skin.element_pitch_mm();
-  const double left = (rect.col_begin - 0.5 * skin.element_cols()) * pitch;
-  const double right = (rect.col_end - 0.5 * skin.element_cols()) * pitch;
-  const double top = (0.5 * skin.element_rows() - rect.row_begin) * pitch;
-  const double bottom = (0.5 * skin.element_rows() - rect.row_end) * pitch;
+  const auto [row_mm, col_mm] = skin.element_pitch_mm();
+  const double left = (rect.col_begin - 0.5 * skin.element_cols()) * col_mm;
+  const double right = (rect.col_end - 0.5 * skin.element_cols()) * col_mm;
+  const double top = (0.5 * skin.element_rows() - rect.row_begin) * row_mm;
+  const double bottom = (0.5 * skin.element_rows() - rect.row_end) * row_mm;
   const std::array<Vec2, 5> corners{
       {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}};
   const bool straight = surface_.kind == SurfaceKind::plane && relief_.mm_per_newton == 0;

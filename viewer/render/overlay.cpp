@@ -303,7 +303,7 @@ class LegendList {
 void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Layout& layout,
                        double y) {
   const RenderSettings& settings = canvas.settings;
-  const double pitch = source.skin.element_pitch_mm();
+  const double pitch = arrow_pitch_mm(source);
   const std::uint32_t block = arrow_block_of(settings, layout.plot, pitch);
   const double cell_pixels = block * pitch * pixels_per_mm(settings.view, layout.plot);
   const double length = 1.5 * cell_pixels;

@@ -43,7 +43,7 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
   uint col_begin = 0;
   uint col_end = cols;
   if (const auto* top = std::get_if<TopView>(&settings.view)) {
-    const double pitch = source.skin.element_pitch_mm();
+    const auto [row_mm, col_mm] = source.skin.element_pitch_mm();
     // One more cell at each side, since arrows may be longer than a cell.
     const auto clamped = [&](double value, uint most) {
       return static_cast<uint>(std::clamp(value, 0.0, static_cast<double>(most)));
@@ -51,10 +51,10 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
     const double half_width = 0.5 * plot.width / top->pixels_per_mm;
     const double half_height = 0.5 * plot.height / top->pixels_per_mm;
     const double air = 2.0 * block;
-    col_begin = clamped((top->centre_mm.x - half_width) / pitch + 0.5 * cols - air, cols);
-    col_end = clamped((top->centre_mm.x + half_width) / pitch + 0.5 * cols + air + 1, cols);
-    row_begin = clamped((-top->centre_mm.y - half_height) / pitch + 0.5 * rows - air, rows);
-    row_end = clamped((-top->centre_mm.y + half_height) / pitch + 0.5 * rows + air + 1, rows);
+    col_begin = clamped((top->centre_mm.x - half_width) / col_mm + 0.5 * cols - air, cols);
+    col_end = clamped((top->centre_mm.x + half_width) / col_mm + 0.5 * cols + air + 1, cols);
+    row_begin = clamped((-top->centre_mm.y - half_height) / row_mm + 0.5 * rows - air, rows);
+    row_end = clamped((-top->centre_mm.y + half_height) / row_mm + 0.5 * rows + air + 1, rows);
   }
   // Align cells to the skin, so that they do not move with the view.
   row_begin = row_begin / block * block;
@@ -68,8 +68,13 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
 }  // namespace
 
 SkinSize skin_size(const SourceInfo& source) {
-  const double pitch = source.skin.element_pitch_mm();
-  return {source.skin.element_cols() * pitch, source.skin.element_rows() * pitch};
+  const auto [row_mm, col_mm] = source.skin.element_pitch_mm();
+  return {source.skin.element_cols() * col_mm, source.skin.element_rows() * row_mm};
+}
+
+double arrow_pitch_mm(const SourceInfo& source) {
+  const Pitch pitch_mm = source.skin.element_pitch_mm();
+  return std::min(pitch_mm.row_mm, pitch_mm.col_mm);
 }
 
 double floor_step_mm(const SkinSize& size) {
@@ -95,7 +100,8 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
                        const RenderSettings& settings, const Viewport& plot) {
   const bool from_above = std::holds_alternative<TopView>(settings.view);
   const SkinSize size = skin_size(source);
-  const double pitch = source.skin.element_pitch_mm();
+  const Pitch pitch_mm = source.skin.element_pitch_mm();
+  const double pitch = arrow_pitch_mm(source);
   const Surface surface = from_above ? Surface{} : settings.surface;
   const std::uint32_t block = arrow_block_of(settings, plot, pitch);
   const Relief relief = relief_of(settings, size);
@@ -110,7 +116,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
 
   shader::Scene scene;
   scene.clip_from_world = clip_from_world(settings.view, surface, size, plot);
-  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch),
+  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch_mm.col_mm),
                  kpa_per_newton(source.skin)};
   const auto [along_x, along_y, radius_mm, kind] = shader_surface(surface);
   scene.surface = {along_x, along_y, radius_mm, kind};
@@ -140,7 +146,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   const Colour black{12, 14, 18};
   scene.layer_colours = {pack(white), pack(black), pack(white, 110),
                          pack(colour_of(Special::no_reading, settings.theme))};
-  scene.relief = {narrow(relief.mm_per_newton), narrow(relief.most_mm), 0, 0};
+  scene.relief = {narrow(relief.mm_per_newton), narrow(relief.most_mm), narrow(pitch_mm.row_mm), 0};
   const double longest = std::max(size.width_mm, size.height_mm);
   scene.ground = {narrow(box_about(size, surface).low.z - 0.01 * longest),
                   narrow(floor_step_mm(size)), narrow(1.6 * longest), 0};
@@ -151,7 +157,7 @@ HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
                       const RenderSettings& settings, const Viewport& plot) {
   const Scale scale = info_of(settings.quantity).scale;
   // Directions and classes have no mean; in a top view all pixels cover equally many pillars.
-  const double pixels = source.skin.element_pitch_mm() * pixels_per_mm(settings.view, plot);
+  const double pixels = arrow_pitch_mm(source) * pixels_per_mm(settings.view, plot);
   const bool near = std::holds_alternative<TopView>(settings.view) && pixels > kSinglePillarPixels;
   const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
   return {static_cast<uint>(settings.quantity), static_cast<uint>(scale),

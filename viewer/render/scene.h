@@ -15,6 +15,9 @@ namespace pillarfield::viewer {
                                     const RenderSettings& settings, const Viewport& plot);
 [[nodiscard]] shader::Colours colours_of(const RenderSettings& settings);
 
+/// The smaller pitch of the elements, mm: what arrows and pixels of one are measured by.
+[[nodiscard]] double arrow_pitch_mm(const SourceInfo& source);
+
 /// Size of the skin's sheet, mm.
 [[nodiscard]] SkinSize skin_size(const SourceInfo& source);
 

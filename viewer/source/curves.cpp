@@ -29,14 +29,14 @@ bool is_idle_block(const std::uint8_t* status) {
   return block == 0;
 }
 
-CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, double pitch_mm) {
+CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, const Pitch& pitch_mm) {
   constexpr std::uint32_t kBlock = 8;
   const bool sheared = has_pillars(forces);
   CurveSums sums;
   const std::uint32_t row_end = std::min(rect.row_end, forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, forces.cols);
   for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {
-    const double y_mm = (0.5 * forces.rows - row - 0.5) * pitch_mm;
+    const double y_mm = (0.5 * forces.rows - row - 0.5) * pitch_mm.row_mm;
     const std::size_t first = std::size_t{row} * forces.cols;
     for (std::uint32_t col = rect.col_begin; col < col_end;) {
       if (col + kBlock <= col_end && is_idle_block(&forces.status[first + col])) {
@@ -47,7 +47,8 @@ CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, doubl
       if ((forces.status[at] & status::kUsable) != 0) {
         const float x_n = sheared ? forces.shear_x[at] : 0;
         const float y_n = sheared ? forces.shear_y[at] : 0;
-        sums.add(x_n, y_n, forces.normal[at], (col + 0.5 - 0.5 * forces.cols) * pitch_mm, y_mm);
+        sums.add(x_n, y_n, forces.normal[at], (col + 0.5 - 0.5 * forces.cols) * pitch_mm.col_mm,
+                 y_mm);
       }
       ++col;
     }
@@ -90,8 +91,9 @@ std::vector<CurvePoint> points_between(const std::deque<CurvePoint>& points, dou
 
 }  // namespace
 
-CurvePoint curve_point(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
-  const CurveSums sums = curve_sums(field.forces, rect, pillar_pitch_mm);
+CurvePoint curve_point(const ShownField& field, const PillarRect& rect,
+                       const Pitch& element_pitch_mm) {
+  const CurveSums sums = curve_sums(field.forces, rect, element_pitch_mm);
   const bool loaded = sums.normal > 0;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   const double centre_x = loaded ? sums.first_x / sums.normal : unknown;
@@ -107,8 +109,8 @@ CurvePoint curve_point(const ShownField& field, const PillarRect& rect, double p
           .centre_y_mm = narrow(centre_y)};
 }
 
-Curves::Curves(double pillar_pitch_mm, std::size_t most_points)
-    : pitch_mm_(pillar_pitch_mm), most_points_(std::max<std::size_t>(most_points, 1)) {}
+Curves::Curves(const Pitch& element_pitch_mm, std::size_t most_points)
+    : pitch_mm_(element_pitch_mm), most_points_(std::max<std::size_t>(most_points, 1)) {}
 
 void Curves::set_rects(std::span<const PillarRect> rects) {
   const std::scoped_lock lock(mutex_);

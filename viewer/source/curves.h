@@ -24,7 +24,7 @@ struct CurvePoint {
 
 /// Sums over the part of `rect` inside the field. Idle blocks of 8 pillars cost one comparison.
 [[nodiscard]] CurvePoint curve_point(const ShownField& field, const PillarRect& rect,
-                                     double pillar_pitch_mm);
+                                     const Pitch& element_pitch_mm);
 
 /// Forces over time: a curve for the whole skin, and one for each of further rectangles of pillars.
 /// Thread safe.
@@ -33,7 +33,7 @@ class Curves {
   static constexpr std::size_t kMostPoints = std::size_t{1} << 22;
 
   /// A curve of more than `most_points` loses its first points.
-  explicit Curves(double pillar_pitch_mm, std::size_t most_points = kMostPoints);
+  explicit Curves(const Pitch& element_pitch_mm, std::size_t most_points = kMostPoints);
 
   /// Sets the further rectangles; those that exist keep their curves, new ones are empty.
   /// Equal rectangles have one curve.
@@ -72,7 +72,7 @@ class Curves {
   };
   void append(Points& points, const CurvePoint& point);
 
-  double pitch_mm_;
+  Pitch pitch_mm_;
   std::size_t most_points_;
   mutable std::mutex mutex_;  ///< guards the members below
   Points total_;

@@ -69,7 +69,7 @@ bool is_finite(const ForceFieldView& forces, std::size_t at) {
 /// Accumulates SelectionSums; moments are about the middle of the skin until finish().
 class SumBuilder {
  public:
-  SumBuilder(const ForceFieldView& forces, double pitch_mm)
+  SumBuilder(const ForceFieldView& forces, const Pitch& pitch_mm)
       : forces_(forces), pitch_mm_(pitch_mm) {}
 
   void add(PillarIndex pillar) {
@@ -85,7 +85,7 @@ class SumBuilder {
 
   [[nodiscard]] SelectionSums finish() {
     const auto touched = static_cast<double>(sums_.in_contact);
-    sums_.area_mm2 = touched * pitch_mm_ * pitch_mm_;
+    sums_.area_mm2 = touched * pitch_mm_.area_mm2();
     sums_.mean_normal = sums_.in_contact == 0 ? 0 : sums_.normal / touched;
     const bool loaded = sums_.normal > 0;
     const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -98,8 +98,8 @@ class SumBuilder {
 
  private:
   void add_force(PillarIndex pillar, std::size_t at) {
-    const double x = (pillar.col + 0.5 - 0.5 * forces_.cols) * pitch_mm_;
-    const double y = (0.5 * forces_.rows - pillar.row - 0.5) * pitch_mm_;
+    const double x = (pillar.col + 0.5 - 0.5 * forces_.cols) * pitch_mm_.col_mm;
+    const double y = (0.5 * forces_.rows - pillar.row - 0.5) * pitch_mm_.row_mm;
     const double normal = forces_.normal[at];
     if (sums_.in_contact == 0 || normal > sums_.peak_normal) {
       sums_.peak_normal = normal;
@@ -116,7 +116,7 @@ class SumBuilder {
   }
 
   const ForceFieldView& forces_;
-  double pitch_mm_;
+  Pitch pitch_mm_;
   SelectionSums sums_;
   double first_x_ = 0;  ///< first moments of the normal force, N mm
   double first_y_ = 0;
@@ -146,8 +146,9 @@ PillarValues values_at(const ShownField& field, PillarIndex pillar) {
   return values;
 }
 
-SelectionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
-  SumBuilder adding(field.forces, pillar_pitch_mm);
+SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
+                        const Pitch& element_pitch_mm) {
+  SumBuilder adding(field.forces, element_pitch_mm);
   const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);
   for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {

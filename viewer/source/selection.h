@@ -63,7 +63,7 @@ struct SelectionSums {
 
 /// Sums over the part of `rect` inside the field.
 [[nodiscard]] SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
-                                      double pillar_pitch_mm);
+                                      const Pitch& element_pitch_mm);
 
 /// Magnitude of a force and the direction (theta, phi) from which it comes
 /// (docs/derivations/pillar_model.md, equation M2).

@@ -31,14 +31,14 @@ struct ShownContacts {
 /// restarts tracking with ids from 1.
 class FieldContacts {
  public:
-  explicit FieldContacts(double pillar_pitch_mm, ContactOptions options = {})
-      : pitch_mm_(pillar_pitch_mm), options_(std::move(options)) {}
+  explicit FieldContacts(const Pitch& element_pitch_mm, ContactOptions options = {})
+      : pitch_mm_(element_pitch_mm), options_(std::move(options)) {}
 
   /// See ContactTracker::update() for time.
   [[nodiscard]] ShownContacts contacts_of(const ShownField& field);
 
  private:
-  double pitch_mm_;
+  Pitch pitch_mm_;
   ContactOptions options_;
   std::optional<ContactTracker> tracker_;
   std::uint64_t last_index_ = 0;

@@ -82,15 +82,17 @@ void add_solve(CLI::App& parent, Work& work) {
       "  pillarfield solve demo.h5 -o forces.npy --outputs angles,uncertainty --noise 0.5\n"
       "  pillarfield solve demo.h5 -o forces.h5 --estimator contact --contacts contacts.csv\n");
   Group input(command, "Input");
-  input.file(
-      "INPUT", options->input,
-      "Recording (HDF5), Tekscan ASCII export, or plain data: .npy, .npz, .mat, CSV, HDF5 dataset");
+  input
+      .text("INPUT", options->inputs, "FILE",
+            "Recording (HDF5), Tekscan ASCII export, MCAP of stream, or plain data: .npy, .npz, "
+            ".mat, CSV, HDF5 dataset; several files, or a folder, are one source in order of names")
+      ->required();
   add_tare_frames(command, options->plan.read);
   add_plain_data(command, options->plan.read, true);
   Group(command, "Output")
       .text("-o,--output", options->output, "FILE",
             "Force fields; the ending sets the format: " + endings_of(OutputKind::forces) +
-                " [none, with --contacts]");
+                "; a folder gets one .h5 of each input [none, with --contacts]");
   command->parse_complete_callback([chosen = options] {
     if (!chosen->output.empty() || !chosen->contacts_file.empty()) return;
     throw CLI::RequiredError("--output, the forces of all elements, or --contacts, their totals,");

@@ -127,7 +127,7 @@ ReadOptions frame_options(const PlanOptions& options) {
   }
   if (!options.scene.empty()) {
     const Skin skin = load_scene(options.scene).skin;
-    take(read.sensel_pitch_mm, skin.sensel_pitch_mm);
+    if (!read.sensel_pitch_mm) read.sensel_pitch_mm = skin.sensel_pitch_mm;
     take(read.counts_per_newton, skin.counts_per_newton);
     take(threshold, skin.threshold_counts);
   }

@@ -31,6 +31,15 @@ FrameSize frame_size_of(const std::string& text) {
       fmt::format("'{}' is not ROWSxCOLS of 2 to {} each, such as 40x60", text, kMaxSensels));
 }
 
+Pitch pitch_of(const std::string& text) {
+  if (const auto pitch = parse_pitch(text)) return *pitch;
+  throw CLI::ValidationError(
+      "--pitch-mm",
+      fmt::format("'{}' is not a distance of 0.001 to 1000 mm, such as 5, nor that from row to row "
+                  "and from column to column, such as 7.62x5.08",
+                  text));
+}
+
 std::vector<ArrayAxis> axes_of(const std::string& text) {
   try {
     return parse_axes(text);
@@ -132,8 +141,13 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
       "Tekscan exports sensels]");
   plain.flag("--falling", options.falling,
              "Readings fall under load: they are mirrored, 255 or 65535 less the reading");
-  plain.number("--pitch-mm", options.sensel_pitch_mm, "MM",
-               "Distance between neighbouring sensels [the file's]", 0.001, 1000);
+  command
+      ->add_option_function<std::string>(
+          "--pitch-mm", [&](const std::string& text) { options.sensel_pitch_mm = pitch_of(text); },
+          "Distance between neighbouring sensels: 5, or 7.62x5.08 where rows lie 7.62 mm apart and "
+          "columns 5.08 mm [the file's]")
+      ->type_name("MM")
+      ->group("Plain data");
 }
 
 void add_tare_frames(CLI::App* command, ReadOptions& options) {

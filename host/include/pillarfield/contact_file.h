@@ -13,7 +13,7 @@ namespace pillarfield {
 
 /// Attributes of a table of contacts.
 struct ContactFileInfo {
-  double element_pitch_mm = 0;
+  Pitch element_pitch_mm;
   std::string source;  ///< name of the file of frames
   ContactOptions options;
   SkinLayout layout = SkinLayout::pillars;

@@ -64,7 +64,7 @@ struct ContactQuantities {
   /// positive. The moments about the other two axes are zero there.
   double torque_nmm = 0;
 
-  double area_mm2 = 0;           ///< pillars times pitch²
+  double area_mm2 = 0;           ///< pillars times the area of one
   double peak_n = 0;             ///< the largest normal force of a pillar
   PatchPlace peak;               ///< its position; the first, row by row, if several are equal
   double mean_pressure_kpa = 0;  ///< normal_n over area_mm2

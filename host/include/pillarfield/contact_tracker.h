@@ -85,7 +85,7 @@ void check(const ContactOptions& options, const std::string& where);
 class ContactTracker {
  public:
   /// Throws Error if the options are out of range.
-  explicit ContactTracker(double element_pitch_mm, const ContactOptions& options = {});
+  explicit ContactTracker(const Pitch& element_pitch_mm, const ContactOptions& options = {});
   ~ContactTracker();
   ContactTracker(ContactTracker&&) noexcept;
   ContactTracker& operator=(ContactTracker&&) noexcept;

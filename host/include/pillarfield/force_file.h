@@ -23,7 +23,7 @@ namespace pillarfield {
 struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< of elements: pillars, or sensels without pillars
   std::uint32_t cols = 0;
-  double element_pitch_mm = 0;
+  Pitch element_pitch_mm;
   std::string estimator;     ///< "direct", "paper" or "contact"
   std::string device;        ///< device that solved it
   std::string source;        ///< name of the file of frames

@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "pillarfield/pitch.h"
+
 namespace pillarfield {
 
 /// A unit in which pressures are shown. HDF5 files, streams and names that end in _kpa keep kPa.
@@ -18,8 +20,8 @@ inline constexpr std::array<PressureUnit, 3> kPressureUnits = {
     {{"kPa", "kpa", 1}, {"psi", "psi", 6.894757293168}, {"mmHg", "mmhg", 0.133322387415}}};
 
 /// Pressure of a newton on an element of this pitch, kPa.
-[[nodiscard]] constexpr float kpa_per_newton(double element_pitch_mm) {
-  return static_cast<float>(1000 / (element_pitch_mm * element_pitch_mm));  // N/mm² is MPa.
+[[nodiscard]] constexpr float kpa_per_newton(const Pitch& element_pitch_mm) {
+  return static_cast<float>(1000 / element_pitch_mm.area_mm2());  // N/mm² is MPa.
 }
 
 }  // namespace pillarfield

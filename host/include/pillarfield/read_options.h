@@ -35,14 +35,15 @@ struct ReadOptions {
   /// likely has another order is refused (require_likely_axes()).
   std::vector<ArrayAxis> axes = {};
 
-  /// Frames per second, for a file without times: frame i has the time i / rate_hz. Throws Error
-  /// for a file with times, unless `untimed`.
+  /// Frames per second, for a file without times, or with times that tie or step back: frame i has
+  /// the time i / rate_hz. Throws Error for a file whose times rise, unless `untimed`. Without it,
+  /// times that do not rise are kept in the order of the file, with a warning.
   std::optional<double> rate_hz = {};
   /// The caller needs no times: without a rate, those of a file without times are NaN.
   bool untimed = false;
 
   /// Constants of the skin, in place of those in the file.
-  std::optional<double> sensel_pitch_mm = {};
+  std::optional<Pitch> sensel_pitch_mm = {};
   std::optional<double> counts_per_newton = {};
   std::optional<double> threshold_counts = {};
   std::optional<double> full_scale_counts = {};

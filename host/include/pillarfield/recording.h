@@ -50,12 +50,19 @@ class FrameSource {
 };
 
 /// Opens a recording (HDF5), a Tekscan ASCII export or plain data (docs/formats.md): .npy, .npz,
-/// .mat, a table of numbers, an HDF5 dataset. The content decides, not the name. If its writer was
-/// killed or still writes, a recording has the frames flushed so far. Frames are read on demand,
-/// except those of text files and compressed arrays. Throws Error if the file is none of these, is
-/// damaged, holds values out of range or times that do not rise, or contradicts the options.
+/// .mat, a table of numbers, an HDF5 dataset; or the files of a folder, as below. The content
+/// decides, not the name. If its writer was killed or still writes, a recording has the frames
+/// flushed so far. Frames are read on demand, except those of text files and compressed arrays.
+/// Throws Error if the file is none of these, is damaged, holds values out of range, or contradicts
+/// the options.
 [[nodiscard]] std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
                                                        const ReadOptions& options = {});
+
+/// Opens several files, and the files of folders, as one source: their frames in natural order of
+/// the files' names, in which frame_2 comes before frame_10. Throws Error too if a file differs
+/// from the first in size, layout, constants or calibration.
+[[nodiscard]] std::unique_ptr<FrameSource> open_frames(
+    const std::vector<std::filesystem::path>& paths, const ReadOptions& options = {});
 
 /// Writes a recording, format "pillarfield-recording" (docs/formats.md).
 ///

@@ -44,7 +44,8 @@ struct ContactErrors {
 /// Compares resultant forces and torques with the truth, of the patch and by contact.
 class ResultantComparison {
  public:
-  explicit ResultantComparison(double pillar_pitch_mm) : pillar_pitch_mm_(pillar_pitch_mm) {}
+  explicit ResultantComparison(const Pitch& element_pitch_mm)
+      : element_pitch_mm_(element_pitch_mm) {}
 
   /// Adds a frame. True contacts are of the pillars that the truth loads in the ideal model, as for
   /// Comparison; solved contacts follow from the status. Throws Error if sizes differ.
@@ -57,7 +58,7 @@ class ResultantComparison {
   void add_patch(const ForceFieldView& solved, const ForceFieldView& truth);
   void add_contacts(const ForceFieldView& solved, const ForceFieldView& truth);
 
-  double pillar_pitch_mm_;
+  Pitch element_pitch_mm_;
   std::uint64_t frames_ = 0;
   ResultantErrors patch_;
   ContactErrors contacts_;

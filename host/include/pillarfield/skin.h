@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "pillarfield/pitch.h"
 #include "pillarfield/surface.h"
 
 namespace pillarfield {
@@ -47,9 +48,9 @@ enum class SkinLayout : std::uint8_t {
 /// (r, c) stands on the sensels (2r..2r+1, 2c..2c+1); a last odd row or column has no pillar. The
 /// elements of the force field are the pillars, or, without pillars, the sensels.
 struct Skin {
-  std::uint32_t rows = 0;                ///< sensel rows, 2..65534
-  std::uint32_t cols = 0;                ///< sensel columns, 2..65534
-  double sensel_pitch_mm = 0.632455532;  ///< 250 sensels per cm²: 10/sqrt(250) mm
+  std::uint32_t rows = 0;               ///< sensel rows, 2..65534
+  std::uint32_t cols = 0;               ///< sensel columns, 2..65534
+  Pitch sensel_pitch_mm = 0.632455532;  ///< 250 per cm²; with pillars the same both ways
   double counts_per_newton =
       320;  ///< k of equation (2): counts a sensel reads per newton on its pillar, or on itself
   double threshold_counts = 0;              ///< a sensel is usable if its reading is above
@@ -63,7 +64,7 @@ struct Skin {
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
   [[nodiscard]] std::size_t sensels() const { return std::size_t{rows} * cols; }
   [[nodiscard]] std::size_t pillars() const { return std::size_t{pillar_rows()} * pillar_cols(); }
-  [[nodiscard]] double pillar_pitch_mm() const { return 2 * sensel_pitch_mm; }
+  [[nodiscard]] double pillar_pitch_mm() const { return 2 * sensel_pitch_mm.col_mm; }
 
   [[nodiscard]] bool has_pillars() const { return layout == SkinLayout::pillars; }
   [[nodiscard]] std::uint32_t element_rows() const { return has_pillars() ? pillar_rows() : rows; }
@@ -71,9 +72,7 @@ struct Skin {
   [[nodiscard]] std::size_t elements() const {
     return std::size_t{element_rows()} * element_cols();
   }
-  [[nodiscard]] double element_pitch_mm() const {
-    return has_pillars() ? pillar_pitch_mm() : sensel_pitch_mm;
-  }
+  [[nodiscard]] Pitch element_pitch_mm() const { return (has_pillars() ? 2 : 1) * sensel_pitch_mm; }
   [[nodiscard]] ElementGrid element_grid() const {
     return {element_rows(), element_cols(), element_pitch_mm()};
   }

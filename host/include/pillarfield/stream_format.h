@@ -74,14 +74,16 @@ typedef struct PillarfieldRing {
   uint32_t kind;  /* PillarfieldRingKind */
   uint32_t rows;  /* of sensels; in RING_RESULTS of pillars */
   uint32_t cols;
-  uint32_t type;       /* PillarfieldReadingType; in a ring of results 0 */
+  /* PillarfieldReadingType; of results 0, or the bits of a float: mm from one row to the next,
+   * where that is not pitch_mm */
+  uint32_t type;
   uint32_t slots;      /* at least 2 */
   uint64_t slot_bytes; /* from one slot to the next, a multiple of 64 */
   uint64_t session;    /* a number that the writer draws when it starts */
   uint64_t published;  /* how many were published; the newest has the number published - 1 */
   uint32_t signal;     /* the lower 32 bits of `published` */
   uint32_t closed;     /* 1: the writer has ended */
-  double pitch_mm;     /* of results: from one pillar, or sensel, to the next; of frames 0 */
+  double pitch_mm; /* of results: from one pillar, or sensel, to the next in a row; of frames 0 */
 } PillarfieldRing;
 
 /* A slot of frames: this, then all readings, row by row from the top left. */

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pillarfield/pitch.h"
+
 namespace pillarfield {
 
 /// A vector in the body's frame.
@@ -45,7 +47,7 @@ struct Surface {
 struct ElementGrid {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
-  double pitch_mm = 0;
+  Pitch pitch_mm;
 };
 
 /// Throws Error, naming `where`, if a member is out of range, heights are not one a pillar, or the

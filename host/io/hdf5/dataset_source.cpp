@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/foreign_file.h"
 #include "io/frame_source.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/dataset.h"
@@ -20,13 +21,15 @@ namespace {
 [[noreturn]] void ask_for_dataset(const hdf5::File& file,
                                   const std::optional<std::string>& format) {
   const std::vector<std::string> names = hdf5::list_datasets(file);
-  throw Error(file.path.string(),
-              "is an HDF5 file but not a recording: " +
-                  (format ? fmt::format("its format is '{:.60}'", *format)
-                          : std::string("it has no attribute 'format'")),
-              names.empty() ? "it holds no dataset of frames, see docs/formats.md"
-                            : fmt::format("name its readings with --dataset; it has {}",
-                                          fmt::join(names, ", ")));
+  throw Error(
+      file.path.string(),
+      "is an HDF5 file but not a recording: " +
+          (format ? fmt::format("its format is '{:.60}'", *format)
+                  : std::string("it has no attribute 'format'")),
+      names.empty()
+          ? "it holds no dataset of frames; to see what it holds, " +
+                python_line("import h5py; h5py.File({0}).visititems(print)", file.path)
+          : fmt::format("name its readings with --dataset; it has {}", fmt::join(names, ", ")));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
   hdf5::write_attribute(file, root, force_format::kDevice, info.device);
   hdf5::write_attribute(file, root, force_format::kSource, info.source);
   hdf5::write_attribute(file, root, force_format::kProgramVersion, std::string(kVersion));
-  hdf5::write_attribute(file, root, force_format::pitch_of(info.layout), info.element_pitch_mm);
+  write_pitch(file, root, force_format::pitch_of(info.layout), info.element_pitch_mm);
   write_effects(file, force_format::kEffects, info.effects);
   if (info.part) write_part(file, *info.part);
   if (!info.surface) return;

@@ -181,8 +181,14 @@ std::vector<double> Joined::times_of_parts() {
     const std::span part(times.data() + range.first, range.frames());
     hdf5::StoredFrames(file, force_format::kTime, 0)
         .get_all(0, part.size(), H5T_NATIVE_DOUBLE, part.data());
-    RisingTimes(file.path.string(), before_s).add(part);
-    if (!part.empty()) before_s = part.back();
+    TimeOrder(file.path.string()).add(part);
+    if (part.empty()) continue;
+    if (part.back() <= before_s) {
+      throw Error(file.path.string(),
+                  fmt::format("ends at {} s, and the part before it at {} s", part.back(), before_s),
+                  "solve the part again");
+    }
+    before_s = part.back();
   }
   return times;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 
 namespace pillarfield {
 
@@ -26,8 +27,9 @@ class Inflater::State {
   std::size_t read(std::span<std::byte> bytes) {
     const std::size_t wanted = bytes.size();
     while (!bytes.empty() && !has_ended_) {
+      if (is_interrupted()) throw Error(place_, "interrupted while it was read", "start again");
       if (stream_.avail_in == 0) fill();
-      const auto room = static_cast<uInt>(std::min<std::size_t>(bytes.size(), 1U << 30U));
+      const auto room = static_cast<uInt>(std::min<std::size_t>(bytes.size(), 16U << 20U));
       stream_.next_out = reinterpret_cast<Bytef*>(bytes.data());
       stream_.avail_out = room;
       const int result = ::inflate(&stream_, Z_NO_FLUSH);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,8 +11,13 @@
 
 namespace pillarfield {
 
-/// Most bytes that compressed data are inflated to in memory.
+/// Most bytes that compressed data are inflated to in memory: 64 times as many as they have, but
+/// always 256 MiB, and never more than 1 GiB.
 inline constexpr std::uint64_t kMostInflatedBytes = std::uint64_t{1} << 30;
+[[nodiscard]] constexpr std::uint64_t most_inflated(std::uint64_t compressed_bytes) {
+  return std::clamp(64 * std::min(compressed_bytes, kMostInflatedBytes), kMostInflatedBytes / 4,
+                    kMostInflatedBytes);
+}
 /// Bytes that a byte of deflated data stands for, at most.
 inline constexpr std::uint64_t kMostDeflateRatio = 1032;
 
@@ -31,7 +37,8 @@ class Inflater {
   Inflater(Inflater&& other) noexcept;
   Inflater& operator=(Inflater&&) = delete;
 
-  /// Fills `bytes` and returns how many of them there are. Throws Error if the data are damaged.
+  /// Fills `bytes` and returns how many of them there are. Throws Error if the data are damaged, or
+  /// is_interrupted() becomes true.
   std::size_t read(std::span<std::byte> bytes);
 
  private:

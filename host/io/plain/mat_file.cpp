@@ -245,7 +245,7 @@ MatFile::MatFile(const std::filesystem::path& path) : file_(path), names_(path) 
   is_swapped_ = is_little != (std::endian::native == std::endian::little);
   list_variables();
   std::size_t counted = 0;
-  std::uint64_t budget = kMostInflatedBytes;
+  std::uint64_t budget = most_inflated(file_.size());
   for (std::size_t index = 0; index < variables_.size(); ++index) {
     MatReader reader(file_, variables_[index], is_swapped_, budget);
     VariableLister(reader, index, arrays_, names_, counted).list();
@@ -299,13 +299,14 @@ std::vector<std::byte> MatFile::inflated(const MatArray& array, const std::strin
   if (array.bytes() / kMostDeflateRatio > variable.bytes) {
     throw Error(place, "is smaller than any compression makes it", kDamagedMat);
   }
-  std::uint64_t budget = kMostInflatedBytes;
+  const std::uint64_t most = most_inflated(variable.bytes);
+  std::uint64_t budget = most;
   MatReader reader(file_, variable, is_swapped_, budget);
   reader.skip_to(array.at);
   if (array.bytes() > budget) {
     throw Error(place,
-                fmt::format("has {} bytes, and compressed variables of at most {} are read",
-                            array.bytes(), kMostInflatedBytes),
+                fmt::format("has {} bytes in {}, and at most {} are read of so few", array.bytes(),
+                            variable.bytes, most),
                 "save it with -v6 or -v7.3");
   }
   std::vector<std::byte> numbers(array.bytes());

@@ -43,15 +43,15 @@ struct MatArray {
 /// structs; other values are named by names() and not read.
 class MatFile {
  public:
-  /// Throws Error if the file is damaged, or holds more than 1000 variables or 1 GiB of compressed
-  /// cells and structs.
+  /// Throws Error if the file is damaged, or holds more than 1000 variables, or compressed cells
+  /// and structs beyond most_inflated().
   explicit MatFile(const std::filesystem::path& path);
 
   [[nodiscard]] const ArrayNames& names() const { return names_; }
   [[nodiscard]] const MatArray& array(std::size_t index) const { return arrays_[index]; }
 
   /// The array in C order, so with its axes reversed. Throws Error if it is compressed and damaged,
-  /// or compressed and larger than kMostInflatedBytes.
+  /// or compressed and larger than most_inflated().
   [[nodiscard]] std::unique_ptr<NumberArray> open(std::size_t index) const;
 
  private:

@@ -23,9 +23,10 @@ MatReader::MatReader(const InputFile& file, const MatVariable& variable, bool is
 void MatReader::read(std::span<std::byte> bytes) {
   if (inflater_) {
     if (bytes.size() > budget_) {
-      throw Error(file_.path().string(),
-                  fmt::format("its variables inflate to more than {} bytes", kMostInflatedBytes),
-                  "save the frames alone, with -v6 or -v7.3");
+      throw Error(
+          file_.path().string(),
+          fmt::format("its variables inflate to more than {} bytes", most_inflated(file_.size())),
+          "save the frames alone, with -v6 or -v7.3");
     }
     budget_ -= bytes.size();
     if (inflater_->read(bytes) != bytes.size()) fail("ends within a variable");

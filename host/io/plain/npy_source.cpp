@@ -7,6 +7,7 @@
 
 #include "base/input_file.h"
 #include "base/npy.h"
+#include "io/foreign_file.h"
 #include "io/frame_source.h"
 #include "io/plain/array_names.h"
 #include "io/plain/inflater.h"
@@ -69,6 +70,10 @@ class NpzArchive {
   }
 
   [[nodiscard]] const ArrayNames& names() const { return names_; }
+  /// Throws Error if it is not an archive of NumPy.
+  void require_arrays() const {
+    if (!has_npy_) refuse_foreign_archive(path_, is_workbook_);
+  }
 
   [[nodiscard]] std::unique_ptr<NumberArray> open(std::size_t index) const {
     const NpzArray& array = arrays_[index];
@@ -94,7 +99,9 @@ class NpzArchive {
     std::string name = member.name;
     if (name.ends_with(kEnding)) name.resize(name.size() - kEnding.size());
     const std::string head = head_of(file_, member, kLongestNpyHeader);
+    is_workbook_ = is_workbook_ || name == "xl/workbook.xml";
     if (!head.starts_with(kNpyMagic)) return;
+    has_npy_ = true;
     try {
       arrays_.push_back({name, member, header_of_readings(head, name)});
       names_.add(name, arrays_.back().header.shape.size());
@@ -106,6 +113,8 @@ class NpzArchive {
   std::filesystem::path path_;
   InputFile file_;
   std::vector<NpzArray> arrays_;
+  bool has_npy_ = false;
+  bool is_workbook_ = false;
   ArrayNames names_;
 };
 
@@ -121,6 +130,7 @@ std::unique_ptr<FileSource> open_npy(const std::filesystem::path& path,
 std::unique_ptr<FileSource> open_npz(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   const NpzArchive archive(path);
+  archive.require_arrays();
   std::unique_ptr<NumberArray> readings =
       archive.open(archive.names().array_of_frames(options.dataset));
   std::vector<double> times_s;

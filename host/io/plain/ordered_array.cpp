@@ -7,6 +7,7 @@
 
 #include "io/plain/source.h"
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 
 namespace pillarfield {
 namespace {
@@ -88,6 +89,8 @@ std::unique_ptr<NumberArray> reordered_in_memory(NumberArray& given, const AxisO
                                 std::max<std::uint64_t>(1, slices));
   std::vector<std::byte> some(batch * slice_bytes);
   for (std::uint64_t first = 0; first < slices; first += batch) {
+    if (is_interrupted())
+      throw Error(given.place(), "interrupted while it was read", "start again");
     const std::uint64_t count = std::min(batch, slices - first);
     given.read(first, count, some.data());
     for (std::uint64_t i = 0; i < count; ++i) {

@@ -58,13 +58,12 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
   if (times_s_.empty()) {
     assume_times(options);
   } else {
-    require_no_rate(options);
     if (times_s_.size() != frames_) {
       throw Error(array_->place(),
                   fmt::format("has {} frames and {} times", frames_, times_s_.size()),
                   "store one time per frame");
     }
-    RisingTimes(path.string()).add(times_s_);
+    settle_times(times_s_, options);
   }
   warn_of_size();
 }

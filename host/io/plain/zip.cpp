@@ -178,10 +178,10 @@ std::string head_of(const InputFile& archive, const ZipMember& member, std::size
 
 std::vector<std::byte> inflate(const InputFile& archive, const ZipMember& member) {
   const std::string place = fmt::format("{}: {:.60}", archive.path().string(), member.name);
-  if (member.bytes > kMostInflatedBytes) {
+  if (const std::uint64_t most = most_inflated(member.stored_bytes); member.bytes > most) {
     throw Error(place,
-                fmt::format("has {} bytes, and compressed arrays of at most {} are read",
-                            member.bytes, kMostInflatedBytes),
+                fmt::format("has {} bytes in {}, and at most {} are read of so few", member.bytes,
+                            member.stored_bytes, most),
                 "save it uncompressed, with numpy.savez");
   }
   if (member.bytes / kMostDeflateRatio > member.stored_bytes) {

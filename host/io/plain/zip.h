@@ -27,7 +27,7 @@ struct ZipMember {
 [[nodiscard]] std::string head_of(const InputFile& archive, const ZipMember& member,
                                   std::size_t count);
 
-/// Inflates a deflated member. Throws Error if it exceeds kMostInflatedBytes, has another size than
+/// Inflates a deflated member. Throws Error if it exceeds most_inflated(), has another size than
 /// the archive says, or another checksum.
 [[nodiscard]] std::vector<std::byte> inflate(const InputFile& archive, const ZipMember& member);
 

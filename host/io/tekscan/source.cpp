@@ -66,27 +66,26 @@ Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
   check(skin_, path.c_str());
 }
 
-/// Sets the pitch: the geometric mean of both spacings, which keeps the area of a sensel.
+/// Sets the pitch; pillars need one, the geometric mean, which keeps the area of a sensel.
 void Tekscan::take_spacing(const TekscanHeader& header, const ReadOptions& options) {
   if (options.sensel_pitch_mm) {
     skin_.sensel_pitch_mm = *options.sensel_pitch_mm;
     return;
   }
   if (!header.row_spacing_mm && !header.col_spacing_mm) {
-    warnings_.push_back(fmt::format(
-        "The export has no spacing; a sensel pitch of {} mm is assumed.", skin_.sensel_pitch_mm));
+    warnings_.push_back(
+        fmt::format("The export has no spacing; a sensel pitch of {} mm is assumed.",
+                    skin_.sensel_pitch_mm.col_mm));
     return;
   }
   const double row_mm = header.row_spacing_mm.value_or(header.col_spacing_mm.value_or(0));
   const double col_mm = header.col_spacing_mm.value_or(row_mm);
-  if (row_mm == col_mm) {
-    skin_.sensel_pitch_mm = row_mm;
-    return;
-  }
+  skin_.sensel_pitch_mm = {row_mm, col_mm};
+  if (!skin_.has_pillars() || row_mm == col_mm) return;
   skin_.sensel_pitch_mm = std::sqrt(row_mm * col_mm);
   warnings_.push_back(fmt::format(
       "Rows are {:.6g} mm apart and columns {:.6g} mm; a pitch of {:.6g} mm is used for both.",
-      row_mm, col_mm, skin_.sensel_pitch_mm));
+      row_mm, col_mm, skin_.sensel_pitch_mm.col_mm));
 }
 
 /// Sets the constants of an export of raw counts.
@@ -123,9 +122,15 @@ void Tekscan::take_newtons(const TekscanHeader& header) {
 
 void Tekscan::take_times(TekscanExport& data, const ReadOptions& options) {
   times_s_ = std::move(data.times_s);
-  if (!times_s_.empty() || data.header.seconds_per_frame) require_no_rate(options);
-  if (!times_s_.empty()) return RisingTimes(path_.string()).add(times_s_);
-  if (!data.header.seconds_per_frame && !options.rate_hz) {
+  const bool is_timed = !times_s_.empty();
+  if (is_timed) settle_times(times_s_, options);
+  if (!times_s_.empty()) return;
+  if (is_timed) data.header.seconds_per_frame = 1 / *options.rate_hz;  // in place of its times
+  if (!is_timed && data.header.seconds_per_frame && options.rate_hz && !options.untimed) {
+    throw Error(path_.string(), "has times of its frames", "leave out --rate");
+  }
+  assumes_times_ = !data.header.seconds_per_frame;
+  if (assumes_times_ && !options.rate_hz) {
     warnings_.push_back("The export has no times; frames are assumed to be 1 s apart.");
   }
   const double period_s = data.header.seconds_per_frame.value_or(1 / options.rate_hz.value_or(1));

@@ -76,13 +76,17 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info,
       unit_(info.pressure_unit) {
   const ContactOptions& options = info.contacts.value();
   const auto& friction = options.friction.given;
-  file_.write(
-      fmt::format("{},\"version\":1,\"source\":{},"
-                  "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
-                  "\"reach_mm\":{},\"frames\":[",
-                  kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
-                  json_number(info.element_pitch_mm), options.minimum_pillars,
-                  friction ? json_number(*friction) : "null", json_number(options.reach_mm)));
+  const Pitch& pitch = info.element_pitch_mm;
+  file_.write(fmt::format(
+      "{},\"version\":1,\"source\":{},"
+      "\"{}\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+      "\"reach_mm\":{},\"frames\":[",
+      kContactJsonHead, json_string(info.source), force_format::pitch_of(info.layout),
+      pitch.is_square()
+          ? json_number(pitch.col_mm)
+          : fmt::format("[{},{}]", json_number(pitch.row_mm), json_number(pitch.col_mm)),
+      options.minimum_pillars, friction ? json_number(*friction) : "null",
+      json_number(options.reach_mm)));
 }
 
 void JsonSink::append(const SolvedFrame& frame) {

@@ -96,7 +96,7 @@ class CellGrid {
   explicit CellGrid(const Skin& skin)
       : pillar_rows_(skin.element_rows()),
         pillar_cols_(skin.element_cols()),
-        cell_mm_(skin.element_pitch_mm() / static_cast<double>(kCellsPerPillar)) {}
+        cell_mm_(skin.element_pitch_mm().col_mm / static_cast<double>(kCellsPerPillar)) {}
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
   /// Place of a cell's centre.

@@ -98,7 +98,7 @@ IndenterHistory::IndenterHistory(const Scene& scene, std::size_t number)
       grid_(scene.skin),
       traction_to_force_n_(grid_.cell_mm() * grid_.cell_mm() * std::numbers::pi * (4.0 / 3) *
                            scene.modulus_kpa * 1e-3),
-      surface_(indenter_, scene.skin.element_pitch_mm(), scene.seed, number),
+      surface_(indenter_, scene.skin.element_pitch_mm().col_mm, scene.seed, number),
       half_spaces_(grid_.cell_mm()) {}
 
 std::shared_ptr<const IndenterForces> IndenterHistory::forces(std::uint64_t frame) {

@@ -125,7 +125,7 @@ void check_edge(const Indenter& indenter, const std::string& where) {
 
 void check_height_map(const Indenter& indenter, const Skin& skin, const std::string& where) {
   if (indenter.height_map.empty()) throw Error(where, "height_map is missing", "name a file");
-  const double most_mm = (kMaxContactPillars - 1) * skin.element_pitch_mm();
+  const double most_mm = (kMaxContactPillars - 1) * skin.element_pitch_mm().col_mm;
   for (const double size : indenter.height_map_size_mm) {
     check_range(where, "height_map_size_mm", size, kIndenterSizeMm);
     if (size <= most_mm) continue;

@@ -20,11 +20,11 @@ struct Quantity {
 
 // Keys and ranges, for reading files and for checking scenes made in code.
 
-inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
-    {"sensel_pitch_mm", &Skin::sensel_pitch_mm, {1e-3, 1e3}},
+inline constexpr std::array<Quantity<Skin>, 2> kSkinQuantities = {{
     {"counts_per_newton", &Skin::counts_per_newton, {kMinCountsPerNewton, kMaxCountsPerNewton}},
     {"threshold_counts", &Skin::threshold_counts, {0, kMaxCounts}},
 }};
+inline constexpr Range kPitchMm = {1e-3, 1e3};
 inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
 
 inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{

@@ -191,7 +191,7 @@ void set_size(const TomlSection& section, std::string_view key, PillarCounts cou
 
 /// Number of whole pillars along a length, tolerant of rounding.
 double pillars_along(double length_mm, const Skin& skin) {
-  return std::floor(length_mm / skin.element_pitch_mm() + 1e-9);
+  return std::floor(length_mm / skin.element_pitch_mm().col_mm + 1e-9);
 }
 
 void read_size(TomlSection& section, Skin& skin) {
@@ -251,6 +251,9 @@ DirectionSweep read_direction_sweep(TomlSection section, Skin& skin) {
 
 void read_skin(TomlSection section, Scene& scene) {
   read_quantities(section, kSkinQuantities, scene.skin);
+  if (const auto pitch_mm = section.number("sensel_pitch_mm", kPitchMm)) {
+    scene.skin.sensel_pitch_mm = *pitch_mm;
+  }
   scene.modulus_kpa = section.number("modulus_kpa", kModulusKpa).value_or(scene.modulus_kpa);
   if (!std::holds_alternative<DirectionSweep>(scene.load)) read_size(section, scene.skin);
   for (const std::string_view key : {"size_mm", "pillars"}) {

@@ -32,10 +32,12 @@ Pose SkinGeometry::pose_of(const PatchPlace& place) const {
   if (surface_.shape != SurfaceShape::height_map) {
     return pose_at(surface_, place.x_mm, place.y_mm);
   }
-  const double left_mm = -0.5 * (layout_.cols - 1) * layout_.pitch_mm;
-  const double top_mm = 0.5 * (layout_.rows - 1) * layout_.pitch_mm;
-  const std::size_t row = nearest_pillar(top_mm - place.y_mm, layout_.pitch_mm, layout_.rows);
-  const std::size_t col = nearest_pillar(place.x_mm - left_mm, layout_.pitch_mm, layout_.cols);
+  const double left_mm = -0.5 * (layout_.cols - 1) * layout_.pitch_mm.col_mm;
+  const double top_mm = 0.5 * (layout_.rows - 1) * layout_.pitch_mm.row_mm;
+  const std::size_t row =
+      nearest_pillar(top_mm - place.y_mm, layout_.pitch_mm.row_mm, layout_.rows);
+  const std::size_t col =
+      nearest_pillar(place.x_mm - left_mm, layout_.pitch_mm.col_mm, layout_.cols);
   return poses_[row * layout_.cols + col];
 }
 
@@ -311,13 +313,13 @@ void put_points(CdrWriter& cdr, Stamp stamp, const ForceFieldView& forces,
 
 void put_field(CdrWriter& cdr, Stamp stamp, const ForceFieldView& forces,
                const SkinGeometry& geometry) {
-  const double pitch = kMetresPerMm * geometry.pitch_mm();
+  const Pitch pitch_m = kMetresPerMm * geometry.pitch_mm();
   const Cell cell = cell_of(forces);
   put_stamp(cdr, stamp);
   cdr.put(geometry.is_flat() ? kFrameId : kFlatFrameId);
-  put_vector(cdr, {-0.5 * pitch * forces.cols, -0.5 * pitch * forces.rows, 0});
+  put_vector(cdr, {-0.5 * pitch_m.col_mm * forces.cols, -0.5 * pitch_m.row_mm * forces.rows, 0});
   cdr.put_all(0.0, 0.0, 0.0, 1.0);  // orientation: none
-  cdr.put_all(forces.cols, pitch, pitch, forces.cols * cell.bytes, cell.bytes);
+  cdr.put_all(forces.cols, pitch_m.col_mm, pitch_m.row_mm, forces.cols * cell.bytes, cell.bytes);
   cdr.put_length(cell.planes);
   std::uint32_t offset = 0;
   visit_planes(forces, [&](const std::string& name, const auto& plane) {

@@ -79,7 +79,7 @@ class SkinGeometry {
   /// Of all pillars, row by row.
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }
 
-  [[nodiscard]] double pitch_mm() const { return layout_.pitch_mm; }
+  [[nodiscard]] const Pitch& pitch_mm() const { return layout_.pitch_mm; }
   [[nodiscard]] bool is_flat() const { return surface_.shape == SurfaceShape::plane; }
 
   /// Of a point of the skin; on a height map that of the nearest pillar.

@@ -109,9 +109,9 @@ StreamHealth RingResults::health() const {
   health.invalid = reader_.invalid();
   if (const auto& other = reader_.other()) {
     const RingLayout& ours = *reader_.layout();
-    health.mismatch =
-        fmt::format("results are {} x {} of {:g} mm, {} x {} of {:g} mm expected", other->rows,
-                    other->cols, other->pitch_mm, ours.rows, ours.cols, ours.pitch_mm);
+    health.mismatch = fmt::format("results are {} x {} of {} mm, {} x {} of {} mm expected",
+                                  other->rows, other->cols, text_of(other->pitch_mm), ours.rows,
+                                  ours.cols, text_of(ours.pitch_mm));
   }
   return health;
 }

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <climits>
 #include <ctime>
 #include <utility>
@@ -48,7 +49,8 @@ std::optional<std::uint64_t> content_bytes(const RingLayout& layout) {
   const std::uint64_t elements = std::uint64_t{layout.rows} * layout.cols;
   if (elements > PILLARFIELD_MAX_SENSELS) return std::nullopt;
   if (holds_results(layout)) {
-    if (!(layout.pitch_mm >= kLeastPitchMm && layout.pitch_mm <= kMostPitchMm)) return std::nullopt;
+    const auto fits = [](double mm) { return mm >= kLeastPitchMm && mm <= kMostPitchMm; };
+    if (!fits(layout.pitch_mm.row_mm) || !fits(layout.pitch_mm.col_mm)) return std::nullopt;
     const bool pillars = layout.kind == PILLARFIELD_RING_RESULTS;
     return sizeof(PillarfieldResultSlot) + elements * (pillars ? kResultBytes : kPressureBytes);
   }
@@ -64,7 +66,10 @@ std::uint32_t slots_for(const RingLayout& layout) {
 
 RingLayout layout_of(const PillarfieldRing& ring) {
   RingLayout layout{static_cast<PillarfieldRingKind>(ring.kind), ring.rows, ring.cols, ring.type};
-  if (holds_results(layout)) layout.pitch_mm = ring.pitch_mm;
+  if (!holds_results(layout)) return layout;
+  layout.pitch_mm = ring.pitch_mm;
+  if (ring.type != 0) layout.pitch_mm.row_mm = double{std::bit_cast<float>(ring.type)};
+  layout.type = 0;
   return layout;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "pillarfield/pitch.h"
 #include "pillarfield/stream_format.h"
 
 namespace pillarfield {
@@ -15,7 +16,7 @@ struct RingLayout {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   std::uint32_t type = 0;  ///< PillarfieldReadingType of frames
-  double pitch_mm = 0;     ///< of the elements of results
+  Pitch pitch_mm;          ///< of the elements of results
 
   bool operator==(const RingLayout&) const = default;
 };

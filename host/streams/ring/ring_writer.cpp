@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <bit>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -80,8 +81,10 @@ RingWriter::RingWriter(const std::string& name, const RingLayout& layout, std::u
   layout_.kind = layout.kind;
   layout_.rows = layout.rows;
   layout_.cols = layout.cols;
-  layout_.type = layout.type;
-  layout_.pitch_mm = layout.pitch_mm;
+  layout_.type = layout.pitch_mm.is_square()
+                     ? layout.type
+                     : std::bit_cast<std::uint32_t>(static_cast<float>(layout.pitch_mm.row_mm));
+  layout_.pitch_mm = layout.pitch_mm.col_mm;
   layout_.slots = slots;
   layout_.slot_bytes = (*content + 63) / 64 * 64;
   guard_.begin();

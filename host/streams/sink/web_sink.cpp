@@ -47,7 +47,7 @@ class PageClient final : public ClientProtocol {
 };
 
 ServerProtocol page_protocol() {
-  return {.names = {"pillarfield.page.v1"},
+  return {.names = {"pillarfield.page.v2"},
           .create = [] { return std::make_unique<PageClient>(); },
           .page = page_html()};
 }
@@ -57,15 +57,14 @@ struct PictureHead {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   std::uint32_t planes = 0;  ///< 3: shear_x, shear_y, normal; 1: normal
-  float pitch_mm = 0;
+  float row_pitch_mm = 0;
+  float col_pitch_mm = 0;
 };
 
 class WebConsumer final : public SinkConsumer {
  public:
   WebConsumer(std::unique_ptr<WebSocketServer> server, const LiveSinkInfo& info)
-      : server_(std::move(server)),
-        pitch_mm_(static_cast<float>(info.forces.element_pitch_mm)),
-        json_(info) {}
+      : server_(std::move(server)), pitch_mm_(info.forces.element_pitch_mm), json_(info) {}
 
   [[nodiscard]] FrameParts wants(const SolvedFrame& frame) override;
   [[nodiscard]] bool consume(const SolvedFrame& frame) override;
@@ -82,7 +81,7 @@ class WebConsumer final : public SinkConsumer {
   }
 
   std::unique_ptr<WebSocketServer> server_;
-  float pitch_mm_;
+  Pitch pitch_mm_;
   FrameJson json_;
   std::chrono::nanoseconds last_picture_{0};  // its arrival
 };
@@ -101,7 +100,8 @@ bool WebConsumer::consume(const SolvedFrame& frame) {
   const std::string_view json = json_.line(frame);
   if (json.empty()) return false;
   const std::uint32_t planes = forces.shear_x.empty() ? 1 : 3;
-  const PictureHead head = {forces.rows, forces.cols, planes, pitch_mm_};
+  const PictureHead head = {forces.rows, forces.cols, planes, static_cast<float>(pitch_mm_.row_mm),
+                            static_cast<float>(pitch_mm_.col_mm)};
   send(kPictureTopic, {std::as_bytes(std::span(&head, 1)), std::as_bytes(forces.shear_x),
                        std::as_bytes(forces.shear_y), std::as_bytes(forces.normal),
                        std::as_bytes(forces.status), std::as_bytes(std::span(json))});

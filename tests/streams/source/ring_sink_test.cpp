@@ -170,7 +170,7 @@ TEST(ResultStream, GivesWhatWasWritten) {
   ASSERT_NE(stream, nullptr);
   EXPECT_EQ(stream->skin().element_rows(), 3);
   EXPECT_EQ(stream->skin().element_cols(), 5);
-  EXPECT_EQ(stream->skin().element_pitch_mm(), 1.4);
+  EXPECT_EQ(stream->skin().element_pitch_mm(), Pitch(1.4));
   StreamedResult result;
   ASSERT_TRUE(stream->next(result, 300s));
   EXPECT_EQ(result.sequence, 8);
@@ -237,6 +237,16 @@ TEST(ResultStream, WithoutPillarsHasNoShear) {
   EXPECT_EQ(result.forces.normal, solved.field.normal);
   EXPECT_FALSE(result.contacts->total.has_shear);
   EXPECT_EQ(result.contacts->total.shear_x_n, 0);
+}
+
+TEST(ResultStream, HasThePitchOfRowsAndThatOfColumns) {
+  LiveSinkInfo info = info_of_skin(6, 10);
+  info.skin.layout = SkinLayout::sensels;
+  info.skin.sensel_pitch_mm = {7.625, 5.08};
+  const auto sink = create_live_sink("shm:" + results_name(), info);
+  const auto stream = open_result_stream("shm:" + results_name(), {});
+  ASSERT_NE(stream, nullptr);
+  EXPECT_EQ(stream->skin().sensel_pitch_mm, Pitch(7.625, 5.08));
 }
 
 TEST(ResultStream, FollowsANewRingOfTheSameLayoutAlone) {

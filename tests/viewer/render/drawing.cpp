@@ -57,10 +57,10 @@ RenderSettings bare_settings(const MadeUpField& field, std::uint32_t width, std:
 PixelPlace middle_of(const MadeUpField& field, const RenderSettings& settings, std::uint32_t width,
                      std::uint32_t height, std::uint32_t row, std::uint32_t col) {
   const Skin& skin = field.source().skin;
-  const double pitch = skin.element_pitch_mm();
+  const auto [row_mm, col_mm] = skin.element_pitch_mm();
   const Viewport plot{0, 0, static_cast<double>(width), static_cast<double>(height)};
-  const Vec3 place{(col + 0.5 - 0.5 * skin.element_cols()) * pitch,
-                   (0.5 * skin.element_rows() - row - 0.5) * pitch, 0};
+  const Vec3 place{(col + 0.5 - 0.5 * skin.element_cols()) * col_mm,
+                   (0.5 * skin.element_rows() - row - 0.5) * row_mm, 0};
   const auto pixel = project(settings.view, {}, skin_size(field.source()), plot, place);
   EXPECT_TRUE(pixel.has_value());
   return {static_cast<std::uint32_t>(pixel->x), static_cast<std::uint32_t>(pixel->y)};

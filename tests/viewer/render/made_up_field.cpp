@@ -124,7 +124,8 @@ MadeUpField MadeUpField::without_pillars() const {
   bare.source_.skin.layout = SkinLayout::sensels;
   bare.source_.skin.rows = forces.rows;
   bare.source_.skin.cols = forces.cols;
-  bare.source_.skin.sensel_pitch_mm = source_.skin.element_pitch_mm();
+  const Pitch pillar_mm = source_.skin.element_pitch_mm();
+  bare.source_.skin.sensel_pitch_mm = {1.3 * pillar_mm.row_mm, pillar_mm.col_mm};
   bare.source_.has_readings = bare.source_.has_angles = false;
   return bare;
 }

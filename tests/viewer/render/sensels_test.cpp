@@ -90,23 +90,23 @@ TEST(BareSensels, APressureIsTheForceOverTheAreaInKilopascals) {
   }
 }
 
-TEST(BareSensels, AreSharpSquaresAtAnyZoom) {
+TEST(BareSensels, AreSharpRectanglesAtAnyZoom) {
   const MadeUpField field = bare_field();
   Drawing drawing;
   for (const double pixels_per_sensel : {0.8, 1.7, 9.3, 41.9, 300.0}) {
     RenderSettings settings = bare_settings(field, kWide, kHigh);
-    TopView view{{0.4, -0.7}, pixels_per_sensel / field.source().skin.element_pitch_mm()};
+    TopView view{{0.4, -0.7}, pixels_per_sensel / field.source().skin.element_pitch_mm().col_mm};
     settings.view = view;
     const Pixels pixels = drawing.draw(field, settings, kWide, kHigh);
     std::size_t seen = 0;
     for (std::uint32_t y = 0; y < kHigh; ++y) {
       for (std::uint32_t x = 0; x < kWide; ++x) {
-        const double pitch = field.source().skin.element_pitch_mm();
+        const auto [row_mm, col_mm] = field.source().skin.element_pitch_mm();
         const double col =
-            ((x + 0.5 - kWide / 2.0) / view.pixels_per_mm + view.centre_mm.x) / pitch +
+            ((x + 0.5 - kWide / 2.0) / view.pixels_per_mm + view.centre_mm.x) / col_mm +
             kBareCols / 2.0;
         const double row =
-            ((y + 0.5 - kHigh / 2.0) / view.pixels_per_mm - view.centre_mm.y) / pitch +
+            ((y + 0.5 - kHigh / 2.0) / view.pixels_per_mm - view.centre_mm.y) / row_mm +
             kBareRows / 2.0;
         const auto at_edge = [](double place) {
           return std::abs(place - std::round(place)) < 1e-3;

@@ -86,9 +86,10 @@ std::string format_pillar(PillarIndex pillar) {
   return fmt::format("row {}, column {}", pillar.row, pillar.col);
 }
 
-std::string format_place(const ForceFieldView& forces, PillarIndex pillar, double pillar_pitch_mm) {
-  const double x = (pillar.col + 0.5 - 0.5 * forces.cols) * pillar_pitch_mm;
-  const double y = (0.5 * forces.rows - pillar.row - 0.5) * pillar_pitch_mm;
+std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
+                         const Pitch& element_pitch_mm) {
+  const double x = (pillar.col + 0.5 - 0.5 * forces.cols) * element_pitch_mm.col_mm;
+  const double y = (0.5 * forces.rows - pillar.row - 0.5) * element_pitch_mm.row_mm;
   return fmt::format("x {}, y {} mm", fixed(x, 2), fixed(y, 2));
 }
 

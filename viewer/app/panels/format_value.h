@@ -27,7 +27,7 @@ struct DirectionDeviation {
 
 /// "x 12.65, y −3.79 mm": the centre of a pillar or sensel from the middle of the skin.
 [[nodiscard]] std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
-                                       double pillar_pitch_mm);
+                                       const Pitch& element_pitch_mm);
 
 /// "12", or "12.3" for a number that is not whole.
 [[nodiscard]] std::string format_count(double counts);

@@ -57,7 +57,7 @@ void hover_panel(const AppState& state) {
   }
   const PillarIndex pillar = *state.hovered;
   const PillarValues values = values_at(*state.field, pillar);
-  const double pitch_mm = state.player->info().skin.element_pitch_mm();
+  const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
   heading(style, format_pillar(pillar), format_place(state.field->forces, pillar, pitch_mm));
   status_line(style, state, pillar, values.status);
   if (state.field->raw.data != nullptr) {

@@ -141,7 +141,7 @@ void pillar_panel(AppState& state) {
   if (!is_in(state.field->forces, pin.pillar)) return;
   const PillarValues values = values_at(*state.field, pin.pillar);
   const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
-  const double pitch_mm = state.player->info().skin.element_pitch_mm();
+  const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
   heading(style, format_pillar(pin.pillar),
           format_place(state.field->forces, pin.pillar, pitch_mm));
   status_line(style, state, pin.pillar, values.status);

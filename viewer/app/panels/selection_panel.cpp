@@ -19,9 +19,9 @@ std::string rect_words(const PillarRect& rect) {
                      rect.col_end - 1);
 }
 
-std::string size_words(const PillarRect& rect, double pitch_mm) {
-  return fmt::format("{} × {} mm", three_digits((rect.col_end - rect.col_begin) * pitch_mm),
-                     three_digits((rect.row_end - rect.row_begin) * pitch_mm));
+std::string size_words(const PillarRect& rect, const Pitch& pitch_mm) {
+  return fmt::format("{} × {} mm", three_digits((rect.col_end - rect.col_begin) * pitch_mm.col_mm),
+                     three_digits((rect.row_end - rect.row_begin) * pitch_mm.row_mm));
 }
 
 ShownValue shown(const char* label, double value, std::string_view unit) {
@@ -169,7 +169,7 @@ const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
                              std::optional<CachedSums>& cached) {
   const std::uint64_t frame = state.field->index;
   if (!cached || cached->frame != frame || cached->rect != rect) {
-    const double pitch_mm = state.player->info().skin.element_pitch_mm();
+    const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
     cached = {frame, rect, sums_over(*state.field, rect, pitch_mm)};
   }
   return cached->sums;

@@ -19,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 12> kExtensions{".asc", ".asf",  ".csv", ".dat",
-                                                       ".h5",  ".hdf5", ".mat", ".npy",
-                                                       ".npz", ".toml", ".tsv", ".txt"};
+constexpr std::array<std::string_view, 13> kExtensions{".asc",  ".asf", ".csv",  ".dat", ".h5",
+                                                       ".hdf5", ".mat", ".mcap", ".npy", ".npz",
+                                                       ".toml", ".tsv", ".txt"};
 
 std::string in_lower_case(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char letter) {
