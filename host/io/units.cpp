@@ -1,7 +1,9 @@
 #include "io/units.h"
 
 #include <algorithm>
-#include <iterator>
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
 
 #include "io/plain/text_cells.h"
@@ -11,58 +13,41 @@ namespace {
 
 struct Unit {
   std::string_view name;  ///< lower case, in Latin-1
-  Dimension dimension;
   double size;
 };
 
-using enum Dimension;
-constexpr Unit kUnits[] = {{"mm", length, 1},
-                           {"millimeter", length, 1},
-                           {"millimeters", length, 1},
-                           {"milimeters", length, 1},
-                           {"cm", length, 10},
-                           {"centimeter", length, 10},
-                           {"centimeters", length, 10},
-                           {"in", length, 25.4},
-                           {"inch", length, 25.4},
-                           {"inches", length, 25.4},
-                           {"\"", length, 25.4},
-                           {"mm2", area, 1},
-                           {"cm2", area, 100},
-                           {"m2", area, 1e6},
-                           {"in2", area, 645.16},
-                           {"kpa", pressure, 1e-3},
-                           {"psi", pressure, 6.894757293168e-3},
-                           {"mmhg", pressure, 0.133322387415e-3},
-                           {"mpa", pressure, 1},
-                           {"hpa", pressure, 1e-4},
-                           {"pa", pressure, 1e-6},
-                           {"n/cm2", pressure, 1e-2},
-                           {"n/mm2", pressure, 1},
-                           {"kg/cm2", pressure, 9.80665e-2},
-                           {"kgf/cm2", pressure, 9.80665e-2},
-                           {"g/cm2", pressure, 9.80665e-5},
-                           {"bar", pressure, 1e-1},
-                           {"mbar", pressure, 1e-4},
-                           {"n", force, 1},
-                           {"newton", force, 1},
-                           {"newtons", force, 1},
-                           {"lb", force, 4.4482216152605},
-                           {"lbs", force, 4.4482216152605},
-                           {"kg", force, 9.80665},
-                           {"g", force, 9.80665e-3},
-                           {"s", time, 1},
-                           {"sec", time, 1},
-                           {"secs", time, 1},
-                           {"seconds", time, 1},
-                           {"ms", time, 1e-3},
-                           {"msec", time, 1e-3},
-                           {"millis", time, 1e-3},
-                           {"us", time, 1e-6},
-                           {"\xb5s", time, 1e-6},
-                           {"micros", time, 1e-6},
-                           {"ns", time, 1e-9},
-                           {"nanos", time, 1e-9}};
+constexpr Unit kLengths[] = {{"mm", 1},           {"millimeter", 1}, {"millimeters", 1},
+                             {"milimeters", 1},   {"cm", 10},        {"centimeter", 10},
+                             {"centimeters", 10}, {"in", 25.4},      {"inch", 25.4},
+                             {"inches", 25.4},    {"\"", 25.4}};
+constexpr Unit kAreas[] = {{"mm2", 1}, {"cm2", 100}, {"m2", 1e6}, {"in2", 645.16}};
+constexpr Unit kPressures[] = {{"kpa", 1e-3},
+                               {"psi", 6.894757293168e-3},
+                               {"mmhg", 0.133322387415e-3},
+                               {"mpa", 1},
+                               {"hpa", 1e-4},
+                               {"pa", 1e-6},
+                               {"n/cm2", 1e-2},
+                               {"n/mm2", 1},
+                               {"kg/cm2", 9.80665e-2},
+                               {"kgf/cm2", 9.80665e-2},
+                               {"g/cm2", 9.80665e-5},
+                               {"bar", 1e-1},
+                               {"mbar", 1e-4}};
+constexpr Unit kForces[] = {{"n", 1},
+                            {"newton", 1},
+                            {"newtons", 1},
+                            {"lb", 4.4482216152605},
+                            {"lbs", 4.4482216152605},
+                            {"kg", 9.80665},
+                            {"g", 9.80665e-3}};
+constexpr Unit kTimes[] = {{"s", 1},        {"sec", 1},       {"secs", 1},      {"seconds", 1},
+                           {"ms", 1e-3},    {"msec", 1e-3},   {"millis", 1e-3}, {"us", 1e-6},
+                           {"\xb5s", 1e-6}, {"micros", 1e-6}, {"ns", 1e-9},     {"nanos", 1e-9}};
+
+/// In the order of Dimension.
+constexpr std::array<std::span<const Unit>, 5> kUnits = {kLengths, kAreas, kPressures, kForces,
+                                                         kTimes};
 
 }  // namespace
 
@@ -73,9 +58,9 @@ std::optional<double> unit_size(Dimension dimension, std::string_view name) {
     if (letter != '^' && letter != '\xb2' && letter != '\xc2') known += letter;
   }
   known = lower_case(known);
-  const auto* const unit = std::ranges::find_if(
-      kUnits, [&](const Unit& each) { return each.dimension == dimension && each.name == known; });
-  return unit == std::end(kUnits) ? std::nullopt : std::optional(unit->size);
+  const std::span<const Unit> units = kUnits[static_cast<std::size_t>(dimension)];
+  const auto unit = std::ranges::find(units, std::string_view(known), &Unit::name);
+  return unit == units.end() ? std::nullopt : std::optional(unit->size);
 }
 
 }  // namespace pillarfield

@@ -294,11 +294,11 @@ std::vector<const Block*> frames_of(const SectionParser& parser, const std::stri
                 fmt::format("it has {}", fmt::join(list, ", ")));
   }
   if (part.empty() && list.size() > 1) {
-    const auto shown =
-        list.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(3, list.size()));
+    const std::size_t parts_found = list.size();
+    list.resize(std::min<std::size_t>(list.size(), 3));
     notes.push_back(fmt::format(
         "Frames have {} parts, {}{}; the first is read, others with --dataset NUMBER or NAME.",
-        list.size(), fmt::join(list.begin(), shown, ", "), shown == list.end() ? "" : ", ..."));
+        parts_found, fmt::join(list, ", "), parts_found > list.size() ? ", ..." : ""));
   }
   std::vector<const Block*> frames;
   for (const Block& block : parser.blocks) {
@@ -397,9 +397,9 @@ std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
       path, "text of frames",
       array_of(readings, {frames.size(), frames[0]->cells.size() / cols, cols}, path.string()),
       times_of(frames, parser.words.period_s), known);
-  source->warn(
-      fmt::format("Each block between lines of words is a frame of {}{}, in {}.", frames[0]->size(),
-                  frames[0]->is_labelled ? " behind its row numbers" : "", parser.words.unit));
+  source->warn(fmt::format("Each block between lines of words is a frame of {}{}.",
+                           frames[0]->size(),
+                           frames[0]->is_labelled ? ", behind its row numbers" : ""));
   for (std::string& note : notes) source->warn(std::move(note));
   return source;
 }

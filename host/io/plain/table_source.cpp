@@ -217,7 +217,7 @@ class TableParser {
                   fmt::format("the line of names before it has {}", header_.size()));
     }
     line_cells_ = cells_.size();
-    if (are_column_numbers(cells_)) {
+    if (header_.empty() && are_column_numbers(cells_)) {
       table_.notes.emplace_back(
           "The first line counts 0, 1, 2, ... and is read as readings. If it names columns, save "
           "the table without a header.");
@@ -225,7 +225,7 @@ class TableParser {
     columns_ = choose_columns(header_, cells_, separator_, options_, reader_.place());
     long_columns_ = long_columns(header_, columns_, reader_.place());
     for (const std::size_t column : columns_.readings) {
-      if (column < header_.size()) table_.words.add(header_[column], {});
+      if (column < header_.size()) add_unit(header_[column]);
     }
     if (!columns_.left_out.empty()) {
       table_.notes.push_back(
@@ -254,6 +254,14 @@ class TableParser {
                                               "a column of times 'time'",
                                               line_cells_ - sensels + 1, line_cells_)
                                 : "give the --shape of one frame"));
+  }
+
+  /// Takes the unit of pressure in a name of readings, as "left pressure 1[N/cm²]" or "p3 (kPa)".
+  void add_unit(std::string name) {
+    if (name.find_first_of("([") == std::string::npos && !lower_case(name).starts_with("press"))
+      return;
+    std::ranges::replace(name, '_', ' ');
+    table_.words.add("pressure " + name, {});
   }
 
   void append() {

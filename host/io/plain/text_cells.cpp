@@ -14,71 +14,57 @@ namespace {
 
 constexpr std::string_view kDigits = "0123456789";
 
-/// Takes parts of a text from its beginning.
-class TextTaker {
- public:
-  explicit TextTaker(std::string_view text) : rest_(text) {}
+bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 
-  [[nodiscard]] bool at_end() const { return rest_.empty(); }
-
-  /// A number of so many digits, or -1.
-  int digits(std::size_t count) {
-    const std::string_view text = rest_.substr(0, count);
-    if (text.size() != count || text.find_first_not_of(kDigits) != std::string_view::npos)
-      return -1;
-    int value = 0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    rest_.remove_prefix(count);
-    return value;
+/// Takes the beginning of a text if it is like `pattern`, whose zeros are any digits, and adds its
+/// numbers.
+bool take(std::string_view& text, std::string_view pattern, std::vector<int>& numbers) {
+  if (text.size() < pattern.size()) return false;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const bool is_any = pattern[i] == '0';
+    if (is_any ? !is_digit(text[i]) : text[i] != pattern[i]) return false;
+    if (is_any && (i == 0 || pattern[i - 1] != '0')) numbers.push_back(0);
+    if (is_any) numbers.back() = 10 * numbers.back() + (text[i] - '0');
   }
-
-  /// One of the letters, or NUL.
-  char one_of(std::string_view letters) {
-    if (rest_.empty() || letters.find(rest_.front()) == std::string_view::npos) return '\0';
-    const char letter = rest_.front();
-    rest_.remove_prefix(1);
-    return letter;
-  }
-
-  /// The digits after a decimal point, which is taken already.
-  std::optional<double> fraction() {
-    const std::size_t count = std::min(rest_.find_first_not_of(kDigits), rest_.size());
-    if (count == 0) return std::nullopt;
-    double value = 0;
-    const std::string text = "0." + std::string(rest_.substr(0, count));
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    rest_.remove_prefix(count);
-    return value;
-  }
-
- private:
-  std::string_view rest_;
-};
-
-/// The offset from UTC at the end of a time, minutes: "Z", "+02:00", "+0200", "+02" or nothing.
-std::optional<int> take_offset(TextTaker& text) {
-  if (text.at_end() || text.one_of("Zz") != '\0') return 0;
-  const char sign = text.one_of("+-");
-  const int hours = text.digits(2);
-  text.one_of(":");
-  const int minutes = text.at_end() ? 0 : text.digits(2);
-  if (sign == '\0' || hours < 0 || hours > 23 || minutes < 0 || minutes > 59) return std::nullopt;
-  return (sign == '-' ? -1 : 1) * (60 * hours + minutes);
+  text.remove_prefix(pattern.size());
+  return true;
 }
 
-/// Hours, minutes and seconds, s; with `is_whole` the seconds must be there.
-std::optional<double> take_clock(TextTaker& text, bool is_whole) {
-  const int hours = text.digits(2);
-  const bool has_minutes = text.one_of(":") != '\0';
-  const int minutes = text.digits(2);
-  const bool has_seconds = text.one_of(":") != '\0';
-  const int seconds = has_seconds ? text.digits(2) : 0;
-  const auto fraction = text.one_of(".,") != '\0' ? text.fraction() : 0.0;
-  if (hours < 0 || hours > 23 || !has_minutes || minutes < 0 || minutes > 59 || seconds < 0 ||
-      seconds > 60 || !fraction || (is_whole && !has_seconds)) {
+/// The offset from UTC that a text is, minutes: "Z", "+02:00", "+0200", "+02" or nothing.
+std::optional<int> offset_of(std::string_view text) {
+  if (text.empty() || text == "Z" || text == "z") return 0;
+  const char sign = text.front();
+  text.remove_prefix(1);
+  std::vector<int> numbers;
+  bool is_taken = take(text, "00", numbers);
+  if (text.starts_with(':')) text.remove_prefix(1);
+  if (is_taken && !text.empty()) is_taken = take(text, "00", numbers);
+  numbers.resize(2);
+  if ((sign != '+' && sign != '-') || !is_taken || !text.empty() || numbers[0] > 23 ||
+      numbers[1] > 59) {
     return std::nullopt;
   }
-  return (hours * 60 + minutes) * 60 + seconds + *fraction;
+  return (sign == '-' ? -1 : 1) * (60 * numbers[0] + numbers[1]);
+}
+
+/// Takes hours, minutes, seconds and their fraction, s; with `is_whole` the seconds must be there.
+std::optional<double> take_clock(std::string_view& text, bool is_whole) {
+  std::vector<int> numbers;
+  if (!take(text, "00:00", numbers)) return std::nullopt;
+  const bool has_seconds = take(text, ":00", numbers);
+  if ((is_whole && !has_seconds) || numbers[0] > 23 || numbers[1] > 59 ||
+      (has_seconds && numbers[2] > 60)) {
+    return std::nullopt;
+  }
+  const double time_s = (numbers[0] * 60 + numbers[1]) * 60 + (has_seconds ? numbers[2] : 0);
+  if (text.empty() || (text[0] != '.' && text[0] != ',')) return time_s;
+  const std::size_t end = std::min(text.find_first_not_of(kDigits, 1), text.size());
+  if (end == 1) return std::nullopt;
+  double fraction = 0;
+  const std::string digits = "0." + std::string(text.substr(1, end - 1));
+  std::from_chars(digits.data(), digits.data() + digits.size(), fraction);
+  text.remove_prefix(end);
+  return time_s + fraction;
 }
 
 /// Where the first cell of a line ends.
@@ -94,20 +80,6 @@ std::string_view without_quotes(std::string_view cell) {
   return is_quoted ? cell.substr(1, cell.size() - 2) : cell;
 }
 
-bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
-
-/// Whether blanks separate numbers with decimal commas, "1,5 2,25".
-bool has_decimal_commas(std::string_view line) {
-  if (without_blanks(line).find(' ') == std::string_view::npos) return false;
-  for (std::size_t at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1)) {
-    if (at == 0 || at + 1 == line.size() || !is_digit(line[at - 1]) || !is_digit(line[at + 1]))
-      return false;
-    const std::size_t end = std::min(line.find_first_not_of(kDigits, at + 1), line.size());
-    if (end < line.size() && line[end] != ' ') return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::string_view without_blanks(std::string_view text, std::string_view blanks) {
@@ -117,8 +89,7 @@ std::string_view without_blanks(std::string_view text, std::string_view blanks) 
 
 char separator_of(std::string_view line) {
   for (const char separator : {';', '\t', ','}) {
-    if (line.find(separator) != std::string_view::npos)
-      return separator == ',' && has_decimal_commas(line) ? ' ' : separator;
+    if (line.find(separator) != std::string_view::npos) return separator;
   }
   return ' ';
 }
@@ -156,20 +127,16 @@ bool read_cell(std::string_view cell, char separator, double& value) {
 }
 
 std::optional<double> parse_iso_time(std::string_view text) {
-  TextTaker taker(text);
-  const int year = taker.digits(4);
-  const bool is_date = taker.one_of("-") != '\0';
-  const int month = taker.digits(2);
-  const bool is_long = taker.one_of("-") != '\0';
-  const int day = taker.digits(2);
-  if (year < 0 || month < 0 || day < 0 || !is_date || !is_long || taker.one_of("T ") == '\0')
+  std::vector<int> numbers;
+  if (!take(text, "0000-00-00", numbers) || text.empty() || (text[0] != 'T' && text[0] != ' '))
     return std::nullopt;
-  const auto clock_s = take_clock(taker, false);
-  const auto offset = take_offset(taker);
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
-  if (!clock_s || !offset || !taker.at_end() || !date.ok()) return std::nullopt;
+  text.remove_prefix(1);
+  const auto clock_s = take_clock(text, false);
+  const auto offset = offset_of(text);
+  const std::chrono::year_month_day date{std::chrono::year(numbers[0]),
+                                         std::chrono::month(static_cast<unsigned>(numbers[1])),
+                                         std::chrono::day(static_cast<unsigned>(numbers[2]))};
+  if (!clock_s || !offset || !date.ok()) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
   return static_cast<double>(days * 86400 - *offset * 60) + *clock_s;
 }
@@ -177,9 +144,9 @@ std::optional<double> parse_iso_time(std::string_view text) {
 std::optional<double> parse_time(std::string_view text) {
   if (const auto time_s = parse_iso_time(text)) return time_s;
   const std::string padded = text.find(':') == 1 ? "0" + std::string(text) : std::string(text);
-  TextTaker taker(padded);
-  const auto clock_s = take_clock(taker, true);
-  return taker.at_end() ? clock_s : std::nullopt;
+  std::string_view rest = padded;
+  const auto clock_s = take_clock(rest, true);
+  return rest.empty() ? clock_s : std::nullopt;
 }
 
 double RisingClock::operator()(double time_s) {
