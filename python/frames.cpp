@@ -160,13 +160,14 @@ std::unique_ptr<Frames> open(
     std::string dataset, std::string times,
     const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
     std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes,
-    const std::string& layout, bool falling, bool untimed) {
+    const std::string& layout, bool falling, bool untimed, std::string columns) {
   const py::gil_scoped_release unlocked;
   ReadOptions options;
   options.trust = trust;
   options.dataset = std::move(dataset);
   options.times = std::move(times);
   if (frame_size) options.frame_size = {frame_size->first, frame_size->second};
+  options.columns = std::move(columns);
   options.rate_hz = rate_hz;
   options.tare_frames = tare_frames;
   options.falling = falling;
@@ -225,7 +226,8 @@ void bind_frames(py::module_& module) {
       .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("trust") = false,
            py::arg("dataset") = "", py::arg("times") = "", py::arg("frame_size") = py::none(),
            py::arg("rate_hz") = py::none(), py::arg("tare_frames") = 0, py::arg("axes") = "",
-           py::arg("layout") = "", py::arg("falling") = false, py::arg("untimed") = false)
+           py::arg("layout") = "", py::arg("falling") = false, py::arg("untimed") = false,
+           py::arg("columns") = "")
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
                   py::arg("calibration"), py::arg("axes_are_known") = false, kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),

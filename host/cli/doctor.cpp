@@ -106,6 +106,7 @@ std::string reading_arguments(const ReadOptions& read) {
   if (read.frame_size) {
     text += fmt::format(" --shape {}x{}", read.frame_size->rows, read.frame_size->cols);
   }
+  if (!read.columns.empty()) text += " --columns " + quoted(read.columns);
   if (!read.axes.empty()) {
     std::vector<const char*> words;
     for (const ArrayAxis axis : read.axes) {

@@ -25,6 +25,7 @@ SourceFormat npz_format();
 SourceFormat mat_format();
 SourceFormat mcap_format();
 SourceFormat table_format();
+SourceFormat sections_format();
 
 namespace {
 
@@ -51,8 +52,9 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
 }  // namespace
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format(), npy_format(),  npz_format(),
-                                     mat_format(),     mcap_format(), table_format()};
+  static const std::array formats = {tekscan_format(), npy_format(),   npz_format(),
+                                     mat_format(),     mcap_format(),  table_format(),
+                                     sections_format()};
   return formats;
 }
 
@@ -70,9 +72,11 @@ void refuse_dataset(const std::filesystem::path& path, const ReadOptions& option
 }
 
 void refuse_layout(const std::filesystem::path& path, const ReadOptions& options) {
-  if (!options.frame_size && options.axes.empty()) return;
+  if (!options.frame_size && options.axes.empty() && options.columns.empty()) return;
   throw Error(path.string(), "states the size and the axes of its frames",
-              options.frame_size ? "leave out --shape" : "leave out --axes");
+              options.frame_size     ? "leave out --shape"
+              : options.axes.empty() ? "leave out --columns"
+                                     : "leave out --axes");
 }
 
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,

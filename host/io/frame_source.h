@@ -27,7 +27,8 @@ struct SourceFormat {
 /// Throws Error if the options name an array, for a file that has only one.
 void refuse_dataset(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Throws Error if the options give size or axes of the frames, for a file that states them.
+/// Throws Error if the options give size, axes or columns of the frames, for a file that states
+/// them.
 void refuse_layout(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace pillarfield

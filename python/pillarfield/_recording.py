@@ -26,6 +26,7 @@ class Recording(_core.FrameSource):
     trust: the file comes from your own programs, so it is not examined first
     dataset, times: names of the arrays of frames and times in an HDF5 file, .npz archive or .mat file
     frame_size: (R, C) of frames that lie in one line of a table or array
+    columns: those of a table that are readings, by name or number from 1 on: 'pressure_*', '2-97'
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
     axes: order of the axes of an array, such as 'rows,columns,frames'; by default frames first
@@ -41,11 +42,11 @@ class Recording(_core.FrameSource):
                  dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
                  tare_frames: int = 0, axes: Axes = "", layout: str = "",
-                 falling: bool = False) -> None:
+                 falling: bool = False, columns: str = "") -> None:
         super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
             rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes),
-            layout=layout, falling=falling)
+            layout=layout, falling=falling, columns=columns)
 
     @property
     def dtype(self) -> np.dtype[Any]:

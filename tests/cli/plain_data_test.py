@@ -208,6 +208,18 @@ class PlainData(CommandTest):
         np.savetxt(path, frames.reshape(5, -1), delimiter="\t", fmt="%d")
         self.assert_solved(path, "--shape", "6x8", "--rate", 100)
 
+    def test_columns_of_a_table(self):
+        frames, path = readings().reshape(5, -1), self.path("table.csv")
+        table = np.hstack([np.arange(5)[:, None], frames, np.arange(5)[:, None] / 100, frames.sum(1, keepdims=True)])
+        np.savetxt(path, table, delimiter=",", fmt="%.10g", comments="",
+                   header="frame," + ",".join(f"p{i}" for i in range(48)) + ",time_s,total")
+        for columns in ((), ("--columns", "p*"), ("--columns", "2-49"), ("--columns", "2-25,p24,27-49")):
+            self.assert_solved(path, "--shape", "6x8", *columns)
+        self.assert_fails("solve", path, "--shape", "6x8", "-o", self.path("f.h5"), "--columns", "q*",
+                          names=["no column is named 'q*'"])
+        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), "--columns", "2-5",
+                          names=["leave out --columns"])
+
     def test_tables_of_row_numbers_and_times(self):
         frames, path = readings().reshape(5, -1), self.path("table.csv")
         header = "," + ",".join(str(column) for column in range(48))

@@ -171,10 +171,12 @@ TEST_F(PlainTable, AColumnOfTimesHasItsUnit) {
     return fmt::format("{},a,b,c,d\n{},1,2,3,4\n{},5,6,7,8\n", name, first, second);
   };
   const std::vector<double> times_s = {0.5, 0.75};
-  for (const char* const name : {"time", "Timestamp", "t", "time_s", "Time (s)", ""}) {
+  for (const char* const name :
+       {"time", "Timestamp", "t", "time_s", "Time (s)", "elapsed", "hostTime"}) {
     expect_two_frames(with_times(name, "0.5", "0.75"), times_s);
   }
-  for (const char* const name : {"time_ms", "Time [ms]", "t (ms)", "timestamp.ms"}) {
+  for (const char* const name :
+       {"time_ms", "Time [ms]", "t (ms)", "timestamp.ms", "ms", "epoch_ms"}) {
     expect_two_frames(with_times(name, "500", "750"), times_s);
   }
   expect_two_frames(with_times("time_us", "500000", "750000"), times_s);
@@ -222,6 +224,183 @@ TEST_F(PlainTable, TimesThatAreNoneNameTheirLine) {
   }
   EXPECT_TRUE(has_all(refused(first + first, square()), {"frame 1 has the time"}));
   EXPECT_TRUE(has_all(refused("time,a,b\n0,1,2\n1,3,4\n"), {"a time in each line", "--shape"}));
+}
+
+TEST_F(PlainTable, AColumnIsATimeByItsNameOrTypeWhereverItStands) {
+  const std::vector<double> times_s = {0.5, 0.75};
+  for (const char* const text :
+       {"a,b,c,d,time\n1,2,3,4,0.5\n5,6,7,8,0.75\n", "a,b,time_ms,c,d\n1,2,500,3,4\n5,6,750,7,8\n",
+        "a;b;c;d;ms\n1;2;3;4;500\n5;6;7;8;750\n", "# time,a,b,c,d\n0.5,1,2,3,4\n0.75,5,6,7,8\n"}) {
+    expect_two_frames(text, times_s);
+  }
+  expect_two_frames("a,b,c,d,clock\n1,2,3,4,23:59:59.500\n5,6,7,8,00:00:00.5\n",
+                    {86399.5, 86400.5});
+  expect_two_frames("1,2,3,4,8:21:17.5\n5,6,7,8,8:21:18.5\n", {30077.5, 30078.5});
+  // Neither the first place nor rising numbers make a time.
+  for (const char* const text :
+       {"0,1,2,3,4\n1,5,6,7,8\n", "temp_x,a,b,c,d\n0.5,1,2,3,4\n0.75,5,6,7,8\n",
+        ",a,b,c,d\n0.5,1,2,3,4\n0.75,5,6,7,8\n"}) {
+    const std::string error = refused(text, square());
+    EXPECT_TRUE(has_all(error, {"--columns", "2-5"}) || has_all(error, {"no times", "--rate"}))
+        << error;
+  }
+}
+
+TEST_F(PlainTable, ColumnsAreChosenByNameAndNumber) {
+  const auto chosen = [](const char* columns) {
+    return ReadOptions{.frame_size = FrameSize{2, 2}, .columns = columns, .rate_hz = 2};
+  };
+  const std::string text = "p_1,x,p_2,y,p_3,z,q_4,w\n1,9,2,9,3,9,4,9\n5,9,6,9,7,9,8,9\n";
+  for (const char* const columns : {"p_*,q_4", "1-7:2", "1,3,5,7", "p_?, q*", "1-3:2,p_3,q_4"}) {
+    expect_two_frames(text, {0, 0.5}, chosen(columns));
+  }
+  expect_two_frames("9,1,2,3,4\n9,5,6,7,8\n", {0, 0.5}, chosen("2-5"));
+  expect_two_frames("9,2,1,3,4\n9,6,5,7,8\n", {0, 0.5}, chosen("3,2,4-5"));
+  ReadOptions timed = chosen("1-5");
+  timed.rate_hz.reset();
+  expect_two_frames("t,a,b,c,d\n0.5,1,2,3,4\n0.75,5,6,7,8\n", {0.5, 0.75}, timed);
+  EXPECT_TRUE(has_all(refused(text, chosen("pressure_*")), {"no column is named", "pressure_*"}));
+  EXPECT_TRUE(has_all(refused(text, chosen("1-9")), {"has 8 columns", "1-9"}));
+  EXPECT_TRUE(has_all(refused(text, chosen("0-3")), {"none of --columns '0-3'"}));
+  EXPECT_TRUE(has_all(refused(text, chosen("3-1")), {"none of --columns"}));
+  EXPECT_TRUE(has_all(refused("1,2\n3,4\n", chosen("a*")), {"no line names columns"}));
+}
+
+TEST_F(PlainTable, ColumnsThatAreNoReadingsAreLeftOut) {
+  ReadOptions rated = square();
+  rated.rate_hz = 2;
+  for (const char* const text :
+       {"frame_id,a1,a2,a3,a4,flags\n0,1,2,3,4,9\n1,5,6,7,8,9\n",
+        "sample,a,b,c,d,sum\n0,1,2,3,4,9\n1,5,6,7,8,9\n",
+        "temperature,a,b,c,d,Label\n20,1,2,3,4,walk\n20,5,6,7,8,run\n",
+        "accel_x,accel_y,accel_z,p1,p2,p3,p4\n9,9,9,1,2,3,4\n9,9,9,5,6,7,8\n",
+        "p1,p2,p3,p4,p1_status,battery\n1,2,3,4,0,9\n5,6,7,8,0,9\n"}) {
+    expect_two_frames(text, {0, 0.5}, rated);
+    EXPECT_EQ(std::ranges::count_if(open(text, rated)->warnings(),
+                                    [](const std::string& warning) {
+                                      return warning.find("left out: ") != std::string::npos;
+                                    }),
+              1);
+  }
+  expect_two_frames("t,R_ch0,R_ch1,L_ch0,L_ch1\n0.5,1,2,3,4\n0.75,5,6,7,8\n", {0.5, 0.75}, {});
+  for (const char* const names : {"p0_x,p0_y,p0_z,p1_x,p1_y,p1_z", "fx0,fy0,fz0,fx1,fy1,fz1",
+                                  "a.x,a.y,a.z,b.x,b.y,b.z", "s1X,s1Y,s1Z,s2X,s2Y,s2Z"}) {
+    EXPECT_TRUE(has_all(refused(std::string(names) + "\n1,2,3,4,5,6\n"),
+                        {"three components for each taxel", "--columns"}));
+  }
+  const std::string kinds = "knob,p1,p2,p3,p4\n9,1,2,3,4\n9,5,6,7,8\n";
+  EXPECT_TRUE(has_all(refused(kinds), {"several kinds", "knob (1)", "--columns 'p*'"}));
+}
+
+TEST_F(PlainTable, SpreadsheetsAndOtherCountries) {
+  ReadOptions rated = square();
+  rated.rate_hz = 2;
+  for (const char* const text :
+       {"2,2\n1,2,3,4\n5,6,7,8\n", "a,b,c,d,,,\n1,2,3,4,,,\n5,6,7,8,,,\n,,,,,,\n",
+        "1,2,3,4,,,\n5,6,7,8,,,\n", "sep=;\na;b;c;d\n1,0;2,0;3,0;4\n5;6;7;8\n",
+        "1,0\t2,0\t3,0\t4,0\n5\t6\t7\t8\n"}) {
+    expect_two_frames(text, {0, 0.5}, rated);
+  }
+  expect_two_frames("2,2\n1,2,3,4\n5,6,7,8\n", {0, 0.5}, {.rate_hz = 2});
+  const auto readings = all_readings(*open("1;NA;null;None\n1,5;-2,25;n/a;-\n"));
+  EXPECT_EQ(readings[0], 1);
+  EXPECT_EQ(std::ranges::count_if(readings, [](float x) { return std::isnan(x); }), 5);
+  EXPECT_EQ(all_readings(*open("1,5;-2,25\n0;3\n")), (std::vector<float>{1.5f, -2.25f, 0, 3}));
+}
+
+TEST_F(PlainTable, LongTablesHaveOneReadingALine) {
+  for (const char* const text :
+       {"frame,time,row,column,value\n0,0.5,0,0,1\n0,0.5,0,1,2\n0,0.5,1,0,3\n0,0.5,1,1,4\n"
+        "1,0.75,0,0,5\n1,0.75,0,1,6\n1,0.75,1,0,7\n1,0.75,1,1,8\n",
+        "pressure,col,row,time_ms\n8,2,2,750\n7,1,2,750\n1,1,1,500\n2,2,1,500\n3,1,2,500\n"
+        "4,2,2,500\n5,1,1,750\n6,2,1,750\n"}) {
+    expect_two_frames(text, {0.5, 0.75}, {});
+  }
+  const std::string text = "t,row,col,force\n0,0,0,1\n0,1,1,2\n";
+  EXPECT_TRUE(std::isnan(all_readings(*open(text))[1]));
+  EXPECT_TRUE(has_all(refused(text + "0,1,1,3\n"), {"two readings in row 1, column 1"}));
+  EXPECT_TRUE(has_all(refused(text + "0,1.5,1,3\n"), {"table.csv:4", "row 1.5"}));
+  EXPECT_TRUE(has_all(refused("t,row,col,a,b\n0,0,0,1,2\n"), {"2 readings", "--columns"}));
+}
+
+/// Exports of four styles; each frame has 2 x 3 cells and adds up to what it states.
+class TextOfFrames : public PlainTable {};
+
+TEST_F(TextOfFrames, OneReaderReadsEveryStyle) {
+  const std::string commas =
+      "File:,\"C:\\walk.XSN\",,,\r\n,,,,\r\nUnits:,kPa,,,\r\n,,,,\r\n"
+      "FRAME,7,,,\r\n,,,,\r\nTime, 08:00:00.500,,,\r\nSENSOR,left,,,\r\nRows,2,,,\r\n"
+      "Columns,3,,,\r\nSensel Width (cm),1,,,\r\nSensel Height (cm),2,,,\r\n"
+      "Peak Pressure (kPa),40,,,\r\nEst. Load (N),21,,,\r\nStance Peak Pressure,999,,,\r\n"
+      "SENSELS,,,,\r\n10,20,0,,\r\n,,,,\r\n0,35,40,,\r\n"
+      "FRAME,8,,,\r\nTime, 08:00:00.750,,,\r\nSENSOR,left,,,\r\nPeak Pressure (kPa),40,,,\r\n"
+      "Est. Load (N),21,,,\r\nSENSELS,,,,\r\n40,35,0,,\r\n,,,,\r\n0,20,10,,\r\n";
+  const auto page = [](int number, const char* cells) {
+    return fmt::format(
+        "\n\t\tPage {0}\n\n\tMatrix: 64x95 \n\tSensor area: 2.00 cm\xb2\tTime/picture:250.0 ms\n"
+        "\tPict-No.: {0}  Force[N]=sum*sensor_area\n\n\t26\t27\t28\tForce\n{1}\f\n",
+        number, cells);
+  };
+  const std::string tabs = page(1,
+                                "30\t10.00\t20.00\t0.00\t6.00\n31\t0.00\t35.00\t40.00\t15.00\n"
+                                "Force\t2.00\t11.00\t8.00\t21.00\n") +
+                           page(2,
+                                "30\t40.00\t35.00\t0.00\t15.00\n31\t0.00\t20.00\t10.00\t6.00\n"
+                                "Force\t8.00\t11.00\t2.00\t21.00\n");
+  const std::string blanks =
+      "Pressure export\nUnits: kPa\nCell area: 200 mm2\nFrame rate: 4 Hz\n"
+      "Frame 1\n   1  2  3\n1 10 20 0\n2 0 35 40\nTotal force: 21.0 N\n"
+      "Frame 2\n   1  2  3\n1 40 35 0\n2 0 20 10\nTotal force: 21.0 N\n";
+  const std::string semicolons =
+      "Pressure in N/cm2\nSensel area;2 cm2\n"
+      "Frame 1;Time;0,5 s\n1,0;2,0;0,0\n0,0;3,5;4,0\nFrame 2;Time;0,75 s\n4;3,5;0\n0;2;1\n";
+  for (const auto& [text, first_s] : {std::pair(commas, 28800.5), std::pair(tabs, 0.0),
+                                      std::pair(blanks, 0.0), std::pair(semicolons, 0.5)}) {
+    SCOPED_TRACE(text);
+    const auto source = open(text, {});
+    EXPECT_EQ(times_of(*source), (std::vector<double>{first_s, first_s + 0.25}));
+    EXPECT_EQ(source->skin().rows, 2);
+    EXPECT_EQ(source->skin().counts_per_newton, 1);
+    EXPECT_NEAR(source->skin().sensel_pitch_mm, std::sqrt(200), 1e-9);
+    const auto newtons = all_readings(*source);
+    const std::vector<float> expected = {2, 4, 0, 0, 7, 8, 8, 7, 0, 0, 4, 2};
+    ASSERT_EQ(newtons.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(newtons[i], expected[i], 1e-5);
+  }
+  const auto damaged = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_TRUE(has_all(refused(damaged(commas, "0,35,40", "0,45,40")), {"table.csv:1", "states a"}));
+  EXPECT_TRUE(has_all(refused(damaged(commas, "10,20,0,,\r\n", "")), {"1 x 3", "2 x 3"}));
+  EXPECT_TRUE(has_all(refused(damaged(commas, "Units:,kPa", "Units:,psi")), {"unit or its area"}));
+  EXPECT_TRUE(has_all(refused(damaged(tabs, "10.00", "12.00")), {"states a force"}));
+  EXPECT_TRUE(has_all(refused(damaged(blanks, "21.0", "27.0")), {"states a total force"}));
+  EXPECT_TRUE(has_all(refused(damaged(semicolons, "2;1\n", "2\n")), {"table.csv:7", "1 x 3"}));
+  EXPECT_TRUE(has_all(refused(damaged(semicolons, "Sensel area", "Volume")), {"--pitch-mm"}));
+  EXPECT_TRUE(has_all(refused(commas, {.frame_size = FrameSize{2, 3}}), {"--shape"}));
+}
+
+TEST_F(TextOfFrames, PartsAreChosenAndLinesWithTimesAreFrames) {
+  std::string feet;
+  for (int frame = 1; frame < 3; ++frame) {
+    feet += fmt::format(
+        "FRAME,{}\nSENSOR,left\nSENSELS\n1,2\n3,4\nSENSOR,right\nSENSELS\n5,6\n7,8\n", frame);
+  }
+  EXPECT_EQ(all_readings(*open(feet))[0], 1);
+  EXPECT_EQ(all_readings(*open(feet, {.dataset = "right", .untimed = true}))[0], 5);
+  EXPECT_EQ(all_readings(*open(feet, {.dataset = "2", .untimed = true}))[0], 5);
+  EXPECT_TRUE(has_all(refused(feet, {.dataset = "hand", .untimed = true}), {"left", "right"}));
+  ReadOptions pitched;
+  pitched.sensel_pitch_mm = std::sqrt(1000);
+  const std::string insoles =
+      "file name:  a.sol\tdate/time  25.04.23 10.49\npressure values in  kPa\n\nmask: \n"
+      "left insole: 1,2\nright insole: 1,2\n\ntime[secs]\t 1\t 2\t 1\t 2\t\n"
+      "  0.5\t 1\t 2\t 3\t 4\t\n  0.75\t 5\t 6\t 7\t 8\t\n";
+  const auto source = open(insoles, pitched);
+  EXPECT_EQ(times_of(*source), (std::vector<double>{0.5, 0.75}));
+  EXPECT_NEAR(all_readings(*source)[7], 8, 1e-5);
+  EXPECT_TRUE(has_all(refused(insoles), {"pressures in kPa", "--pitch-mm"}));
+  EXPECT_EQ(open(insoles + "   MVP\t 9\t 9\t 9\t 9\t\n", pitched)->frames(), 2);
 }
 
 TEST_F(PlainTable, MistakesNameTheirLine) {

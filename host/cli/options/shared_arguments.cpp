@@ -122,6 +122,9 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
           "Sensels of a frame whose readings lie in one line")
       ->type_name("ROWSxCOLS")
       ->group("Plain data");
+  plain.text("--columns", options.columns, "LIST",
+             "Columns of a table that are readings, by name or number: 'pressure_*', 2-97, 1-96:2 "
+             "[all but times, row numbers, sums and labels]");
   command
       ->add_option_function<std::string>(
           "--axes", [&](const std::string& text) { options.axes = axes_of(text); },

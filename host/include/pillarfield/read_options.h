@@ -31,6 +31,10 @@ struct ReadOptions {
   std::string times = {};
   /// Size of a frame whose readings lie in one line of a table or array.
   std::optional<FrameSize> frame_size = {};
+  /// Columns of a table that are its readings, in their order in a frame: names, patterns with '*'
+  /// and '?', numbers from 1 on and ranges of them, separated by commas: "pressure_*", "2-97",
+  /// "1-96:2". Empty: all whose names are no times, row numbers, sums, labels or other measures.
+  std::string columns = {};
   /// Order of the axes of an array of plain data. Empty: frames, rows, columns; an array that more
   /// likely has another order is refused (require_likely_axes()).
   std::vector<ArrayAxis> axes = {};

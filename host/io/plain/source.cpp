@@ -49,6 +49,9 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
     : FileSource(path, std::move(format)),
       array_(std::move(readings)),
       times_s_(std::move(times_s)) {
+  if (!options.columns.empty()) {
+    throw Error(array_->place(), "is not a table of columns", "leave out --columns");
+  }
   type_ = sensel_type_for(array_->type());
   take_shape(options);
   check_size(options);

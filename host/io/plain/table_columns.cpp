@@ -1,114 +1,77 @@
 #include "io/plain/table_columns.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <cstdint>
-#include <limits>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "base/nearest_word.h"
+#include "io/plain/text_cells.h"
+#include "io/units.h"
+#include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr std::string_view kDigits = "0123456789";
 
+using Words = std::set<std::string, std::less<>>;
+
+/// Words of names of times.
+const Words kTimeWords = {"time",  "timestamp", "timestamps", "datetime", "stamp",
+                          "epoch", "elapsed",   "clock",      "ts",       "unixtime"};
+/// Units that are names of times, too.
+const Words kTimeUnitWords = {"sec",    "secs", "seconds", "ms", "msec",
+                              "millis", "us",   "micros",  "ns"};
+/// Names of columns that are no readings unless a number follows.
+const Words kNoReadings = {
+    "index", "idx",     "id",      "frame",   "sample",   "seq",     "sequence", "counter",
+    "count", "packet",  "no",      "nr",      "number",   "label",   "class",    "target",
+    "event", "marker",  "trigger", "flag",    "flags",    "status",  "state",    "valid",
+    "sum",   "corrupt", "error",   "crc",     "checksum", "total",   "mean",     "average",
+    "avg",   "std",     "side",    "subject", "trial",    "session", "phase",    "activity",
+    "mode",  "step",    "cycle",   "rssi",    "unnamed",  "date",    "timestep", "resultant"};
+/// Names of other measures, with a number or without.
+const Words kOtherMeasures = {
+    "acc",          "accel",     "acceleration", "accelerometer", "gyro",
+    "gyr",          "gyroscope", "mag",          "magn",          "angular",
+    "magnetometer", "imu",       "quat",         "quaternion",    "roll",
+    "pitch",        "yaw",       "temp",         "battery",       "voltage",
+    "vbat",         "cop",       "temperature",  "humidity",      "gps"};
+
+bool has_any(const std::vector<std::string>& words, const Words& among) {
+  return std::ranges::any_of(words, [&](const auto& word) { return among.contains(word); });
+}
+
+/// Whether a column has the name of a time, and in which unit, s; 0 if the name states none.
+std::optional<double> time_unit_of(std::string_view name) {
+  const auto words = words_in(name);
+  if (words.empty() || has_digit(name) || has_any(words, kNoReadings)) return std::nullopt;
+  const bool is_time = has_any(words, kTimeWords) || words[0] == "t" ||
+                       (words.size() == 1 && kTimeUnitWords.contains(words[0]));
+  if (!is_time) return std::nullopt;
+  return unit_size(Dimension::time, words.back()).value_or(0);
+}
+
+bool is_no_reading(std::string_view name) {
+  const auto words = words_in(name);
+  if (has_any(words, kOtherMeasures) || lower_case(name) == "unnamed: 0") return true;
+  const std::size_t digit = name.find_last_of(kDigits);
+  return has_any(digit == std::string_view::npos ? words : words_in(name.substr(digit)),
+                 kNoReadings);
+}
+
+bool is_leading_name(std::string_view name) { return names_time(name) || is_no_reading(name); }
+
 bool is_whole(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kDigits) == std::string_view::npos;
-}
-
-/// Takes parts of a text from its beginning.
-class TextTaker {
- public:
-  explicit TextTaker(std::string_view text) : rest_(text) {}
-
-  [[nodiscard]] bool at_end() const { return rest_.empty(); }
-
-  /// A number of so many digits, or -1.
-  int digits(std::size_t count) {
-    const std::string_view text = rest_.substr(0, count);
-    if (text.size() != count || !is_whole(text)) return -1;
-    int value = 0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    rest_.remove_prefix(count);
-    return value;
-  }
-
-  /// One of the letters, or NUL.
-  char one_of(std::string_view letters) {
-    if (rest_.empty() || letters.find(rest_.front()) == std::string_view::npos) return '\0';
-    const char letter = rest_.front();
-    rest_.remove_prefix(1);
-    return letter;
-  }
-
-  /// The digits after a decimal point, which is taken already.
-  std::optional<double> fraction() {
-    const std::size_t count = std::min(rest_.find_first_not_of(kDigits), rest_.size());
-    if (count == 0) return std::nullopt;
-    double value = 0;
-    const std::string text = "0." + std::string(rest_.substr(0, count));
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    rest_.remove_prefix(count);
-    return value;
-  }
-
- private:
-  std::string_view rest_;
-};
-
-/// The offset from UTC at the end of a time, minutes: "Z", "+02:00", "+0200", "+02" or nothing.
-std::optional<int> take_offset(TextTaker& text) {
-  if (text.at_end() || text.one_of("Zz") != '\0') return 0;
-  const char sign = text.one_of("+-");
-  const int hours = text.digits(2);
-  text.one_of(":");
-  const int minutes = text.at_end() ? 0 : text.digits(2);
-  if (sign == '\0' || hours < 0 || hours > 23 || minutes < 0 || minutes > 59) return std::nullopt;
-  return (sign == '-' ? -1 : 1) * (60 * hours + minutes);
-}
-
-/// What a column holds by its name.
-struct ColumnMeaning {
-  bool is_index = false;
-  bool is_time = false;
-  double unit_s = 0;
-};
-
-struct TimeUnit {
-  std::string_view name;
-  double seconds;
-};
-
-constexpr std::array kTimeUnits = {
-    TimeUnit{"s", 1},     TimeUnit{"sec", 1},        TimeUnit{"seconds", 1}, TimeUnit{"ms", 1e-3},
-    TimeUnit{"us", 1e-6}, TimeUnit{"\u00b5s", 1e-6}, TimeUnit{"ns", 1e-9},
-};
-
-ColumnMeaning meaning_of(std::string_view name) {
-  constexpr std::string_view kBetween = " _-.()[]";
-  std::string lower(name);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
-  if (lower == "index" || lower == "frame" || lower == "unnamed: 0") return {.is_index = true};
-  const std::string_view text = lower;
-  const std::size_t end = std::min(text.find_first_of(kBetween), text.size());
-  const std::string_view word = text.substr(0, end);
-  if (word != "time" && word != "timestamp" && word != "datetime" && word != "t") return {};
-  std::string_view unit = text.substr(end);
-  unit.remove_prefix(std::min(unit.find_first_not_of(kBetween), unit.size()));
-  unit = unit.substr(0, unit.find_last_not_of(kBetween) + 1);
-  if (unit.empty()) return {.is_time = true};
-  const TimeUnit* const known = std::ranges::find(kTimeUnits, unit, &TimeUnit::name);
-  if (known == kTimeUnits.end()) return {};
-  return {.is_time = true, .unit_s = known->seconds};
-}
-
-bool is_leading_name(std::string_view name) {
-  const ColumnMeaning meaning = meaning_of(name);
-  return meaning.is_index || meaning.is_time;
 }
 
 /// Whether cells are 0, 1, 2, ..., as pandas names columns.
@@ -119,76 +82,251 @@ bool count_columns(std::span<const std::string> cells) {
   return cells.size() > 1;
 }
 
-bool has_name(std::span<const std::string> header) {
-  return std::ranges::any_of(header, [](const std::string& cell) { return !cell.empty(); });
+/// A name with '*' in place of its numbers.
+std::string kind_of(std::string_view name) {
+  std::string kind;
+  for (const char letter : name) {
+    const bool is_digit = kDigits.find(letter) != std::string_view::npos;
+    if (!is_digit) kind += letter;
+    if (is_digit && !kind.ends_with('*')) kind += '*';
+  }
+  return kind;
+}
+
+/// A name with its axis replaced, "p3_y" by "p3_#", and the axis; NUL if it names none.
+std::pair<std::string, char> axis_of(std::string name) {
+  const auto is_letter = [&](std::size_t at) {
+    return at < name.size() && std::isalpha(static_cast<unsigned char>(name[at])) != 0;
+  };
+  for (std::size_t i = name.size(); i-- > 0;) {
+    const auto axis = static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
+    const bool is_of_force = i > 0 && (name[i - 1] == 'f' || name[i - 1] == 'F');
+    const std::size_t before = is_of_force ? i - 2 : i - 1;  // Wraps to no letter.
+    if (axis < 'x' || axis > 'z' || is_letter(i + 1) || is_letter(before)) continue;
+    name[i] = '#';
+    return {name, axis};
+  }
+  return {name, '\0'};
+}
+
+/// Refuses taxels with three components.
+void refuse_components(std::span<const std::string> header, const TableColumns& columns,
+                       const std::string& place) {
+  std::map<std::string, std::map<char, std::string>> taxels;
+  for (const std::size_t column : columns.readings) {
+    auto [taxel, axis] = axis_of(header[column]);
+    if (axis != '\0') taxels[std::move(taxel)][axis] = header[column];
+  }
+  std::erase_if(taxels, [](const auto& taxel) { return taxel.second.size() < 3; });
+  if (taxels.empty() || 6 * taxels.size() < columns.readings.size()) return;
+  const auto& first = taxels.begin()->second;
+  throw Error(place,
+              fmt::format("has three components for each taxel, '{}', '{}', '{}', which need no "
+                          "solver",
+                          first.at('x'), first.at('y'), first.at('z')),
+              fmt::format("read the normal ones alone with --columns '{}' (in Python columns=)",
+                          kind_of(first.at('z'))));
+}
+
+/// Refuses names of several kinds in unlike numbers, such as 12 pressures and a setting.
+void refuse_kinds(std::span<const std::string> header, const TableColumns& columns,
+                  const std::string& place) {
+  std::map<std::string, std::size_t> kinds;
+  for (const std::size_t column : columns.readings) ++kinds[kind_of(header[column])];
+  std::size_t most = 0;
+  std::string largest;
+  std::vector<std::string> list;
+  for (const auto& [kind, count] : kinds) {
+    list.push_back(fmt::format("{} ({})", kind, count));
+    if (count > most) largest = kind;
+    most = std::max(most, count);
+  }
+  const auto has_most = [&](const auto& kind) { return kind.second == most; };
+  if (most < 4 || std::ranges::all_of(kinds, has_most)) return;
+  if (list.size() > 12) list = {list.begin(), list.begin() + 12};
+  throw Error(
+      place, fmt::format("has columns of several kinds: {}", fmt::join(list, ", ")),
+      fmt::format("choose the readings, such as --columns '{}' (in Python columns=)", largest));
+}
+
+/// Rows of columns whose numbers begin again: 2 x 16 of "R_ch0" to "R_ch15", "L_ch0" to "L_ch15".
+std::optional<FrameSize> size_by_numbers(std::span<const std::string> header,
+                                         const std::vector<std::size_t>& columns) {
+  std::vector<std::string> numbers;
+  for (const std::size_t column : columns) {
+    std::string_view name = header[column];
+    name.remove_suffix(name.size() - 1 - std::min(name.find_last_of(kDigits), name.size() - 1));
+    numbers.emplace_back(name.substr(name.find_last_not_of(kDigits) + 1));
+  }
+  const auto again = std::find(numbers.begin() + 1, numbers.end(), numbers.front());
+  const auto cols = static_cast<std::size_t>(again - numbers.begin());
+  if (numbers.front().empty() || cols < 2 || numbers.size() % cols != 0) return std::nullopt;
+  for (std::size_t i = cols; i < numbers.size(); ++i) {
+    if (numbers[i] != numbers[i - cols]) return std::nullopt;
+  }
+  if (numbers.size() == cols) return std::nullopt;
+  return FrameSize{static_cast<std::uint32_t>(numbers.size() / cols),
+                   static_cast<std::uint32_t>(cols)};
+}
+
+/// Whether a name fits a pattern with '*' for any letters and '?' for one.
+bool fits_pattern(std::string_view name, std::string_view pattern) {
+  if (pattern.empty()) return name.empty();
+  if (pattern[0] != '*')
+    return !name.empty() && (pattern[0] == '?' || pattern[0] == name[0]) &&
+           fits_pattern(name.substr(1), pattern.substr(1));
+  for (std::size_t skipped = 0; skipped <= name.size(); ++skipped) {
+    if (fits_pattern(name.substr(skipped), pattern.substr(1))) return true;
+  }
+  return false;
+}
+
+/// The columns that a part of ReadOptions::columns names: "3", "1-96", "1-96:2" or a pattern.
+std::vector<std::size_t> columns_named(const std::string& part, std::span<const std::string> header,
+                                       std::size_t count, const std::string& place) {
+  std::vector<std::size_t> chosen;
+  if (part.empty() || part.find_first_not_of("0123456789-:") != std::string::npos) {
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (fits_pattern(header[i], part)) chosen.push_back(i);
+    }
+    if (!chosen.empty()) return chosen;
+    if (header.empty()) {
+      throw Error(place, fmt::format("no line names columns, so none is '{:.60}'", part),
+                  "choose by number, such as --columns 2-25");
+    }
+    throw Error(place,
+                fmt::format("no column is named '{:.60}'{}", part,
+                            suggestion(part, {header.begin(), header.end()})),
+                "give a name, a pattern such as 'pressure_*', or numbers from 1 on, such as 2-25");
+  }
+  std::size_t range[3] = {0, 0, 1};  // first, last, step
+  const char* at = part.data();
+  const char* const end = at + part.size();
+  bool is_range = true;
+  for (int i = 0; i < 3 && at != end; ++i) {
+    const auto read = std::from_chars(at, end, range[i]);
+    is_range = is_range && read.ec == std::errc{} && (read.ptr == end || *read.ptr == "-::"[i]);
+    at = read.ptr + (read.ptr == end ? 0 : 1);
+    if (i == 0 && read.ptr == end) range[1] = range[0];
+  }
+  if (!is_range || at != end || range[0] < 1 || range[1] < range[0] || range[1] > count ||
+      range[2] < 1) {
+    throw Error(
+        place, fmt::format("has {} columns and none of --columns '{:.60}'", count, part),
+        fmt::format("give numbers from 1 to {}, such as 1-{} or 1-{}:2", count, count, count));
+  }
+  for (std::size_t i = range[0]; i <= range[1]; i += range[2]) chosen.push_back(i - 1);
+  return chosen;
+}
+
+/// Takes the columns that the options name, in their order; a time stays one.
+void take_chosen(TableColumns& columns, std::span<const std::string> header, std::size_t count,
+                 const std::string& choice, const std::string& place) {
+  columns.readings.clear();
+  columns.left_out.clear();
+  for (std::size_t at = 0; at <= choice.size();) {
+    const std::size_t end = std::min(choice.find(',', at), choice.size());
+    const std::string part(without_blanks(std::string_view(choice).substr(at, end - at)));
+    for (const std::size_t column : columns_named(part, header, count, place)) {
+      const bool is_known = std::ranges::find(columns.readings, column) != columns.readings.end();
+      if (!is_known && column != columns.time) columns.readings.push_back(column);
+    }
+    at = end + 1;
+  }
 }
 
 }  // namespace
 
-std::optional<double> parse_iso_time(std::string_view text) {
-  TextTaker taker(text);
-  const int year = taker.digits(4);
-  const bool is_date = taker.one_of("-") != '\0';
-  const int month = taker.digits(2);
-  const bool is_long = taker.one_of("-") != '\0';
-  const int day = taker.digits(2);
-  const bool has_clock = taker.one_of("T ") != '\0';
-  const int hours = taker.digits(2);
-  const bool has_minutes = taker.one_of(":") != '\0';
-  const int minutes = taker.digits(2);
-  if (year < 0 || month < 0 || day < 0 || !is_date || !is_long || !has_clock || !has_minutes ||
-      hours < 0 || hours > 23 || minutes < 0 || minutes > 59) {
-    return std::nullopt;
-  }
-  const int seconds = taker.one_of(":") != '\0' ? taker.digits(2) : 0;
-  const auto fraction = taker.one_of(".,") != '\0' ? taker.fraction() : 0.0;
-  const auto offset = take_offset(taker);
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
-  if (seconds < 0 || seconds > 60 || !fraction || !offset || !taker.at_end() || !date.ok()) {
-    return std::nullopt;
-  }
-  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  const std::int64_t whole = ((days * 24 + hours) * 60 + minutes - *offset) * 60 + seconds;
-  return static_cast<double>(whole) + *fraction;
+bool has_digit(std::string_view name) {
+  return name.find_first_of(kDigits) != std::string_view::npos;
 }
 
-bool is_header(std::span<const std::string> cells) {
-  const bool has_number = std::ranges::any_of(cells, [](const std::string& cell) {
+bool names_time(std::string_view name) { return time_unit_of(name).has_value(); }
+
+bool is_header(std::span<const std::string> cells, char separator) {
+  const bool has_number = std::ranges::any_of(cells, [&](const std::string& cell) {
     double value = 0;
-    return !cell.empty() && read_cell(cell, value);
+    return (!cell.empty() && read_cell(cell, separator, value)) || parse_time(cell);
   });
-  const bool has_time = std::ranges::any_of(
-      cells, [](const std::string& cell) { return parse_iso_time(cell).has_value(); });
-  if (!has_number && !has_time) return true;
+  if (!has_number) return true;
   if (cells.size() < 2) return false;
   if (!cells[0].empty()) return is_leading_name(cells[0]);
   return is_leading_name(cells[1]) || count_columns(cells.subspan(1));
 }
 
-LeadingColumns find_leading_columns(std::span<const std::string> header,
-                                    std::span<const std::string> first) {
-  LeadingColumns found;
-  bool has_index = false;
-  for (std::size_t i = 0; i < std::min<std::size_t>(first.size(), 2); ++i) {
-    const ColumnMeaning meaning = i < header.size() ? meaning_of(header[i]) : ColumnMeaning{};
-    const bool is_unnamed = i == 0 && has_name(header) && header[0].empty();
-    const bool is_iso = parse_iso_time(first[i]).has_value();
-    const bool is_before_iso =
-        i == 0 && is_whole(first[0]) && first.size() > 1 && parse_iso_time(first[1]);
-    if (!found.time && (is_iso || meaning.is_time || (is_unnamed && !is_whole(first[0])))) {
+TableColumns choose_columns(std::span<const std::string> header, std::span<const std::string> first,
+                            char separator, const ReadOptions& options, const std::string& place) {
+  TableColumns found;
+  std::optional<std::size_t> dated;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::string_view name = i < header.size() ? header[i] : std::string_view();
+    const auto unit_s = time_unit_of(name);
+    const bool is_time = parse_time(first[i]).has_value();
+    double value = 0;
+    const bool is_text = !header.empty() && !read_cell(first[i], separator, value);
+    const bool is_index =
+        i == 0 && name.empty() && is_whole(first[0]) &&
+        (!header.empty() || (first.size() > 1 && parse_time(first[1]).has_value()));
+    if (!found.time && unit_s && (is_time || !is_text)) {
       found.time = i;
-      found.is_iso = is_iso;
-      found.unit_s = meaning.unit_s;
-    } else if (!has_index && (meaning.is_index || is_unnamed || is_before_iso)) {
-      has_index = true;
+      found.time_unit_s = is_time ? 1 : *unit_s;
+    } else if (is_time) {
+      if (!dated) dated = i;
+    } else if (unit_s || is_no_reading(name) || is_text || is_index) {
+      if (!name.empty()) found.left_out.emplace_back(name);
     } else {
-      break;
+      found.readings.push_back(i);
     }
-    ++found.count;
   }
+  if (!found.time && dated) {
+    found.time = dated;
+    found.time_unit_s = 1;
+  }
+  if (!options.columns.empty()) take_chosen(found, header, first.size(), options.columns, place);
+  if (found.readings.empty()) {
+    throw Error(place, "has no column of readings", "choose them with --columns");
+  }
+  if (header.empty() || long_columns(header, found, place)) return found;
+  refuse_components(header, found, place);
+  if (found.readings.size() > 1) found.size = size_by_numbers(header, found.readings);
+  const auto& size = options.frame_size;
+  const bool is_counted = size && found.readings.size() == std::size_t{size->rows} * size->cols;
+  if (options.columns.empty() && !is_counted) refuse_kinds(header, found, place);
   return found;
+}
+
+std::optional<LongColumns> long_columns(std::span<const std::string> header,
+                                        const TableColumns& columns, const std::string& place) {
+  const Words rows = {"row", "rows", "r", "y", "i"};
+  const Words cols = {"column", "columns", "col", "cols", "c", "x", "j"};
+  const Words frames = {"frame", "frames", "sample", "index", "scan", "picture"};
+  std::optional<std::size_t> row;
+  std::optional<std::size_t> col;
+  bool is_named = false;
+  LongColumns found;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const auto words = words_in(header[i]);
+    if (words.empty() || has_digit(header[i])) continue;
+    is_named = is_named || words[0] == "row";
+    if (!row && rows.contains(words[0])) row = i;
+    if (!col && cols.contains(words[0])) col = i;
+    if (!found.frame && frames.contains(words[0])) found.frame = i;
+  }
+  if (!row || !col) return std::nullopt;
+  std::size_t values = 0;
+  for (const std::size_t column : columns.readings) {
+    if (column == *row || column == *col) continue;
+    found.value = column;
+    ++values;
+  }
+  if (!found.frame) found.frame = columns.time;
+  found.row = *row;
+  found.col = *col;
+  if (is_named && values > 1) {
+    throw Error(place, fmt::format("has rows, columns and {} readings in each line", values),
+                fmt::format("choose one, such as --columns '{}'", header[found.value]));
+  }
+  return values == 1 ? std::optional(found) : std::nullopt;
 }
 
 double likely_unit_s(double time) {
@@ -197,16 +335,6 @@ double likely_unit_s(double time) {
     if (!(std::abs(time) * unit_s > kMostSeconds)) return unit_s;
   }
   return 1e-9;
-}
-
-bool read_cell(std::string_view cell, double& value) {
-  if (cell.empty()) {
-    value = std::numeric_limits<double>::quiet_NaN();
-    return true;
-  }
-  if (cell.starts_with('+')) cell.remove_prefix(1);
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc{} && end == cell.data() + cell.size();
 }
 
 }  // namespace pillarfield

@@ -5,36 +5,58 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "pillarfield/read_options.h"
 
 namespace pillarfield {
 
-/// A date and time of ISO 8601, "2024-05-01 12:00:00.015", in seconds since 1970, UTC. The blank
-/// may be a T, and Z or an offset such as +02:00 may follow; without them it is taken as UTC.
-[[nodiscard]] std::optional<double> parse_iso_time(std::string_view text);
-
-/// The columns of a table before its readings: row numbers, times, or both.
-struct LeadingColumns {
-  std::size_t count = 0;
+/// Which columns of a table are its readings and its times. Indices count from 0.
+struct TableColumns {
+  std::vector<std::size_t> readings;  ///< in their order in a frame
   std::optional<std::size_t> time;
-  bool is_iso = false;
-  double unit_s = 0;  ///< of a time that is a number; 0 if the name of the column states none
+  double time_unit_s = 0;             ///< 0 if the name states none
+  std::vector<std::string> left_out;  ///< names of columns that are no readings
+  /// Of a frame in a line whose columns are numbered alike in each row, "R_ch0" to "L_ch15".
+  std::optional<FrameSize> size;
 };
 
-/// Whether the cells of the first line name columns: without a number among them, or with column
-/// numbers after the name of a leading column or after an empty cell, as pandas writes them.
-[[nodiscard]] bool is_header(std::span<const std::string> cells);
+/// Columns of a table with one reading a line.
+struct LongColumns {
+  std::size_t row = 0;
+  std::size_t col = 0;
+  std::size_t value = 0;
+  std::optional<std::size_t> frame;
+};
 
-/// The leading columns by their names, if there is a header, and the first line below it: a column
-/// `index` or `frame`, or an unnamed one of whole numbers; one named `time`, `timestamp`,
-/// `datetime` or `t`, also as `time_ms` or `time (s)`, or of ISO times.
-[[nodiscard]] LeadingColumns find_leading_columns(std::span<const std::string> header,
-                                                  std::span<const std::string> first);
+/// Whether the cells of the first line name columns: without a number among them, or with numbers
+/// after the name of a time or row number or after an empty cell, as pandas writes them.
+[[nodiscard]] bool is_header(std::span<const std::string> cells, char separator);
+
+/// Chooses the columns by `header`, empty if there is none, by the types of the cells `first` of
+/// the first line below it, and by ReadOptions::columns.
+///
+/// A time has its name, as "time", "timestamp" or "epoch", also with a unit, or is a date or a time
+/// of day. Row numbers, sums, labels, states and other measures are no readings unless the options
+/// choose them. Throws Error, naming `place`, if the options choose nothing, if taxels have three
+/// components, or if the names are of several kinds and nothing chooses among them.
+[[nodiscard]] TableColumns choose_columns(std::span<const std::string> header,
+                                          std::span<const std::string> first, char separator,
+                                          const ReadOptions& options, const std::string& place);
+
+[[nodiscard]] bool has_digit(std::string_view name);
+
+/// Whether a column has the name of a time.
+[[nodiscard]] bool names_time(std::string_view name);
+
+/// The columns of a long table: one named row, one named column and one other reading; unset if
+/// the table is none. Throws Error, naming `place`, if it has several readings.
+[[nodiscard]] std::optional<LongColumns> long_columns(std::span<const std::string> header,
+                                                      const TableColumns& columns,
+                                                      const std::string& place);
 
 /// The unit of times whose column states none: seconds, or where these would lie beyond the year
 /// 5000, milli-, micro- or nanoseconds since 1970.
 [[nodiscard]] double likely_unit_s(double time);
-
-/// Reads a number; an empty cell is a missing reading, NaN.
-[[nodiscard]] bool read_cell(std::string_view cell, double& value);
 
 }  // namespace pillarfield

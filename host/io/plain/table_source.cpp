@@ -1,10 +1,15 @@
 // Frames in a text file: numbers separated by commas, semicolons, tabs or blanks.
 
+#include "io/plain/table_source.h"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -13,72 +18,27 @@
 #include "io/force_sink.h"
 #include "io/frame_source.h"
 #include "io/plain/source.h"
+#include "io/plain/stated_words.h"
 #include "io/plain/table_columns.h"
+#include "io/plain/text_cells.h"
 #include "io/tekscan/line_reader.h"
 #include "pillarfield/error.h"
+#include "pillarfield/skin.h"
 
 namespace pillarfield {
 namespace {
 
-/// Most readings of a table: 512 MiB of them.
-constexpr std::size_t kMostTableReadings = std::size_t{1} << 27U;
-
-constexpr std::string_view kBlanks = " \t";
-
-std::string_view without_blanks(std::string_view text, std::string_view blanks = kBlanks) {
-  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-  return text.substr(0, text.find_last_not_of(blanks) + 1);
-}
-
-/// The separator of a line's cells; ' ' for any number of blanks.
-char separator_of(std::string_view line) {
-  for (const char separator : {';', '\t', ','}) {
-    if (line.find(separator) != std::string_view::npos) return separator;
-  }
-  return ' ';
-}
-
-std::string_view without_quotes(std::string_view cell) {
-  const bool is_quoted = cell.size() > 1 && cell.starts_with('"') && cell.ends_with('"');
-  return is_quoted ? cell.substr(1, cell.size() - 2) : cell;
-}
-
-/// Where the first cell of a line ends. Between blanks, a date and the time after it are one cell.
-std::size_t end_of_cell(std::string_view line, char separator) {
-  const std::size_t end = std::min(line.find(separator), line.size());
-  if (separator != ' ' || end == line.size()) return end;
-  const std::size_t end_of_time = std::min(line.find(separator, end + 1), line.size());
-  return parse_iso_time(line.substr(0, end_of_time)) ? end_of_time : end;
-}
-
-/// Calls `action` with each cell of a line, without blanks and quotes around it.
-template <class Action>
-void for_each_cell(std::string_view line, char separator, Action action) {
-  line = without_blanks(line, separator == '\t' ? " " : kBlanks);  // Outer cells may be empty.
-  while (true) {
-    const std::size_t end = end_of_cell(line, separator);
-    action(without_quotes(without_blanks(line.substr(0, end))));
-    if (end == line.size()) return;
-    line.remove_prefix(end + 1);
-    if (separator == ' ') line = without_blanks(line);
-  }
-}
-
-/// Whether a line has several cells, and no letter but in a time that numbers lack, for recognising
-/// a table.
+/// Whether a line has several cells, all of them numbers, times or missing, for recognising a
+/// table.
 bool resembles_numbers(std::string_view line) {
+  std::vector<std::string> cells;
   const char separator = separator_of(line);
-  if (line.find_first_of("0123456789") == std::string_view::npos ||
-      without_blanks(line).find(separator) == std::string_view::npos) {
-    return false;
-  }
-  bool is_number = true;
-  for_each_cell(line, separator, [&](std::string_view cell) {
-    is_number = is_number &&
-                (cell.find_first_not_of("0123456789+-.,; \teEnaNifIF") == std::string_view::npos ||
-                 parse_iso_time(cell));
-  });
-  return is_number;
+  split_cells(line, separator, cells);
+  double value = 0;
+  return cells.size() > 1 && line.find_first_of("0123456789") != std::string_view::npos &&
+         std::ranges::all_of(cells, [&](const std::string& cell) {
+           return read_cell(cell, separator, value) || parse_time(cell);
+         });
 }
 
 /// Whether cells count 0, 1, 2, ... as the names that programs give to columns without one.
@@ -86,12 +46,15 @@ bool are_column_numbers(const std::vector<std::string>& cells) {
   if (cells.size() < 3) return false;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     double number = 0;
-    if (!read_cell(cells[i], number) || number != static_cast<double>(i)) return false;
+    if (!read_cell(cells[i], ',', number) || number != static_cast<double>(i)) return false;
   }
   return true;
 }
 
-bool is_comment(std::string_view line) { return line.starts_with('#'); }
+/// Whether a line is a comment, or Excel's word on the separator.
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || lower_case(line.substr(0, 4)) == "sep=";
+}
 
 /// Readings and times of a table.
 struct Table {
@@ -100,65 +63,115 @@ struct Table {
   double time_unit_s = 0;     ///< 0 if the column states none
   std::uint64_t lines = 0;    ///< with numbers
   std::uint64_t blocks = 0;   ///< of lines, between blank ones
-  std::size_t cells = 0;      ///< of a line, without those before the readings
-  bool begins_with_column_numbers = false;
+  std::size_t cells = 0;      ///< readings of a line
+  std::uint64_t rows = 0;     ///< of each block
+  std::optional<FrameSize> size;
+  std::vector<std::uint64_t> long_shape;  ///< of a table with one reading a line
+  StatedWords words;
+  std::vector<std::string> notes;
 };
 
 class TableParser {
  public:
-  TableParser(const std::filesystem::path& path, const std::optional<FrameSize>& size)
-      : reader_(path, "save it as .npy"), size_(size) {}
+  /// `header_line`: number of the line of names, if words precede it; 0: none do.
+  TableParser(const std::filesystem::path& path, const ReadOptions& options,
+              std::uint64_t header_line)
+      : reader_(path, "save it as .npy"), options_(options), header_line_(header_line) {
+    table_.size = options.frame_size;
+  }
 
   Table parse() {
     bool is_first = true;
-    while (reader_.next()) {
+    for (std::uint64_t number = 1; !is_ended_ && reader_.next(); ++number) {
       std::string_view line = reader_.line();
-      if (is_first && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
-      if (is_comment(line)) continue;
-      if (without_blanks(line).empty()) {
+      if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      if (number < header_line_ || is_comment(line)) {
+        table_.words.add(line, statements_in(line, number));
+        comment_ = line.substr(line.starts_with('#') ? 1 : 0);
+      } else if (line.find_first_not_of(" \t\f,;") == std::string_view::npos) {
         end_block();
       } else if (std::exchange(is_first, false)) {
         add_first(line);
-      } else if (header_line_.empty() || line != header_line_) {  // Each frame may have a header.
+      } else if (header_text_.empty() || line != header_text_) {  // Each frame may have a header.
         add(line);
       }
     }
+    if (held_) take_held();
     end_block();
+    if (!entries_.empty()) sort_entries();
     return std::move(table_);
   }
 
-  /// Rows of each block of lines.
-  [[nodiscard]] std::uint64_t rows() const { return rows_; }
-
  private:
-  void split(std::string_view line) {
-    std::size_t count = 0;
-    for_each_cell(line, separator_, [&](std::string_view cell) {
-      if (count == cells_.size()) cells_.emplace_back();
-      cells_[count++] = cell;
-    });
-    cells_.resize(count);
-  }
-
-  /// Takes the first line of the table, which may name the columns.
+  /// Takes the first line of the table, which may name the columns, or state the size of a frame.
   void add_first(std::string_view line) {
     separator_ = separator_of(line);
-    split(line);
-    if (!is_header(cells_)) return add(line);
-    header_line_ = line;
+    split_cells(line, separator_, cells_);
+    if (is_header(cells_, separator_)) {
+      header_text_ = line;
+      take_header();
+      return;
+    }
+    std::vector<std::string> names;  // A comment above the numbers may be their names.
+    split_cells(comment_, separator_, names);
+    if (names.size() > 1 && names.size() == cells_.size() && is_header(names, separator_)) {
+      std::swap(cells_, names);
+      take_header();
+      return add(line);
+    }
+    drop_empty_end(cells_, 2);
+    double each = 0;
+    if (cells_.size() == 2 && read_cell(cells_[0], separator_, each) &&
+        read_cell(cells_[1], separator_, each)) {
+      held_ = line;
+    } else {
+      add(line);
+    }
+  }
+
+  void take_header() {
     header_ = cells_;
-    if (header_.size() > 1 && header_.back().empty()) header_.pop_back();
+    drop_empty_end(header_, 1);
     separator_ = '\0';
   }
 
+  /// Takes a first line of two numbers as rows and columns if their product is the length of the
+  /// others, else as a line like the others.
+  void take_held() {
+    const std::string line = *std::exchange(held_, std::nullopt);
+    double rows = 0;
+    double cols = 0;
+    std::vector<std::string> numbers;
+    split_cells(line, separator_, numbers);
+    const bool is_size = read_cell(numbers[0], separator_, rows) &&
+                         read_cell(numbers[1], separator_, cols) && rows >= 2 && cols >= 2 &&
+                         rows * cols == static_cast<double>(cells_.size());
+    if (!is_size) return add(line);
+    const FrameSize stated = {static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(cols)};
+    if (!table_.size) table_.size = stated;
+    table_.notes.push_back(fmt::format(
+        "The first line, {} x {}, is taken as the size of a frame; --shape gives another.",
+        stated.rows, stated.cols));
+  }
+
   void add(std::string_view line) {
-    if (separator_ == '\0') separator_ = separator_of(line);
-    split(line);
-    const bool is_known = line_cells_ != 0;
-    if (is_known ? cells_.size() == line_cells_ + 1 : ends_with_separator()) {
-      if (cells_.back().empty()) cells_.pop_back();
+    if (held_) {
+      split_cells(line, separator_of(line), cells_);
+      drop_empty_end(cells_, 1);
+      take_held();
     }
-    if (!is_known) begin();
+    if (separator_ == '\0') separator_ = separator_of(line);
+    split_cells(line, separator_, cells_);
+    if (line_cells_ == 0) {
+      begin();
+    } else if (header_line_ > 0 && ends_table()) {
+      is_ended_ = true;
+      table_.notes.push_back(fmt::format("The table ends before line {}, '{:.20}'.",
+                                         reader_.number(), without_blanks(line)));
+      return;
+    } else {
+      drop_empty_end(cells_, line_cells_);
+    }
     if (cells_.size() != line_cells_) {
       throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
                   fmt::format("lines before it have {}", line_cells_));
@@ -166,43 +179,89 @@ class TableParser {
     append();
   }
 
-  /// Whether an empty cell at the end of the first line is none: a separator may follow the last
-  /// cell, unless the size of a frame or the header counts it.
-  [[nodiscard]] bool ends_with_separator() const {
-    const std::size_t count = cells_.size();
-    if (count < 2) return false;
-    if (size_ && fits(count - 1)) return true;
-    return size_ ? !fits(count) : count != header_.size();
+  /// Whether a line of words or of another table follows, as after the frames of an export.
+  [[nodiscard]] bool ends_table() const {
+    double value = 0;
+    return cells_.size() < line_cells_ ||
+           !(read_cell(cells_[0], separator_, value) || parse_time(cells_[0]));
   }
 
-  /// Whether a line of so many cells holds a frame, with its time or without, or a row of it.
-  [[nodiscard]] bool fits(std::size_t count) const {
-    const std::size_t leading = find_leading_columns(header_, cells_).count;
-    const std::size_t sensels = std::size_t{size_->rows} * size_->cols;
-    return count == leading + sensels || count == leading + size_->cols ||
-           (leading == 0 && count == sensels + 1);
+  /// Drops empty cells behind the first line of numbers: one may follow the last separator, unless
+  /// the size of a frame counts it, and spreadsheets write many.
+  void drop_separators() {
+    if (!header_.empty()) return drop_empty_end(cells_, header_.size());
+    std::vector<std::string> numbers = cells_;
+    drop_empty_end(numbers, 1);
+    const std::size_t empty = cells_.size() - numbers.size();
+    const auto fits = [&](std::size_t count) {
+      return table_.size && (count == std::size_t{table_.size->rows} * table_.size->cols ||
+                             count == table_.size->cols);
+    };
+    if (empty == 0 || (fits(cells_.size()) && !fits(cells_.size() - 1))) return;
+    if (empty == 1 || !table_.size || fits(numbers.size())) {
+      cells_ = std::move(numbers);
+    } else if (fits(cells_.size() - 1)) {
+      cells_.pop_back();
+    }
   }
 
   /// Takes the number and the meaning of the cells of the first line of numbers.
   void begin() {
-    if (cells_.front().empty()) {
+    drop_separators();
+    if (header_.empty() && cells_.front().empty()) {
       throw Error(reader_.place(), "begins with an empty cell, as a table with an index does",
                   "save it without index and header");
     }
-    line_cells_ = cells_.size();
-    table_.begins_with_column_numbers = are_column_numbers(cells_);
-    leading_ = find_leading_columns(header_, cells_);
-    const std::size_t sensels = size_ ? std::size_t{size_->rows} * size_->cols : 0;
-    if (size_ && leading_.count == 0 && line_cells_ == sensels + 1) {
-      leading_ = {.count = 1, .time = 0};
+    if (header_line_ > 0 && header_.size() != cells_.size()) {
+      throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
+                  fmt::format("the line of names before it has {}", header_.size()));
     }
-    table_.cells = line_cells_ - leading_.count;
-    table_.time_unit_s = leading_.unit_s;
-    if (!size_ || table_.cells == sensels || table_.cells == size_->cols) return;
-    throw Error(reader_.place(), fmt::format("has {} numbers", line_cells_),
-                fmt::format("a frame of {} x {} needs {}, or {} with its time before them, or rows "
-                            "of {}",
-                            size_->rows, size_->cols, sensels, sensels + 1, size_->cols));
+    line_cells_ = cells_.size();
+    if (header_.empty() && are_column_numbers(cells_)) {
+      table_.notes.emplace_back(
+          "The first line counts 0, 1, 2, ... and is read as readings. If it names columns, save "
+          "the table without a header.");
+    }
+    columns_ = choose_columns(header_, cells_, separator_, options_, reader_.place());
+    long_columns_ = long_columns(header_, columns_, reader_.place());
+    for (const std::size_t column : columns_.readings) {
+      if (column < header_.size()) add_unit(header_[column]);
+    }
+    if (!columns_.left_out.empty()) {
+      table_.notes.push_back(
+          fmt::format("Columns that are no readings are left out: {}; --columns chooses others.",
+                      fmt::join(columns_.left_out, ", ")));
+    }
+    table_.cells = columns_.readings.size();
+    table_.time_unit_s = columns_.time_unit_s;
+    if (long_columns_) return;
+    if (!table_.size && columns_.size && options_.axes.empty()) {
+      table_.size = columns_.size;
+      table_.notes.push_back(fmt::format(
+          "Columns are numbered alike in {} rows of {}, which is taken as the size of a frame; "
+          "--shape gives another.",
+          columns_.size->rows, columns_.size->cols));
+    }
+    const auto& size = table_.size;
+    const std::size_t sensels = size ? std::size_t{size->rows} * size->cols : 0;
+    if (!size || table_.cells == sensels || table_.cells == size->cols) return;
+    throw Error(reader_.place(),
+                fmt::format("has {} numbers, {} of them readings", line_cells_, table_.cells),
+                fmt::format("a frame of {} x {} needs {}, or rows of {}; {}", size->rows,
+                            size->cols, sensels, size->cols,
+                            line_cells_ > sensels
+                                ? fmt::format("choose them with --columns, such as {}-{}, and name "
+                                              "a column of times 'time'",
+                                              line_cells_ - sensels + 1, line_cells_)
+                                : "give the --shape of one frame"));
+  }
+
+  /// Takes the unit of pressure in a name of readings, as "left pressure 1[N/cm²]" or "p3 (kPa)".
+  void add_unit(std::string name) {
+    if (name.find_first_of("([") == std::string::npos && !lower_case(name).starts_with("press"))
+      return;
+    std::ranges::replace(name, '_', ' ');
+    table_.words.add("pressure " + name, {});
   }
 
   void append() {
@@ -210,62 +269,140 @@ class TableParser {
       throw Error(reader_.place(), fmt::format("follows {} readings", table_.readings.size()),
                   "tables of at most 134217728 readings are read; save it as .npy");
     }
-    if (leading_.time) add_time();
-    for (std::size_t i = leading_.count; i < cells_.size(); ++i) {
+    const double time = columns_.time ? time_in(*columns_.time) : 0;
+    ++table_.lines;
+    ++block_rows_;
+    if (long_columns_) return append_long(time);
+    if (columns_.time) table_.times.push_back(time);
+    for (const std::size_t column : columns_.readings) {
       constexpr double kMost = std::numeric_limits<float>::max();
-      const double number = number_in(i);
+      const double number = number_in(column);
       const bool is_missing = !(std::abs(number) <= kMost);
       table_.readings.push_back(is_missing ? std::numeric_limits<float>::quiet_NaN()
                                            : static_cast<float>(number));
     }
-    ++table_.lines;
-    ++block_rows_;
+  }
+
+  /// Takes a line that holds one reading: its frame, row and column, time and value.
+  void append_long(double time) {
+    const auto& columns = *long_columns_;
+    const double frame = !columns.frame                   ? 0
+                         : columns.frame == columns_.time ? time
+                                                          : number_in(*columns.frame);
+    const double row = number_in(columns.row);
+    const double col = number_in(columns.col);
+    const auto is_place = [](double number) {
+      return number >= 0 && number <= kMaxSensels && number == std::floor(number);
+    };
+    if (!is_place(row) || !is_place(col) || std::isnan(frame)) {
+      throw Error(reader_.place(),
+                  fmt::format("has a reading in row {}, column {} of frame {}", row, col, frame),
+                  fmt::format("rows and columns are whole numbers up to {}", kMaxSensels));
+    }
+    if (entries_.size() == kMostTableReadings / 4) {
+      throw Error(reader_.place(), "follows 33554432 lines of one reading", "save it as .npy");
+    }
+    entries_.push_back({frame, row, col, time, number_in(columns.value)});
+  }
+
+  /// Puts the readings of single lines in order; cells without one are missing.
+  void sort_entries() {
+    std::ranges::sort(entries_, {}, [](const auto& entry) {
+      return std::array{entry[0], entry[1], entry[2]};
+    });
+    double first = kMaxSensels;
+    double last_row = 0;
+    double last_col = 0;
+    const std::array<double, 5>* before = nullptr;
+    for (const auto& entry : entries_) {
+      const auto& [frame, row, col, time, value] = entry;
+      first = std::min({first, row, col});
+      last_row = std::max(last_row, row);
+      last_col = std::max(last_col, col);
+      if (before == nullptr || frame != before->at(0)) table_.times.push_back(time);
+      if (before != nullptr && std::equal(before->begin(), before->begin() + 3, entry.begin())) {
+        throw Error(reader_.place(),
+                    fmt::format("the table has two readings in row {}, column {} of frame {}", row,
+                                col, frame),
+                    "give each frame its own number or time");
+      }
+      before = &entry;
+    }
+    first = std::min(first, 1.0);
+    const auto rows = static_cast<std::uint64_t>(last_row - first) + 1;
+    const auto cols = static_cast<std::uint64_t>(last_col - first) + 1;
+    table_.long_shape = {table_.times.size(), rows, cols};
+    if (table_.times.size() > kMostTableReadings / (rows * cols)) {
+      throw Error(
+          reader_.place(),
+          fmt::format("the table has {} frames of {} x {}", table_.times.size(), rows, cols),
+          "tables of at most 134217728 readings are read; save it as .npy");
+    }
+    table_.readings.assign(table_.times.size() * rows * cols,
+                           std::numeric_limits<float>::quiet_NaN());
+    std::size_t frame = 0;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      const auto& entry = entries_[i];
+      if (i > 0 && entry[0] != entries_[i - 1][0]) ++frame;
+      const auto row = static_cast<std::size_t>(entry[1] - first);
+      const auto col = static_cast<std::size_t>(entry[2] - first);
+      table_.readings[(frame * rows + row) * cols + col] = static_cast<float>(entry[4]);
+    }
+    if (!columns_.time) table_.times.clear();
+    table_.notes.push_back(fmt::format(
+        "Each line is one reading, '{}', at its row and column, which count from {}; {} are "
+        "missing.",
+        header_[long_columns_->value], first, table_.readings.size() - entries_.size()));
   }
 
   [[nodiscard]] double number_in(std::size_t column) const {
     double value = 0;
-    if (read_cell(cells_[column], value)) return value;
+    if (read_cell(cells_[column], separator_, value)) return value;
     throw Error(reader_.place(),
                 fmt::format("'{:.30}' in column {} is not a number", cells_[column], column + 1),
-                "write numbers with decimal points, and nan for a missing reading");
+                "write a number, and nan or nothing for a missing reading, or leave the column out "
+                "with --columns");
   }
 
-  void add_time() {
-    const std::string& cell = cells_[*leading_.time];
-    if (!leading_.is_iso) {
-      table_.times.push_back(number_in(*leading_.time));
-    } else if (const auto time_s = parse_iso_time(cell)) {
-      table_.times.push_back(*time_s);
-      table_.time_unit_s = 1;
-    } else {
-      throw Error(reader_.place(),
-                  fmt::format("'{:.40}' in column {} is not a time", cell, *leading_.time + 1),
-                  "write it as 2024-05-01 12:00:00.015");
-    }
+  [[nodiscard]] double time_in(std::size_t column) {
+    const std::string& cell = cells_[column];
+    if (table_.lines == 0) is_clock_ = parse_time(cell).has_value();
+    if (!is_clock_) return number_in(column);
+    if (const auto time_s = parse_time(cell)) return rising_(*time_s);
+    throw Error(reader_.place(),
+                fmt::format("'{:.40}' in column {} is not a time", cell, column + 1),
+                "write it as 2024-05-01 12:00:00.015 or 12:00:00.015");
   }
 
   void end_block() {
     if (block_rows_ == 0) return;
-    if (table_.blocks == 0) rows_ = block_rows_;
-    if (block_rows_ != rows_ && !size_) {
+    if (table_.blocks == 0) table_.rows = block_rows_;
+    if (block_rows_ != table_.rows && !table_.size && !long_columns_) {
       throw Error(reader_.place(), fmt::format("a frame of {} rows ends here", block_rows_),
-                  fmt::format("frames before it have {}", rows_));
+                  fmt::format("frames before it have {}", table_.rows));
     }
     ++table_.blocks;
     block_rows_ = 0;
   }
 
   LineReader reader_;
-  std::optional<FrameSize> size_;
+  const ReadOptions& options_;
+  std::uint64_t header_line_;
   Table table_;
   char separator_ = '\0';
-  std::string header_line_;
+  std::string comment_;  // the last one
+  std::string header_text_;
   std::vector<std::string> header_;
-  LeadingColumns leading_;
+  std::optional<std::string> held_;  // a first line of two numbers
+  TableColumns columns_;
+  std::optional<LongColumns> long_columns_;
+  std::vector<std::array<double, 5>> entries_;  // frame, row, column, time, value
   std::vector<std::string> cells_;
   std::size_t line_cells_ = 0;    // of the first line
   std::uint64_t block_rows_ = 0;  // of the block so far
-  std::uint64_t rows_ = 0;        // of the first block
+  bool is_clock_ = false;
+  bool is_ended_ = false;
+  RisingClock rising_;
 };
 
 /// Whether all readings are whole numbers of 16 bits.
@@ -285,23 +422,33 @@ std::vector<std::byte> bytes_of_readings(const std::vector<float>& readings) {
   return bytes;
 }
 
+/// Two factors of a number, nearest to a square, as an example of a size.
+std::string example_of_size(std::size_t count) {
+  auto rows = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
+  while (rows > 1 && count % rows != 0) --rows;
+  return rows > 1 ? fmt::format("such as {}x{}", rows, count / rows)
+                  : "and choose as many columns with --columns";
+}
+
 /// The array that the lines of a table form.
-std::vector<std::uint64_t> shape_of(const Table& table, std::uint64_t rows,
-                                    const std::filesystem::path& path,
-                                    const std::optional<FrameSize>& size) {
+std::vector<std::uint64_t> shape_of(const Table& table, const std::filesystem::path& path) {
   if (table.lines == 0) throw Error(path.string(), "holds no numbers", "give a table of readings");
-  if (!size) {
+  if (!table.long_shape.empty()) return table.long_shape;
+  if (!table.size) {
     if (table.blocks == 1 && !table.times.empty()) {
-      throw Error(path.string(), "has a time in each line",
-                  "give the size of a frame, --shape ROWSxCOLS");
+      throw Error(path.string(),
+                  fmt::format("has a time in each line and {} readings", table.cells),
+                  fmt::format("give the size of a frame, --shape ROWSxCOLS, {}",
+                              example_of_size(table.cells)));
     }
     if (table.blocks == 1) return {table.lines, table.cells};
-    return {table.blocks, rows, table.cells};
+    return {table.blocks, table.rows, table.cells};
   }
-  if (table.cells != size->cols) return {table.lines, table.cells};
-  if (table.lines % size->rows == 0) return {table.lines / size->rows, size->rows, size->cols};
+  if (table.cells != table.size->cols) return {table.lines, table.cells};
+  if (table.lines % table.size->rows == 0)
+    return {table.lines / table.size->rows, table.size->rows, table.size->cols};
   throw Error(path.string(), fmt::format("holds {} rows", table.lines),
-              fmt::format("frames of {} rows need a multiple", size->rows));
+              fmt::format("frames of {} rows need a multiple", table.size->rows));
 }
 
 /// Throws Error for a table of forces or contacts.
@@ -346,32 +493,7 @@ void warn_of_unit(FileSource& source, const Table& table, double unit_s) {
 
 std::unique_ptr<FileSource> open_table(const std::filesystem::path& path,
                                        const ReadOptions& options) {
-  refuse_dataset(path, options);
-  refuse_output(path);
-  TableParser parser(path, options.frame_size);
-  Table table = parser.parse();
-  std::vector<std::uint64_t> shape = shape_of(table, parser.rows(), path, options.frame_size);
-  const std::uint64_t frame_lines = table.lines / shape.front();
-  const double unit_s = unit_of(table);
-  const bool is_counts = are_counts(table.readings);
-  const NumberType type = is_counts ? NumberType{NumberType::Kind::unsigned_integer, 2}
-                                    : NumberType{NumberType::Kind::real, 4};
-  std::vector<std::byte> numbers = is_counts ? bytes_of_readings<std::uint16_t>(table.readings)
-                                             : bytes_of_readings<float>(table.readings);
-  ReadOptions known = options;
-  using enum ArrayAxis;  // Blank lines separate frames.
-  if (known.axes.empty() && shape.size() == 3) known.axes = {frames, rows, columns};
-  auto source =
-      array_source(path, "table of numbers",
-                   array_in_memory(path.string(), type, std::move(shape), std::move(numbers)),
-                   times_of(table, frame_lines, unit_s), known);
-  warn_of_unit(*source, table, unit_s);
-  if (table.begins_with_column_numbers) {
-    source->warn(
-        "The first line counts 0, 1, 2, ... and is read as readings. If it names columns, save the "
-        "table without a header.");
-  }
-  return source;
+  return open_table_after(path, options, 0);
 }
 
 /// Whether a text begins with two or more numbers in a line, after a line of names or none.
@@ -382,6 +504,7 @@ bool looks_like_table(std::string_view head) {
            letter == '\r';
   };
   if (!std::ranges::all_of(head, is_text)) return false;
+  std::size_t names = 0;  // of the line before
   for (int tried = 0; tried < 2 && !head.empty();) {
     const std::size_t end = std::min(head.find('\n'), head.size());
     std::string_view line = head.substr(0, end);
@@ -392,7 +515,17 @@ bool looks_like_table(std::string_view head) {
     const char separator = separator_of(line);
     // The last cell of a line that the head cuts is left out.
     if (is_cut) line = line.substr(0, line.find_last_of(separator));
-    if (resembles_numbers(line)) return true;
+    std::vector<std::string> cells;
+    split_cells(line, separator, cells);
+    drop_empty_end(cells);
+    const auto numbers = std::ranges::count_if(cells, [&](const std::string& cell) {
+      double value = 0;
+      return read_cell(cell, separator, value);
+    });
+    const bool has_names = names == cells.size() && numbers > 2 && 2 * numbers > std::ssize(cells);
+    if (has_names || resembles_numbers(line))
+      return has_names || names == 0 || names + 2 > cells.size() || cells.size() < 4;
+    names = cells.size();
     // A line of names may be longer than the head.
     constexpr std::ptrdiff_t kManyNames = 100;
     if (is_cut && separator != ' ' && std::ranges::count(line, separator) >= kManyNames)
@@ -403,6 +536,43 @@ bool looks_like_table(std::string_view head) {
 }
 
 }  // namespace
+
+std::unique_ptr<NumberArray> array_of(const std::vector<float>& readings,
+                                      std::vector<std::uint64_t> shape, std::string place) {
+  const bool is_counts = are_counts(readings);
+  return array_in_memory(
+      std::move(place),
+      is_counts ? NumberType{NumberType::Kind::unsigned_integer, 2}
+                : NumberType{NumberType::Kind::real, 4},
+      std::move(shape),
+      is_counts ? bytes_of_readings<std::uint16_t>(readings) : bytes_of_readings<float>(readings));
+}
+
+std::unique_ptr<FileSource> open_table_after(const std::filesystem::path& path,
+                                             const ReadOptions& options, std::uint64_t line) {
+  refuse_dataset(path, options);
+  refuse_output(path);
+  Table table = TableParser(path, options, line).parse();
+  std::vector<std::uint64_t> shape = shape_of(table, path);
+  ReadOptions known = options;
+  known.columns.clear();
+  known.frame_size = table.size;
+  if (const auto newtons =
+          table.words.newtons_per_cell(std::nullopt, known, table.notes, path.string())) {
+    for (float& reading : table.readings) reading = static_cast<float>(reading * *newtons);
+  }
+  const std::uint64_t frame_lines =
+      table.long_shape.empty() ? table.lines / shape.front() : std::uint64_t{1};
+  const double unit_s = unit_of(table);
+  using enum ArrayAxis;  // Blank lines separate frames.
+  if (known.axes.empty() && shape.size() == 3) known.axes = {frames, rows, columns};
+  auto source = array_source(path, "table of numbers",
+                             array_of(table.readings, std::move(shape), path.string()),
+                             times_of(table, frame_lines, unit_s), known);
+  warn_of_unit(*source, table, unit_s);
+  for (std::string& note : table.notes) source->warn(std::move(note));
+  return source;
+}
 
 SourceFormat table_format() {
   return {.name = "table of numbers (CSV)", .recognises = looks_like_table, .open = open_table};

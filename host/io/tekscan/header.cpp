@@ -1,24 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 
+#include "io/plain/text_cells.h"
 #include "io/tekscan/parser.h"
+#include "io/units.h"
 #include "pillarfield/error.h"
-#include "pillarfield/pressure_unit.h"
 
 namespace pillarfield {
 namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return lower;
-}
 
 [[noreturn]] void refuse(const std::string& place, std::string_view key, std::string_view value,
                          std::string_view mend) {
@@ -35,58 +27,11 @@ Number require_number(const std::string& place, std::string_view key, std::strin
   return *number;
 }
 
-/// A unit, lower case, and its size in mm, mm², MPa or N.
-struct Unit {
-  std::string_view name;
-  double size;
-};
-
-constexpr Unit kLengths[] = {{"mm", 1},           {"millimeter", 1}, {"millimeters", 1},
-                             {"milimeters", 1},   {"cm", 10},        {"centimeter", 10},
-                             {"centimeters", 10}, {"in", 25.4},      {"inch", 25.4},
-                             {"inches", 25.4},    {"\"", 25.4}};
-constexpr Unit kAreas[] = {{"mm2", 1}, {"cm2", 100}, {"m2", 1e6}, {"in2", 645.16}};
-constexpr Unit kPressures[] = {
-    {"mpa", 1},   {"pa", 1e-6}, {"n/cm2", 1e-2}, {"kg/cm2", 9.80665e-2}, {"g/cm2", 9.80665e-5},
-    {"bar", 1e-1}};
-constexpr Unit kForces[] = {{"n", 1},
-                            {"newton", 1},
-                            {"newtons", 1},
-                            {"lb", 4.4482216152605},
-                            {"lbs", 4.4482216152605},
-                            {"kg", 9.80665},
-                            {"g", 9.80665e-3}};
-
-/// A unit as it is listed: lower case, without "^", with 2 instead of "²" (UTF-8 or Latin-1).
-std::string unit_name(std::string_view text) {
-  std::string name;
-  for (const char letter : trimmed(text)) {
-    if (letter == '\xb2') name += '2';
-    if (letter != '^' && letter != '\xb2' && letter != '\xc2') name += letter;
-  }
-  return lower_case(name);
-}
-
-template <std::size_t count>
-std::optional<double> size_of_unit(const Unit (&units)[count], std::string_view text) {
-  const auto* const known = std::ranges::find(units, unit_name(text), &Unit::name);
-  return known == std::end(units) ? std::nullopt : std::optional(known->size);
-}
-
-/// A pressure, MPa.
-std::optional<double> size_of_pressure(std::string_view text) {
-  const auto* const shown =
-      std::ranges::find(kPressureUnits, unit_name(text), &PressureUnit::suffix);
-  if (shown != kPressureUnits.end()) return shown->kpa * 1e-3;
-  return size_of_unit(kPressures, text);
-}
-
 /// A number above zero and its unit, as "0.127 centimeters".
-template <std::size_t count>
-double measure_in(const Unit (&units)[count], const std::string& place, std::string_view key,
+double measure_in(Dimension dimension, const std::string& place, std::string_view key,
                   std::string_view value, std::string_view unit_mend) {
   const std::size_t split = std::min(value.find_first_of(" \t"), value.size());
-  const auto unit = size_of_unit(units, value.substr(split));
+  const auto unit = unit_size(dimension, value.substr(split));
   if (!unit) refuse(place, key, value, unit_mend);
   const double measure = require_number(place, key, value.substr(0, split), 0.0) * *unit;
   if (!(measure > 0) || !std::isfinite(measure)) refuse(place, key, value, "it must be above zero");
@@ -94,7 +39,7 @@ double measure_in(const Unit (&units)[count], const std::string& place, std::str
 }
 
 double spacing_mm(const std::string& place, std::string_view key, std::string_view value) {
-  return measure_in(kLengths, place, key, value,
+  return measure_in(Dimension::length, place, key, value,
                     "its unit must be mm, cm or inches, abbreviated or in full");
 }
 
@@ -141,13 +86,14 @@ void TekscanHeader::parse_line(std::string_view line, const std::string& place) 
     end_frame = require_number<std::uint64_t>(place, key, value, 0);
   } else if (key == "UNITS") {
     units_given = true;
-    mpa_per_unit = size_of_pressure(value);
-    newtons_per_unit = size_of_unit(kForces, value);
+    mpa_per_unit = unit_size(Dimension::pressure, value);
+    newtons_per_unit = unit_size(Dimension::force, value);
     if (lower_case(value) != "raw" && !is_calibrated()) {
       refuse(place, key, value, "it must be raw, kPa, psi, mmHg or N; export it again");
     }
   } else if (key == "SENSEL_AREA") {
-    sensel_area_mm2 = measure_in(kAreas, place, key, value, "its unit must be mm2, cm2, m2 or in2");
+    sensel_area_mm2 =
+        measure_in(Dimension::area, place, key, value, "its unit must be mm2, cm2, m2 or in2");
   }
 }
 

@@ -23,6 +23,8 @@ class LineReader {
   /// The line without its end, valid until next().
   [[nodiscard]] std::string_view line() const { return line_; }
 
+  /// Number of the line, from 1 on.
+  [[nodiscard]] std::uint64_t number() const { return number_; }
   /// "file:line", for messages.
   [[nodiscard]] std::string place() const;
 

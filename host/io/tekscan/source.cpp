@@ -212,7 +212,8 @@ bool looks_like_tekscan(std::string_view head) {
   if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
   if (head.find('\0') != std::string_view::npos) return false;
   return has_line_beginning(head, "DATA_TYPE") || has_line_beginning(head, "ASCII_DATA") ||
-         has_line_beginning(head, "Frame ");
+         (has_line_beginning(head, "Frame ") &&
+          (has_line_beginning(head, "ROWS ") || has_line_beginning(head, "COLS ")));
 }
 
 }  // namespace

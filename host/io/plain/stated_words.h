@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pillarfield/read_options.h"
+
+namespace pillarfield {
+
+/// A number that a line of words states: "Sensel Width (cm),0.86", "Time/picture:10.0 ms".
+struct Statement {
+  std::vector<std::string> words;  ///< before it, lower case
+  double value = 0;
+  double rounding = 0;    ///< half of its last digit
+  std::string unit;       ///< empty if none is stated
+  bool is_clock = false;  ///< a date or time of day, s
+  std::uint64_t line = 0;
+
+  [[nodiscard]] bool has_any(std::initializer_list<std::string_view> some) const;
+  /// Whether it has words, and no others.
+  [[nodiscard]] bool has_only(std::initializer_list<std::string_view> some) const;
+};
+
+/// The numbers that line `number` states.
+[[nodiscard]] std::vector<Statement> statements_in(std::string_view line, std::uint64_t number);
+
+/// The facts about all frames that a file states in words, whoever wrote it.
+struct StatedWords {
+  std::optional<double> rows;
+  std::optional<double> cols;
+  std::optional<double> period_s;
+  std::optional<double> width_mm;  ///< of a sensel
+  std::optional<double> height_mm;
+  std::optional<double> area_mm2;
+  std::optional<double> mpa;    ///< of a cell of 1
+  std::string unit = "counts";  ///< of the cells
+  bool is_unit_sure = false;    ///< the line is about units
+
+  void add(std::string_view line, const std::vector<Statement>& statements);
+
+  /// Newtons on a sensel whose cell is 1, and the constants of such readings in `options`; unset
+  /// for counts. `by_forces`: that of the forces that the file states. Throws Error if pressures
+  /// have no area, or if forces contradict them.
+  [[nodiscard]] std::optional<double> newtons_per_cell(std::optional<double> by_forces,
+                                                       ReadOptions& options,
+                                                       std::vector<std::string>& notes,
+                                                       const std::string& place) const;
+};
+
+}  // namespace pillarfield
