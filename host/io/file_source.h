@@ -90,10 +90,10 @@ class FileSource : public FrameSource {
   std::vector<std::string> warnings_;
   std::vector<std::string> notes_;
   bool assumes_times_ = false;
+  bool mirrors_ = false;  ///< falling readings
 
  private:
   std::optional<double> rate_hz_;
-  bool mirrors_ = false;  // falling readings
 };
 
 }  // namespace pillarfield

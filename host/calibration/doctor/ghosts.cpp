@@ -17,10 +17,10 @@ constexpr double kPressedShare = 0.3;
 constexpr double kGhostShare = 0.1;
 constexpr double kMostOfCorners = 0.9;
 constexpr std::size_t kMostPeaks = 12;
-constexpr std::size_t kLeastFrames = 5;   ///< with the ghost
+constexpr std::size_t kLeastShown = 5;    ///< with the ghost
 constexpr std::size_t kLeastWithout = 3;  ///< with two of its corners, without the ghost
 
-using Rectangle = std::array<std::uint32_t, 4>;  ///< row and column of a ghost, and opposite
+using RectangleCells = std::array<std::uint32_t, 4>;  ///< row and column of a ghost, and opposite
 
 /// Looks for sensels that read in step with the other corners of a rectangle.
 class GhostSearch {
@@ -33,7 +33,7 @@ class GhostSearch {
   [[nodiscard]] std::map<SenselPlace, double> ghosts() const {
     std::map<SenselPlace, double> ghosts;
     for (const auto& [rectangle, frames] : rectangles_) {
-      if (frames < kLeastFrames) continue;
+      if (frames < kLeastShown) continue;
       const double most = reading_of_ghost(rectangle);
       double& largest = ghosts[{rectangle[0], rectangle[1]}];
       largest = std::max(largest, most);
@@ -75,7 +75,7 @@ class GhostSearch {
         const bool has_corners = row != other_row && col != other_col &&
                                  std::ranges::count(peaks, SenselPlace(row, other_col)) > 0 &&
                                  std::ranges::count(peaks, SenselPlace(other_row, col)) > 0;
-        const Rectangle rectangle = {row, col, other_row, other_col};
+        const RectangleCells rectangle = {row, col, other_row, other_col};
         if (has_corners && pressed(frame, rectangle) == 3 && shows(frame, rectangle)) {
           ++rectangles_[rectangle];
         }
@@ -83,17 +83,17 @@ class GhostSearch {
     }
   }
 
-  [[nodiscard]] std::array<float, 3> corners(std::uint32_t frame, const Rectangle& at) const {
+  [[nodiscard]] std::array<float, 3> corners(std::uint32_t frame, const RectangleCells& at) const {
     return {signal(frame, at[0], at[3]), signal(frame, at[2], at[1]), signal(frame, at[2], at[3])};
   }
   /// Number of pressed corners.
-  [[nodiscard]] std::ptrdiff_t pressed(std::uint32_t frame, const Rectangle& at) const {
+  [[nodiscard]] std::ptrdiff_t pressed(std::uint32_t frame, const RectangleCells& at) const {
     return std::ranges::count_if(corners(frame, at), [&](float each) {
       return each > kPressedShare * seen_.contact_counts;
     });
   }
   /// Whether the fourth sensel reads, and less than the corners.
-  [[nodiscard]] bool shows(std::uint32_t frame, const Rectangle& at) const {
+  [[nodiscard]] bool shows(std::uint32_t frame, const RectangleCells& at) const {
     const float ghost = signal(frame, at[0], at[1]);
     return ghost > kGhostShare * seen_.contact_counts &&
            ghost < kMostOfCorners * std::ranges::min(corners(frame, at));
@@ -101,7 +101,7 @@ class GhostSearch {
 
   /// The largest reading of a sensel that reads always with three corners and never with two; 0 if
   /// it does not.
-  [[nodiscard]] double reading_of_ghost(const Rectangle& at) const {
+  [[nodiscard]] double reading_of_ghost(const RectangleCells& at) const {
     std::size_t with = 0;
     std::size_t missing = 0;
     std::size_t without = 0;
@@ -120,7 +120,7 @@ class GhostSearch {
   }
 
   const Examination& seen_;
-  std::map<Rectangle, std::size_t> rectangles_;  ///< frames in which they show a ghost
+  std::map<RectangleCells, std::size_t> rectangles_;  ///< frames in which they show a ghost
 };
 
 }  // namespace

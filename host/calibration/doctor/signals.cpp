@@ -331,14 +331,14 @@ void take_signals(Examination& seen, float sign) {
 }
 
 /// The largest signal of the steady sensels, and how many are loaded.
-struct FrameLoad {
+struct LoadOfFrame {
   float peak = 0;
   std::size_t loaded = 0;
 };
 
-FrameLoad load_of(const Examination& seen, std::size_t frame) {
+LoadOfFrame load_of(const Examination& seen, std::size_t frame) {
   const auto signals = std::as_const(seen.kept).frame(frame);
-  FrameLoad load;
+  LoadOfFrame load;
   for (std::size_t i = 0; i < signals.size(); ++i) {
     if (!seen.is_steady(i) || !(signals[i] > 1.5 * seen.threshold(i))) continue;
     ++load.loaded;
@@ -349,7 +349,7 @@ FrameLoad load_of(const Examination& seen, std::size_t frame) {
 
 /// Frames with a contact: some loaded sensels, or one that is loaded as much as usual.
 void find_contacts(Examination& seen, Diagnosis& found) {
-  std::vector<FrameLoad> loads;
+  std::vector<LoadOfFrame> loads;
   std::vector<float> peaks;
   for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
     loads.push_back(load_of(seen, frame));
@@ -359,7 +359,7 @@ void find_contacts(Examination& seen, Diagnosis& found) {
   const double usual = quantile(peaks, 0.9);
   peaks.clear();
   for (std::uint32_t frame = 0; frame < loads.size(); ++frame) {
-    const FrameLoad& load = loads[frame];
+    const LoadOfFrame& load = loads[frame];
     if (!(load.peak > (load.loaded < kLeastLoaded ? kSingleShare : kLoadShare) * usual)) continue;
     seen.contacts.push_back(frame);
     peaks.push_back(load.peak);
@@ -374,7 +374,7 @@ void find_contacts(Examination& seen, Diagnosis& found) {
     }
   }
   const auto first =
-      std::ranges::find_if(loads, [](const FrameLoad& load) { return load.loaded > 0; });
+      std::ranges::find_if(loads, [](const LoadOfFrame& load) { return load.loaded > 0; });
   const auto idle = static_cast<std::uint64_t>(first - loads.begin());
   found.idle_frames = idle == 0 ? 0 : seen.kept.number(idle - 1) + 1;
 }

@@ -134,13 +134,17 @@ std::optional<double> StatedWords::newtons_per_cell(std::optional<double> by_for
                                                     ReadOptions& options,
                                                     std::vector<std::string>& notes,
                                                     const std::string& place) const {
+  std::optional<Pitch> stated;
+  if (width_mm || height_mm) {
+    stated = Pitch(height_mm ? *height_mm : *width_mm, width_mm ? *width_mm : *height_mm);
+  } else if (area_mm2) {
+    stated = std::sqrt(*area_mm2);
+  }
+  if (!options.sensel_pitch_mm) options.sensel_pitch_mm = stated;
   auto sensel_mm2 = area_mm2;
-  if (!sensel_mm2 && (width_mm || height_mm))
-    sensel_mm2 =
-        width_mm.value_or(height_mm.value_or(0)) * height_mm.value_or(width_mm.value_or(0));
+  if (!sensel_mm2 && stated) sensel_mm2 = stated->area_mm2();
   const bool is_stated = sensel_mm2.has_value();
-  if (!options.sensel_pitch_mm && is_stated) options.sensel_pitch_mm = std::sqrt(*sensel_mm2);
-  if (!is_stated && options.sensel_pitch_mm) sensel_mm2 = std::pow(*options.sensel_pitch_mm, 2);
+  if (!is_stated && options.sensel_pitch_mm) sensel_mm2 = options.sensel_pitch_mm->area_mm2();
   if (!mpa && !by_forces) return std::nullopt;
   if (options.counts_per_newton) {
     notes.push_back(fmt::format("Readings stay in {}, since counts per newton are given.", unit));

@@ -12,7 +12,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kDecimalDigits = "0123456789";
 
 bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 
@@ -58,7 +58,7 @@ std::optional<double> take_clock(std::string_view& text, bool is_whole) {
   }
   const double time_s = (numbers[0] * 60 + numbers[1]) * 60 + (has_seconds ? numbers[2] : 0);
   if (text.empty() || (text[0] != '.' && text[0] != ',')) return time_s;
-  const std::size_t end = std::min(text.find_first_not_of(kDigits, 1), text.size());
+  const std::size_t end = std::min(text.find_first_not_of(kDecimalDigits, 1), text.size());
   if (end == 1) return std::nullopt;
   double fraction = 0;
   const std::string digits = "0." + std::string(text.substr(1, end - 1));
@@ -111,8 +111,8 @@ void drop_empty_end(std::vector<std::string>& cells, std::size_t least) {
 }
 
 bool read_cell(std::string_view cell, char separator, double& value) {
-  constexpr std::array<std::string_view, 8> kMissing = {"",     "na",   "n/a", "#n/a",
-                                                        "null", "none", "-",   "--"};
+  constexpr std::array<std::string_view, 8> kMissingWords = {"",     "na",   "n/a", "#n/a",
+                                                             "null", "none", "-",   "--"};
   if (cell.starts_with('+')) cell.remove_prefix(1);
   std::string with_point;
   if (separator != ',' && cell.find(',') != std::string_view::npos) {
@@ -123,7 +123,7 @@ bool read_cell(std::string_view cell, char separator, double& value) {
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error == std::errc{} && end == cell.data() + cell.size()) return true;
   value = std::numeric_limits<double>::quiet_NaN();
-  return std::ranges::find(kMissing, lower_case(cell)) != kMissing.end();
+  return std::ranges::find(kMissingWords, lower_case(cell)) != kMissingWords.end();
 }
 
 std::optional<double> parse_iso_time(std::string_view text) {

@@ -16,7 +16,7 @@ struct RingLayout {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   std::uint32_t type = 0;  ///< PillarfieldReadingType of frames
-  Pitch pitch_mm;          ///< of the elements of results
+  Pitch pitch_mm = {};     ///< of the elements of results
 
   bool operator==(const RingLayout&) const = default;
 };

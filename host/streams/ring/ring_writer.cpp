@@ -122,7 +122,9 @@ bool RingWriter::open() {
   unfinished.magic = 0;
   if (size == 0) {
     // Written at once, so that what a writer killed from here on leaves is known as a ring.
-    static_cast<void>(pwrite(segment_.get(), &unfinished, sizeof unfinished, 0));
+    if (pwrite(segment_.get(), &unfinished, sizeof unfinished, 0) < 0) {
+      throw Error(name_, std::strerror(errno), "free some memory");
+    }
   } else if (!holds_ring(size)) {
     throw Error(name_, "the shared memory is not a ring of Pillarfield", "give another name");
   }
