@@ -17,8 +17,8 @@ constexpr double kPressedShare = 0.3;
 constexpr double kGhostShare = 0.1;
 constexpr double kMostOfCorners = 0.9;
 constexpr std::size_t kMostPeaks = 12;
-constexpr std::size_t kLeastShown = 5;    ///< with the ghost
-constexpr std::size_t kLeastWithout = 3;  ///< with two of its corners, without the ghost
+constexpr std::size_t kLeastGhostSightings = 5;  ///< with the ghost
+constexpr std::size_t kLeastWithout = 3;         ///< with two of its corners, without the ghost
 
 using RectangleCells = std::array<std::uint32_t, 4>;  ///< row and column of a ghost, and opposite
 
@@ -33,7 +33,7 @@ class GhostSearch {
   [[nodiscard]] std::map<SenselPlace, double> ghosts() const {
     std::map<SenselPlace, double> ghosts;
     for (const auto& [rectangle, frames] : rectangles_) {
-      if (frames < kLeastShown) continue;
+      if (frames < kLeastGhostSightings) continue;
       const double most = reading_of_ghost(rectangle);
       double& largest = ghosts[{rectangle[0], rectangle[1]}];
       largest = std::max(largest, most);
