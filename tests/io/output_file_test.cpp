@@ -289,6 +289,7 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   check_outputs({}, {planned}, Replace::anything);
   write_text(directory / "a.csv", "as asked", Replace::anything);
   EXPECT_EQ(directory.names(), Names{"a.csv"});
+  fs::remove(directory / "a.csv");
   write_calibration_file(directory / "a.csv.part", small_calibration());
   EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds a calibration"}));
   write_bytes(directory / "a.csv.part", "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");

@@ -102,10 +102,16 @@ class Tekscan : public testing::Test {
     return all;
   }
 
-  static bool warnings(const FrameSource& source, const std::string& part) {
-    return std::ranges::any_of(source.warnings(), [&](const std::string& warning) {
-      return warning.find(part) != std::string::npos;
+  static bool has(const std::vector<std::string>& sentences, const std::string& part) {
+    return std::ranges::any_of(sentences, [&](const std::string& sentence) {
+      return sentence.find(part) != std::string::npos;
     });
+  }
+  static bool warnings(const FrameSource& source, const std::string& part) {
+    return has(source.warnings(), part);
+  }
+  static bool notes(const FrameSource& source, const std::string& part) {
+    return has(source.notes(), part);
   }
 
   TemporaryDirectory directory_;
@@ -127,7 +133,7 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
   EXPECT_TRUE(warnings(*source, "counts per newton"));
   EXPECT_EQ(source->skin().layout, SkinLayout::sensels);
-  EXPECT_TRUE(warnings(*source, "--layout pillars"));
+  EXPECT_TRUE(notes(*source, "--layout pillars"));
   EXPECT_FALSE(warnings(*source, "last of the 3 sensel rows"));
   EXPECT_FALSE(source->has_truth());
   EXPECT_TRUE(source->calibration().empty());
@@ -162,7 +168,7 @@ TEST_F(Tekscan, SenselsThatAnyFrameLacksAreAbsent) {
   EXPECT_EQ(source->calibration().mask, mask);
   written.frames[0][0] = written.frames[1][0] = written.frames[1][5] = 0;
   EXPECT_EQ(readings(*source), written.frames);
-  EXPECT_TRUE(warnings(*source, "2 of 12 cells have no sensel"));
+  EXPECT_TRUE(notes(*source, "2 of 12 cells have no sensel"));
 }
 
 TEST_F(Tekscan, WidensToSixteenBitsAnywhere) {
