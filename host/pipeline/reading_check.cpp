@@ -87,10 +87,11 @@ std::vector<std::string> ReadingCheck::warnings() const {
   if (!(all > 0)) return sentences;
   const double share = static_cast<double>(in_contact_) / all;
   if (blank_frames_ > 0) {
-    sentences.push_back(fmt::format(
-        "In {} of {} frames no sensel has a reading (NaN or infinite); their forces are zero, with the status "
-        "of missing sensels.",
-        blank_frames_, frames_));
+    sentences.push_back(
+        fmt::format("In {} of {} frames no sensel has a reading (NaN or infinite); their forces "
+                    "are zero, with the status "
+                    "of missing sensels.",
+                    blank_frames_, frames_));
   }
   if (share >= kCovered) {
     sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));
