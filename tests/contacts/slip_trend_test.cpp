@@ -15,8 +15,8 @@ constexpr double kDeviation = 0.05;
 
 SlipForecast after(double seconds, double rate_hz, const std::function<double(double)>& ratio) {
   SlipTrend trend;
-  int frame = 0;
-  for (double t = 0; t <= seconds; t = ++frame / rate_hz) {
+  for (int frame = 0; frame / rate_hz <= seconds; ++frame) {
+    const double t = frame / rate_hz;
     trend.add(t, ratio(t) + 0.002 * std::sin(7.3 * frame));
   }
   return trend.forecast(kFriction, kDeviation).value();
@@ -39,7 +39,8 @@ TEST(SlipTrend, FollowsARamp) {
 TEST(SlipTrend, DoesNotAlarmInHolds) {
   const auto steady = [](double t) { return std::min(0.6, 2 * t); };
   const auto swinging = [](double t) { return 0.55 + 0.2 * std::sin(2 * M_PI * 1.5 * t); };
-  for (double seconds = 1; seconds < 3; seconds += 0.05) {
+  for (int twentieth = 20; twentieth < 60; ++twentieth) {
+    const double seconds = 0.05 * twentieth;
     EXPECT_LT(after(seconds, 50, steady).probability[1], 0.01) << seconds;
     EXPECT_LT(after(seconds, 50, swinging).probability[1], 0.5) << seconds;
   }

@@ -81,7 +81,8 @@ TEST(LoadRange, RisesAtOnceAndFallsWithPatience) {
   EXPECT_FALSE(range.add(0.3, 3));
   const auto hold = [&](double from_s, double to_s, float most) {
     std::optional<float> last;
-    for (double time_s = from_s; time_s < to_s; time_s += 0.1) {
+    for (int tenth = 0; from_s + 0.1 * tenth < to_s; ++tenth) {
+      const double time_s = from_s + 0.1 * tenth;
       if (const auto load = range.add(time_s, most)) last = load;
     }
     return last;
