@@ -101,7 +101,7 @@ TEST(HostStart, ANewTareServesTheFramesAfterIt) {
   processor.submit(frame.view());
   SolverPlan retared = plan;
   for (float& tare : retared.calibration.tare) tare += 2.5F;
-  processor.set_tare(retared.calibration.tare);
+  processor.set_plan(retared);
   EXPECT_FALSE(processor.is_compiling());
   processor.submit(frame.view());
   expect_solved(processor.receive(), plan, frame);
