@@ -200,7 +200,8 @@ struct Processor::State {
 
   /// Waits for the frames in flight, whose results stay as they are.
   void set_plan(const SolverPlan& plan) {
-    if (!lanes) {
+    const bool is_opencl = !device.state().is_host();
+    if (is_opencl) {
       settings.program =
           device.state().program(kernel_source(plan, settings.lanes, settings.paths));
     }
@@ -211,6 +212,8 @@ struct Processor::State {
     for (const auto& slot : slots) {
       if (lanes) {
         static_cast<LaneSlot&>(*slot).set_plan(plan, *lanes, calibration);
+      } else if (!is_opencl) {
+        static_cast<ScalarSlot&>(*slot).set_plan(plan);
       } else {
         static_cast<OpenClSlot&>(*slot).set_plan(plan, settings, calibration);
       }

@@ -20,6 +20,9 @@ class ScalarSlot final : public Slot {
   ScalarSlot(std::shared_ptr<Sequence> sequence, const CalibrationMemory& calibration,
              FrameOrder& order);
 
+  /// The next frames of all slots are solved by another plan of the same frames and outputs.
+  void set_plan(const SolverPlan& plan) { sequence_->plan = plan; }
+
   void submit(const FrameView& frame, const std::optional<Curvature>& bent,
               const single_precision::Drift& drift) override;
   void wait() override {}
