@@ -38,7 +38,7 @@ struct Check {
 };
 
 /// The rows and columns of a frame, or of a part of it.
-struct Block {
+struct CellBlock {
   std::string name;         ///< the last words with a text before it
   std::size_t ordinal = 0;  ///< in its frame
   std::uint64_t line = 0;
@@ -71,7 +71,7 @@ bool is_sum(const Statement& stated) {
 }
 
 /// Adds what is stated about some cells, if it is a sum or a largest value.
-void add_check(Block& block, const Statement& stated, const std::vector<float>& cells) {
+void add_check(CellBlock& block, const Statement& stated, const std::vector<float>& cells) {
   if (!is_sum(stated) && !is_largest(stated)) return;
   Check check{fmt::format("{}", fmt::join(stated.words, " ")),
               is_force(stated),
@@ -124,7 +124,7 @@ class SectionParser {
       }
     }
     std::vector<std::string> sizes;
-    for (Block& block : blocks) {
+    for (CellBlock& block : blocks) {
       for (const Statement& stated : block.stated) add_check(block, stated, block.cells);
       const auto known = std::ranges::find(sizes, block.size());
       if (!number_) block.ordinal = static_cast<std::size_t>(known - sizes.begin());
@@ -134,7 +134,7 @@ class SectionParser {
 
   std::optional<std::uint64_t> table_line;
   StatedWords words;
-  std::vector<Block> blocks;
+  std::vector<CellBlock> blocks;
 
  private:
   /// Adds the cells as a row if they are numbers, the first one also a word.
@@ -151,7 +151,7 @@ class SectionParser {
     const bool is_word = !is_number(cells_[0]) && !cells_[0].empty();
     if ((is_word && !fits && !is_named) || (!fits && std::ranges::count_if(row, are_finite) < 2))
       return false;
-    if (blocks.empty() && open_.rows.empty() && labels.size() == row.size() &&
+    if (!number_ && blocks.empty() && open_.rows.empty() && labels.size() == row.size() &&
         std::ranges::any_of(labels, names_time)) {
       table_line = labels_line_;
       return true;
@@ -203,7 +203,7 @@ class SectionParser {
 
   void end_block() {
     if (open_.rows.empty()) return;
-    Block block = std::exchange(open_, {});
+    CellBlock block = std::exchange(open_, {});
     block.number = number_;
     block.time_s = time_s_;
     block.ordinal = ordinal_++;
@@ -212,7 +212,7 @@ class SectionParser {
   }
 
   /// Takes labels and sums off the rows.
-  void take_cells(Block& block) {
+  void take_cells(CellBlock& block) {
     std::vector<std::vector<double>> rows = std::exchange(block.rows, {});
     if (rows.size() > 1 && rows[1].size() > rows[0].size()) {  // Column numbers.
       rows.erase(rows.begin());
@@ -264,7 +264,7 @@ class SectionParser {
 
   LineReader reader_;
   std::vector<std::string> cells_;
-  Block open_;
+  CellBlock open_;
   std::uint64_t labels_line_ = 0;
   std::size_t cells_read_ = 0;
   std::size_t ordinal_ = 0;
@@ -273,10 +273,10 @@ class SectionParser {
 };
 
 /// The blocks of one part of the frames, one in each, all of one size.
-std::vector<const Block*> frames_of(const SectionParser& parser, const std::string& part,
-                                    const std::string& path, std::vector<std::string>& notes) {
+std::vector<const CellBlock*> frames_of(const SectionParser& parser, const std::string& part,
+                                        const std::string& path, std::vector<std::string>& notes) {
   std::map<std::size_t, std::string> parts;
-  for (const Block& block : parser.blocks) {
+  for (const CellBlock& block : parser.blocks) {
     parts.try_emplace(block.ordinal,
                       fmt::format("{} '{}' of {}", block.ordinal + 1, block.name, block.size()));
   }
@@ -300,8 +300,8 @@ std::vector<const Block*> frames_of(const SectionParser& parser, const std::stri
         "Frames have {} parts, {}{}; the first is read, others with --dataset NUMBER or NAME.",
         parts_found, fmt::join(list, ", "), parts_found > list.size() ? ", ..." : ""));
   }
-  std::vector<const Block*> frames;
-  for (const Block& block : parser.blocks) {
+  std::vector<const CellBlock*> frames;
+  for (const CellBlock& block : parser.blocks) {
     if (block.ordinal != *chosen) continue;
     frames.push_back(&block);
     if (block.size() == frames[0]->size()) continue;
@@ -322,10 +322,10 @@ std::vector<const Block*> frames_of(const SectionParser& parser, const std::stri
 
 /// Compares the cells with what the file states of them. Returns the newtons of a cell of 1, if it
 /// states forces; throws Error at the first contradiction.
-std::optional<double> check_frames(const std::vector<const Block*>& frames,
+std::optional<double> check_frames(const std::vector<const CellBlock*>& frames,
                                    std::vector<std::string>& notes, const std::string& path) {
   std::map<std::string, std::vector<const Check*>> kinds;
-  for (const Block* const block : frames) {
+  for (const CellBlock* const block : frames) {
     for (const Check& check : block->checks) kinds[check.name].push_back(&check);
   }
   std::optional<double> newtons;
@@ -356,10 +356,10 @@ std::optional<double> check_frames(const std::vector<const Block*>& frames,
   return newtons;
 }
 
-std::vector<double> times_of(const std::vector<const Block*>& frames,
-                             const std::optional<double>& period_s) {
+std::vector<double> frame_times(const std::vector<const CellBlock*>& frames,
+                                const std::optional<double>& period_s) {
   const bool is_timed =
-      std::ranges::all_of(frames, [](const Block* block) { return block->time_s.has_value(); });
+      std::ranges::all_of(frames, [](const CellBlock* block) { return block->time_s.has_value(); });
   std::vector<double> times_s;
   RisingClock clock;
   for (std::size_t i = 0; i < frames.size() && (is_timed || period_s); ++i) {
@@ -387,7 +387,7 @@ std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
   const auto by_forces = check_frames(frames, notes, path.string());
   const auto newtons = parser.words.newtons_per_cell(by_forces, known, notes, path.string());
   std::vector<float> readings;
-  for (const Block* const block : frames) {
+  for (const CellBlock* const block : frames) {
     for (const float cell : block->cells) {
       readings.push_back(newtons ? static_cast<float>(cell * *newtons) : cell);
     }
@@ -396,7 +396,7 @@ std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
   auto source = array_source(
       path, "text of frames",
       array_of(readings, {frames.size(), frames[0]->cells.size() / cols, cols}, path.string()),
-      times_of(frames, parser.words.period_s), known);
+      frame_times(frames, parser.words.period_s), known);
   source->warn(fmt::format("Each block between lines of words is a frame of {}{}.",
                            frames[0]->size(),
                            frames[0]->is_labelled ? ", behind its row numbers" : ""));

@@ -15,11 +15,10 @@
 namespace pillarfield {
 namespace {
 
-using enum Dimension;
-
 bool is_unit(std::string_view text) {
-  return unit_size(length, text) || unit_size(area, text) || unit_size(pressure, text) ||
-         unit_size(force, text) || unit_size(Dimension::time, text) || lower_case(text) == "hz";
+  return unit_size(Dimension::length, text) || unit_size(Dimension::area, text) ||
+         unit_size(Dimension::pressure, text) || unit_size(Dimension::force, text) ||
+         unit_size(Dimension::time, text) || lower_case(text) == "hz";
 }
 
 bool has_word(const std::vector<std::string>& words, std::initializer_list<std::string_view> some) {
@@ -100,7 +99,7 @@ void StatedWords::add(std::string_view line, const std::vector<Statement>& state
     std::ranges::move(words_in(token), std::back_inserter(words));
   const bool is_sure = has_word(words, {"unit", "units"});
   for (const std::string& token : tokens) {
-    const auto size = unit_size(pressure, token);
+    const auto size = unit_size(Dimension::pressure, token);
     if (!size || is_unit_sure || (mpa && !is_sure)) continue;
     if (!is_sure && !has_word(words, {"pressure", "pressures", "values", "readings"})) continue;
     mpa = size;
@@ -110,8 +109,8 @@ void StatedWords::add(std::string_view line, const std::vector<Statement>& state
   for (const Statement& stated : statements) {
     if (!(stated.value > 0) || stated.is_clock) continue;
     const bool is_count = stated.unit.empty() && stated.value == std::floor(stated.value);
-    const auto mm = unit_size(length, stated.unit);
-    const auto mm2 = unit_size(area, stated.unit);
+    const auto mm = unit_size(Dimension::length, stated.unit);
+    const auto mm2 = unit_size(Dimension::area, stated.unit);
     const auto seconds = unit_size(Dimension::time, stated.unit);
     if (mm && stated.has_any({"sensel", "cell", "element", "spacing", "pitch", "distance"})) {
       const bool is_height = stated.has_any({"height", "row", "rows"});

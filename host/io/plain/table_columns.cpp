@@ -22,16 +22,16 @@ namespace {
 
 constexpr std::string_view kDigits = "0123456789";
 
-using Words = std::set<std::string, std::less<>>;
+using NameWords = std::set<std::string, std::less<>>;
 
-/// Words of names of times.
-const Words kTimeWords = {"time",  "timestamp", "timestamps", "datetime", "stamp",
-                          "epoch", "elapsed",   "clock",      "ts",       "unixtime"};
+/// NameWords of names of times.
+const NameWords kTimeWords = {"time",  "timestamp", "timestamps", "datetime", "stamp",
+                              "epoch", "elapsed",   "clock",      "ts",       "unixtime"};
 /// Units that are names of times, too.
-const Words kTimeUnitWords = {"sec",    "secs", "seconds", "ms", "msec",
-                              "millis", "us",   "micros",  "ns"};
+const NameWords kTimeUnitWords = {"sec",    "secs", "seconds", "ms", "msec",
+                                  "millis", "us",   "micros",  "ns"};
 /// Names of columns that are no readings unless a number follows.
-const Words kNoReadings = {
+const NameWords kNoReadings = {
     "index", "idx",     "id",      "frame",   "sample",   "seq",     "sequence", "counter",
     "count", "packet",  "no",      "nr",      "number",   "label",   "class",    "target",
     "event", "marker",  "trigger", "flag",    "flags",    "status",  "state",    "valid",
@@ -39,14 +39,14 @@ const Words kNoReadings = {
     "avg",   "std",     "side",    "subject", "trial",    "session", "phase",    "activity",
     "mode",  "step",    "cycle",   "rssi",    "unnamed",  "date",    "timestep", "resultant"};
 /// Names of other measures, with a number or without.
-const Words kOtherMeasures = {
+const NameWords kOtherMeasures = {
     "acc",          "accel",     "acceleration", "accelerometer", "gyro",
     "gyr",          "gyroscope", "mag",          "magn",          "angular",
     "magnetometer", "imu",       "quat",         "quaternion",    "roll",
     "pitch",        "yaw",       "temp",         "battery",       "voltage",
     "vbat",         "cop",       "temperature",  "humidity",      "gps"};
 
-bool has_any(const std::vector<std::string>& words, const Words& among) {
+bool has_any(const std::vector<std::string>& words, const NameWords& among) {
   return std::ranges::any_of(words, [&](const auto& word) { return among.contains(word); });
 }
 
@@ -297,9 +297,9 @@ TableColumns choose_columns(std::span<const std::string> header, std::span<const
 
 std::optional<LongColumns> long_columns(std::span<const std::string> header,
                                         const TableColumns& columns, const std::string& place) {
-  const Words rows = {"row", "rows", "r", "y", "i"};
-  const Words cols = {"column", "columns", "col", "cols", "c", "x", "j"};
-  const Words frames = {"frame", "frames", "sample", "index", "scan", "picture"};
+  const NameWords rows = {"row", "rows", "r", "y", "i"};
+  const NameWords cols = {"column", "columns", "col", "cols", "c", "x", "j"};
+  const NameWords frames = {"frame", "frames", "sample", "index", "scan", "picture"};
   std::optional<std::size_t> row;
   std::optional<std::size_t> col;
   bool is_named = false;
