@@ -212,7 +212,8 @@ class TableParser {
       throw Error(reader_.place(), "begins with an empty cell, as a table with an index does",
                   "save it without index and header");
     }
-    if (header_line_ > 0 && header_.size() != cells_.size()) {
+    if (header_.size() == 1) header_.clear();  // A title.
+    if (!header_.empty() && header_.size() != cells_.size()) {
       throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
                   fmt::format("the line of names before it has {}", header_.size()));
     }
