@@ -363,8 +363,9 @@ std::vector<double> frame_times(const std::vector<const CellBlock*>& frames,
   std::vector<double> times_s;
   RisingClock clock;
   for (std::size_t i = 0; i < frames.size() && (is_timed || period_s); ++i) {
-    const double number =
-        frames[i]->number ? *frames[i]->number - *frames[0]->number : static_cast<double>(i);
+    const double number = frames[i]->number && frames[0]->number
+                              ? *frames[i]->number - *frames[0]->number
+                              : static_cast<double>(i);
     times_s.push_back(is_timed ? clock(*frames[i]->time_s) : number * *period_s);
   }
   return times_s;
