@@ -361,7 +361,7 @@ TEST_F(TextOfFrames, OneReaderReadsEveryStyle) {
     EXPECT_EQ(times_of(*source), (std::vector<double>{first_s, first_s + 0.25}));
     EXPECT_EQ(source->skin().rows, 2);
     EXPECT_EQ(source->skin().counts_per_newton, 1);
-    EXPECT_NEAR(source->skin().sensel_pitch_mm, std::sqrt(200), 1e-9);
+    EXPECT_NEAR(source->skin().sensel_pitch_mm.col_mm, std::sqrt(200), 1e-9);
     const auto newtons = all_readings(*source);
     const std::vector<float> expected = {2, 4, 0, 0, 7, 8, 8, 7, 0, 0, 4, 2};
     ASSERT_EQ(newtons.size(), expected.size());
@@ -460,7 +460,7 @@ TEST(FrameSeriesOf, FilesAndFoldersAreOneSourceInNaturalOrder) {
     EXPECT_EQ(source->sensel_type(), SenselType::f32);  // as one of them needs
     EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.5, 1, 1}));
     EXPECT_EQ(times_of(*source), (std::vector<double>{0, 0.1, 0.2}));
-    EXPECT_TRUE(has_all(source->read_as(), {"3 files", "frame_2.csv to frame_10.csv", "2 x 2"}));
+    EXPECT_TRUE(has_all(source->notes().front(), {"3 files", "frame_2.csv to frame_10.csv", "2 x 2"}));
   }
   const auto refused = [&](const ReadOptions& options) {
     return error_of([&] { static_cast<void>(open_frames(folder, options)); });

@@ -165,7 +165,9 @@ void expect_incomplete_frames(SenselType type) {
   calibration.tare.assign(skin.sensels(), 3);
   calibration.noise.assign(skin.sensels(), 0.5F);
   writer.set_tare(calibration, 2.5);
-  EXPECT_THROW(writer.set_tare({.tare = {1}}, 2.5), Error);
+  Calibration wrong;
+  wrong.tare = {1};
+  EXPECT_THROW(writer.set_tare(wrong, 2.5), Error);
   writer.finish();
 
   const auto source = open_frames(path);
@@ -202,7 +204,9 @@ TEST(RecordingRoundTrip, StatesFramesThatArrivedIncompleteAndATareThatCameLater)
   Skin skin;
   skin.rows = skin.cols = 4;
   RecordingWriter writer(directory / "r.h5", skin, SenselType::u8, {}, {});
-  EXPECT_THROW(writer.set_tare({.tare = std::vector<float>(16, 1)}, 0), Error);
+  Calibration tare;
+  tare.tare.assign(16, 1);
+  EXPECT_THROW(writer.set_tare(tare, 0), Error);
 }
 
 TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {

@@ -56,6 +56,12 @@ TEST(ThresholdOfPlans, IsFourDeviationsWhereTheNoiseAloneIsKnown) {
   Scene scene;
   scene.sensor.noise_counts = 0.5;
   const double rounding = 1.0 / 12;  // of readings of 8 bits
+  const auto settings = [](std::optional<double> noise, std::optional<double> threshold) {
+    PlanSettings given;
+    given.noise_counts = noise;
+    given.threshold_counts = threshold;
+    return given;
+  };
   struct Case {
     const char* name;
     PlanSources from;
@@ -63,11 +69,11 @@ TEST(ThresholdOfPlans, IsFourDeviationsWhereTheNoiseAloneIsKnown) {
   };
   const Case cases[] = {
       {"nothing", {}, 0},
-      {"--noise", {.settings = {.noise_counts = 1}}, 4 * std::sqrt(1 + rounding)},
+      {"--noise", {.settings = settings(1, {})}, 4 * std::sqrt(1 + rounding)},
       {"a scene", {.scene = &scene}, 4 * std::sqrt(0.25 + rounding)},
       {"a calibration", {.calibration = &calibration}, 12},
-      {"a given threshold", {.calibration = &calibration, .settings = {.threshold_counts = 0}}, 0},
-      {"a given threshold above zero", {.settings = {.threshold_counts = 3, .noise_counts = 1}}, 3},
+      {"a given threshold", {.calibration = &calibration, .settings = settings({}, 0)}, 0},
+      {"a given threshold above zero", {.settings = settings(1, 3)}, 3},
   };
   for (const Case& each : cases) {
     SolverPlan plan;
