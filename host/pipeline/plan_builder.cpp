@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -63,7 +64,9 @@ void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
 /// Where the noise is known and nothing states a threshold: that of a tare.
 void set_default_threshold(SolverPlan& plan) {
   const bool has_noise = plan.noise_counts || !plan.calibration.noise.empty();
-  if (!has_noise || plan.skin.threshold_counts > 0) return;
+  const std::vector<std::uint8_t>& mask = plan.calibration.mask;
+  const bool has_good = mask.empty() || std::ranges::count(mask, kGood) > 0;
+  if (!has_noise || !has_good || plan.skin.threshold_counts > 0) return;
   SkinCalibration calibration = blank_calibration(plan.skin);
   calibration.planes = plan.calibration;
   calibration.power_law = plan.skin.power_law;

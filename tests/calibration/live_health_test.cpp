@@ -193,14 +193,15 @@ TEST(LiveTare, ComparesWithTheTareBefore) {
     Frames frames(scene);
     LiveTare tare(plan_of(scene.skin));
     tared(tare, frames);
-    const std::string message = message_of([&] {
+    const auto take = [&] {
       tared(tare, frames, false,
             [&](FrameBuffer& frame) { each.spoil(frame.readings<std::uint8_t>().data()); });
-    });
+    };
     if (each.refused == nullptr) {
-      EXPECT_EQ(message, "");
+      EXPECT_NO_THROW(take());
       continue;
     }
+    const std::string message = message_of(take);
     EXPECT_NE(message.find(each.refused), std::string::npos) << message;
     EXPECT_NE(message.find("would not be seen"), std::string::npos) << message;
   }

@@ -54,6 +54,7 @@ TEST(ThresholdOfPlans, IsFourDeviationsWhereTheNoiseAloneIsKnown) {
   calibration.planes.gain = {1, 1, 1.5, 1};
   calibration.rows = calibration.cols = 2;
   Scene scene;
+  scene.skin.rows = scene.skin.cols = 2;
   scene.sensor.noise_counts = 0.5;
   const double rounding = 1.0 / 12;  // of readings of 8 bits
   const auto settings = [](std::optional<double> noise, std::optional<double> threshold) {
@@ -79,7 +80,6 @@ TEST(ThresholdOfPlans, IsFourDeviationsWhereTheNoiseAloneIsKnown) {
     SolverPlan plan;
     plan.skin.rows = plan.skin.cols = 2;
     plan.sensel_type = SenselType::u8;
-    if (each.from.scene != nullptr) plan.skin = scene.skin;
     plan = build_plan(plan, each.from, "a test", [] { return kIntervalS; });
     EXPECT_NEAR(plan.skin.threshold_counts, each.threshold, 1e-6) << each.name;
   }
