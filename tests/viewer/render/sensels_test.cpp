@@ -126,6 +126,33 @@ TEST(BareSensels, AreSharpRectanglesAtAnyZoom) {
   }
 }
 
+TEST(BareSensels, PlacesWithoutASenselAreBlankAndOutlined) {
+  const MadeUpField field(2, 4, [](std::uint32_t, std::uint32_t) {
+    return MadeUpPillar{0, 0, 0, 0};
+  });
+  MadeUpField bare = field.without_pillars();
+  Drawing drawing;
+  const RenderSettings settings = bare_settings(bare, kWide, kHigh);
+  SourceInfo source = bare.source();
+  source.calibration.mask = {1, 1, 2, 2, 1, 0, 2, 1};
+  const Pixels pixels = drawing.draw(bare.shown(), source, settings, kWide, kHigh);
+  const Colour idle = colour_of(Special::idle, settings.theme);
+  const Colour paper = background_of(settings.theme);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const PixelPlace place = middle_of(bare, settings, kWide, kHigh, i / 4, i % 4);
+    const bool is_absent = source.calibration.mask[i] == kAbsent;
+    EXPECT_EQ(colour_at(pixels, place.x, place.y), is_absent ? paper : idle) << i;
+  }
+  const PixelPlace left = middle_of(bare, settings, kWide, kHigh, 0, 1);
+  const PixelPlace right = middle_of(bare, settings, kWide, kHigh, 0, 2);
+  bool is_outlined = false;
+  for (std::uint32_t x = left.x; x < right.x; ++x) {
+    const Colour colour = colour_at(pixels, x, left.y);
+    is_outlined |= colour != idle && colour != paper;
+  }
+  EXPECT_TRUE(is_outlined);
+}
+
 TEST(BareSensels, HaveNoLayersOfShear) {
   const MadeUpField field = bare_field();
   Drawing drawing;
