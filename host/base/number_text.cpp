@@ -33,9 +33,8 @@ std::string rounded(double number) {
 }
 
 std::string fixed(double number, int decimals) {
-  const std::string text = fmt::format("{:.{}f}", number, decimals);
-  return text.find_first_not_of("-0.") == std::string::npos ? fmt::format("{:.{}f}", 0.0, decimals)
-                                                            : text;
+  const double power = std::pow(10.0, decimals);
+  return fmt::format("{:.{}f}", std::round(number * power) / power + 0.0, decimals);
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -200,59 +199,38 @@ void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t 
   }
 }
 
-/// Joins runs on both sides of a gap in one frame.
-class GapBridges {
- public:
-  GapBridges(std::span<const std::uint8_t> status, std::uint32_t cols,
-             std::span<const ContactRun> runs, std::vector<std::uint32_t>& parents)
-      : status_(status), cols_(cols), runs_(runs), parents_(parents) {}
-
-  /// Joins a run with those that begin behind a gap to its right, or lie behind one below it.
-  void join_across(std::uint32_t run) {
-    const auto& [row, first, end, contact] = runs_[run];
-    const std::uint32_t right = gap(row, end, 0, 1);
-    for (std::uint32_t side = 0; right > 0 && side <= 2 * right + 2; ++side) {
-      join_at(run, row + side - right - 1, end + right);
-    }
-    for (std::uint32_t col = first; col < end; ++col) {
-      const std::uint32_t below = gap(row + 1, col, 1, 0);
-      for (std::uint32_t side = 0; below > 0 && side <= 2 * below + 2; ++side) {
-        join_at(run, row + 1 + below, col + side - below - 1);
-      }
-    }
-  }
-
- private:
-  /// The length of the gap that begins at a place; 0: there is none that a contact bridges.
-  [[nodiscard]] std::uint32_t gap(std::uint32_t row, std::uint32_t col, std::uint32_t down,
-                                  std::uint32_t right) const {
-    std::uint32_t length = 0;
-    for (; col < cols_ && std::size_t{row} * cols_ + col < status_.size(); ++length) {
-      if (!may_be_loaded(status_[std::size_t{row} * cols_ + col])) {
-        return length <= kWidestGap ? length : 0;
-      }
-      row += down;
-      col += right;
-    }
-    return 0;
-  }
-
-  /// Joins with the run at a place, if there is one; rows above and left of the frame are 2^32 - 1.
-  void join_at(std::uint32_t run, std::uint32_t row, std::uint32_t col) {
+/// Joins a run with those that lie behind a gap to its right or below it.
+void join_across_gaps(std::span<const std::uint8_t> status, std::uint32_t cols,
+                      std::span<const ContactRun> runs, std::uint32_t run,
+                      std::vector<std::uint32_t>& parents) {
+  // Joins with the run at a place, if there is one; rows and columns below 0 are 2^32 - 1.
+  const auto join_at = [&](std::uint32_t row, std::uint32_t col) {
     const auto after = std::ranges::upper_bound(
-        runs_, std::pair(row, col), {},
+        runs, std::pair(row, col), {},
         [](const ContactRun& each) { return std::pair(each.row, each.first); });
-    if (after == runs_.begin()) return;
-    const ContactRun& found = *std::prev(after);
-    if (found.row != row || found.end <= col) return;
-    join(parents_, run, static_cast<std::uint32_t>(&found - runs_.data()));
+    if (after == runs.begin() || after[-1].row != row || after[-1].end <= col) return;
+    join(parents, run, static_cast<std::uint32_t>(after - runs.begin() - 1));
+  };
+  // From the first place of a gap, whose length is at most kWidestGap.
+  const auto join_behind = [&](std::uint32_t row, std::uint32_t col, bool is_below) {
+    for (std::uint32_t length = 0; length <= kWidestGap; ++length) {
+      const std::size_t place = std::size_t{row} * cols + col;
+      if (col >= cols || place >= status.size()) return;
+      if (!may_be_loaded(status[place])) {
+        for (std::uint32_t side = 0; length > 0 && side <= 2 * length + 2; ++side) {
+          const std::uint32_t aside = side - length - 1;
+          is_below ? join_at(row, col + aside) : join_at(row + aside, col);
+        }
+        return;
+      }
+      is_below ? ++row : ++col;
+    }
+  };
+  join_behind(runs[run].row, runs[run].end, false);
+  for (std::uint32_t col = runs[run].first; col < runs[run].end; ++col) {
+    join_behind(runs[run].row + 1, col, true);
   }
-
-  std::span<const std::uint8_t> status_;
-  std::uint32_t cols_;
-  std::span<const ContactRun> runs_;
-  std::vector<std::uint32_t>& parents_;
-};
+}
 
 }  // namespace
 
@@ -304,8 +282,9 @@ void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_
     next_row = row + 1;
   }
   if ((met & kEachByte * kUnknownLoad) == 0) return;
-  GapBridges bridges(status, cols, found_, parents_);
-  for (std::uint32_t run = 0; run < found_.size(); ++run) bridges.join_across(run);
+  for (std::uint32_t run = 0; run < found_.size(); ++run) {
+    join_across_gaps(status, cols, found_, run, parents_);
+  }
 }
 
 /// Labels contacts by their first runs, in order. A contact's first run precedes its others.

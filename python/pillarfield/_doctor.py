@@ -5,10 +5,8 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
-from collections.abc import Iterable
 from typing import Any, Optional, Union
 
-import numpy as np
 import numpy.typing as npt
 
 from . import _core
@@ -20,21 +18,17 @@ from ._scene import Simulation
 
 @dataclasses.dataclass(frozen=True)
 class ArrayFinding:
-    """A fault of an array.
+    """A fault of an array (docs/command_line.md, Doctor).
 
-    fault: 'dead', 'stuck', 'dead column', 'shorted rows', ... (docs/command_line.md, Doctor)
+    fault: 'dead', 'stuck', 'dead column', 'shorted rows', ...
     text: a sentence with the figure and the places
-    figure: its meaning depends on the fault: per cent or counts
     sensels: (row, column) of each faulty sensel; lines: faulty rows or columns; both from 0
-    order: lines as they lie, where they are wired in another order
     """
 
     fault: str
     text: str
-    figure: float = 0.0
-    sensels: list[tuple[int, int]] = dataclasses.field(default_factory=list)
-    lines: list[int] = dataclasses.field(default_factory=list)
-    order: list[int] = dataclasses.field(default_factory=list)
+    sensels: list[tuple[int, int]]
+    lines: list[int]
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -43,23 +37,16 @@ class Diagnosis:
 
     findings: each fault; none: nothing wrong was found
     polarity: 'rises' or 'falls' under load, or 'unknown'
-    layout: 'sensels', 'pillars' or 'unknown'
-    idle_counts, noise_counts: reading without load and its noise, medians of the sensels
+    noise_counts, idle_counts: noise and reading without load, medians of the sensels
     rate_hz: frames per second; None without times
-    contact_frames: frames with a contact; idle_frames: first frames without one, for tare_frames=
-    untouched: (row, column) of the sensels that nothing tested
     facts: everything that `pillarfield doctor --json` prints, by its name
     """
 
     findings: list[ArrayFinding]
     polarity: str
-    layout: str
-    idle_counts: float
     noise_counts: float
+    idle_counts: float
     rate_hz: Optional[float]
-    contact_frames: int
-    idle_frames: int
-    untouched: list[tuple[int, int]]
     facts: dict[str, Any]
     _pixels: Image = dataclasses.field(compare=False)
 
@@ -71,23 +58,18 @@ class Diagnosis:
 
     def __repr__(self) -> str:
         facts = self.facts
-        sensels = facts["rows"] * facts["cols"]
-        texts = [f"\n  {finding.text}" for finding in self.findings] or ["\n  Nothing wrong was found."]
-        return (f"<Diagnosis: {facts['frames']} frames of {facts['rows']} x {facts['cols']} sensels, "
-                f"polarity {self.polarity}, noise {self.noise_counts:.3g} counts, "
-                f"{sensels - len(self.untouched)} of {sensels} sensels tested{''.join(texts)}>")
+        texts = [finding.text for finding in self.findings] or ["Nothing wrong was found."]
+        return "\n  ".join([f"<Diagnosis: {facts['frames']} frames of {facts['rows']} x {facts['cols']} sensels, "
+                            f"polarity {self.polarity}, noise {self.noise_counts:.3g} counts", *texts]) + ">"
 
 
-def doctor(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulation], *,
+def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
            times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
            axes: Axes = "") -> Diagnosis:
-    """Looks at frames of any pressure array and finds what is wrong with it.
+    """Looks at frames of any pressure array, swept by a finger, and finds what is wrong with it.
 
-    Sweep a finger over all of the array meanwhile, with moments without load.
-
-    frames: as of solve(), with an iterator such as itertools.islice(pf.live(...), 500)
+    frames, axes: as of solve(), but no iterator
     times, rate_hz: of an array, or rate_hz of a file without times; without either there are no times
-    axes: as of solve()
 
     Raises Error for fewer than 10 frames and for frames of NaN alone.
 
@@ -105,24 +87,11 @@ def doctor(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulati
         name = os.fspath(frames)
         source = _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), untimed=rate_hz is None)
     else:
-        if isinstance(frames, Iterable) and not (hasattr(frames, "__array__")
-                                                 or isinstance(frames, (list, tuple, Simulation))):
-            came = list(frames)
-            if came and hasattr(came[0], "time_s"):
-                times = [frame.time_s for frame in came]
-            frames = [getattr(frame, "readings", frame) for frame in came]
         timed = isinstance(frames, (Recording, Simulation)) or times is not None or rate_hz is not None
         source = source_of(frames, None, times, rate_hz, axes=axes)
     text, pixels = _core.doctor(source, name, timed)
     facts = json.loads(text)
-    return Diagnosis([_finding(each) for each in facts["findings"]], facts["polarity"], facts["layout"],
-                     facts["idle_counts"], facts["noise_counts"]["median"], facts["rate_hz"],
-                     facts["contact_frames"], facts["idle_frames"],
-                     [(row, col) for row, col in facts["untouched"]], facts, pixels)
-
-
-def _finding(fact: dict[str, Any]) -> ArrayFinding:
-    """A finding from its facts."""
-    sensels = [(row, col) for row, col in fact.get("sensels", [])]
-    return ArrayFinding(fact["fault"], fact["text"], fact["figure"], sensels, fact.get("lines", []),
-                        fact.get("order", []))
+    findings = [ArrayFinding(each["fault"], each["text"], [(row, col) for row, col in each.get("sensels", [])],
+                             each.get("lines", [])) for each in facts["findings"]]
+    return Diagnosis(findings, facts["polarity"], facts["noise_counts"]["median"], facts["idle_counts"],
+                     facts["rate_hz"], facts, pixels)

@@ -31,16 +31,10 @@ vk::raii::DescriptorPool make_texture_pool(const gpu::Device& device) {
 constexpr std::array<ImWchar, 13> kGlyphs{0x0020, 0x00ff, 0x0391, 0x03c9, 0x2010, 0x2027, 0x2030,
                                           0x205e, 0x2190, 0x21ff, 0x2200, 0x22ff, 0};
 
-/// Glyphs that the font of ImGui, Latin-1, lacks, and those in their place without DejaVu Sans.
-constexpr std::array<std::array<ImWchar, 2>, 9> kSubstitutes{{{0x2212, '-'},
-                                                              {0x2013, '-'},
-                                                              {0x2026, '.'},
-                                                              {0x2190, '<'},
-                                                              {0x2191, '^'},
-                                                              {0x2192, '>'},
-                                                              {0x2193, 'v'},
-                                                              {0x03b8, 'O'},
-                                                              {0x03c6, 0xf8}}};
+/// Glyphs that the font of ImGui, Latin-1, lacks, each with one in its place without DejaVu Sans.
+constexpr std::array<ImWchar, 18> kSubstitutes{0x2212, '-', 0x2013, '-', 0x2026, '.',
+                                               0x2190, '<', 0x2191, '^', 0x2192, '>',
+                                               0x2193, 'v', 0x03b8, 'O', 0x03c6, 0xf8};
 
 void load_font(ImGuiIO& io, double scale) {
   const float size = kFontSize * static_cast<float>(scale);
@@ -114,8 +108,9 @@ GuiContext::GuiContext(const gpu::Instance& instance, const gpu::Device& device,
   ImGui_ImplVulkan_CreateFontsTexture();
 #endif
   ImFont& font = *io.Fonts->Fonts.front();
-  for (const auto& [missing, present] : kSubstitutes) {
-    if (font.FindGlyphNoFallback(missing) == nullptr) font.AddRemapChar(missing, present);
+  for (std::size_t i = 0; i < kSubstitutes.size(); i += 2) {
+    if (font.FindGlyphNoFallback(kSubstitutes[i]) != nullptr) continue;
+    font.AddRemapChar(kSubstitutes[i], kSubstitutes[i + 1]);
   }
 }
 

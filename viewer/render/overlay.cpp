@@ -72,10 +72,6 @@ struct Canvas {
 void draw_absent(const Canvas& canvas, const SourceInfo& source, const Ground& ground) {
   if (count_absent(source.calibration) == 0) return;
   const Skin& skin = source.skin;
-  const auto exists = [&](std::uint32_t row, std::uint32_t col) {
-    return row < skin.element_rows() && col < skin.element_cols() &&
-           !lacks_sensels(source.calibration, skin, row, col);
-  };
   const Viewport& plot = ground.plot();
   canvas.list.PushClipRect(to_imgui({plot.x, plot.y}),
                            to_imgui({plot.x + plot.width, plot.y + plot.height}));
@@ -83,21 +79,12 @@ void draw_absent(const Canvas& canvas, const SourceInfo& source, const Ground& g
   const ImU32 paper = packed_colour(background_of(canvas.settings.theme));
   for (std::uint32_t row = 0; row < skin.element_rows(); ++row) {
     for (std::uint32_t col = 0; col < skin.element_cols(); ++col) {
-      if (exists(row, col)) continue;
+      if (!lacks_sensels(source.calibration, skin, row, col)) continue;
       const auto seen = ground.outline({row, row + 1, col, col + 1});
       if (seen.empty() || std::ranges::any_of(seen, &SeenPoint::hidden)) continue;
       std::vector<ImVec2> points;
       std::ranges::transform(seen, std::back_inserter(points), to_imgui);
       canvas.list.AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), paper);
-      points.push_back(points.front());
-      const std::size_t side = seen.size() / 4;
-      const std::array<bool, 4> is_edge = {exists(row - 1, col), exists(row, col + 1),
-                                           exists(row + 1, col), exists(row, col - 1)};
-      for (std::size_t i = 0; i < 4; ++i) {
-        if (!is_edge.at(i)) continue;
-        canvas.list.AddPolyline(&points[i * side], static_cast<int>(side) + 1, canvas.faint_colour,
-                                ImDrawFlags_None, canvas.unit());
-      }
     }
   }
   canvas.list.Flags = flags;

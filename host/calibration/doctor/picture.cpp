@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,26 +21,13 @@ using MarkColour = std::array<std::uint8_t, 3>;
 
 constexpr MarkColour kPaper = {24, 24, 24};
 constexpr MarkColour kInk = {225, 225, 225};
-constexpr MarkColour kFaintInk = {90, 90, 100};
-constexpr MarkColour kOfOtherFaults = {0, 255, 255};
-constexpr std::array<std::pair<ArrayFault, MarkColour>, 9> kFaultColours = {
-    {{ArrayFault::absent, {70, 110, 255}},
-     {ArrayFault::noisy, {255, 150, 0}},
-     {ArrayFault::stuck, {255, 150, 0}},
-     {ArrayFault::saturated, {255, 0, 255}},
-     {ArrayFault::dead, {255, 40, 40}},
-     {ArrayFault::dead_row, {255, 40, 40}},
-     {ArrayFault::dead_column, {255, 40, 40}},
-     {ArrayFault::shorted_rows, {255, 255, 0}},
-     {ArrayFault::shorted_columns, {255, 255, 0}}}};
-
 constexpr std::uint32_t kLargestSide = 1200;  // pixels, as far as a sensel has one at least
 constexpr std::uint32_t kLargestSquare = 48;
-constexpr std::uint32_t kLeastFramed = 5;  ///< pixels of a square with a frame
-constexpr std::uint32_t kDot = 2;          ///< pixels of a dot of a letter
+constexpr std::uint32_t kDot = 2;  ///< of a letter, pixels
 constexpr std::uint32_t kLetterStep = 6 * kDot;
 constexpr std::uint32_t kTextLine = 10 * kDot;
-constexpr std::uint32_t kLegendWidth = 20 * kLetterStep;  ///< width
+constexpr std::uint32_t kMark = 10;  ///< thickness of the mark of a line, pixels
+constexpr std::uint32_t kTop = 4 * kTextLine;
 
 /// Letters of 5 x 7 dots from ' ' to 'z': a byte for each column, the first one highest; its lowest
 /// bit is the top.
@@ -62,10 +50,24 @@ constexpr std::array<std::uint64_t, 91> kLetters = {
     0x4464544c44};
 
 MarkColour colour_of(ArrayFault fault) {
-  for (const auto& [each, colour] : kFaultColours) {
-    if (each == fault) return colour;
+  switch (fault) {
+    case ArrayFault::absent:
+      return {90, 90, 100};
+    case ArrayFault::stuck:
+    case ArrayFault::noisy:
+      return {255, 150, 0};
+    case ArrayFault::saturated:
+      return {255, 0, 255};
+    case ArrayFault::dead:
+    case ArrayFault::dead_row:
+    case ArrayFault::dead_column:
+      return {255, 40, 40};
+    case ArrayFault::shorted_rows:
+    case ArrayFault::shorted_columns:
+      return {255, 255, 0};
+    default:
+      return {0, 255, 255};
   }
-  return kOfOtherFaults;
 }
 
 bool is_of_rows(ArrayFault fault) {
@@ -73,192 +75,111 @@ bool is_of_rows(ArrayFault fault) {
          fault == ArrayFault::row_order;
 }
 
-/// A picture of squares, one a sensel, with numbers, title, scale and legend around it.
-class SenselSquares {
- public:
-  SenselSquares(std::uint32_t rows, std::uint32_t cols)
-      : rows_(rows),
-        cols_(cols),
-        side_(std::clamp(kLargestSide / std::max(rows, cols), 1U, kLargestSquare)),
-        left_(kMargin + kLetterStep * static_cast<std::uint32_t>(std::to_string(rows).size())) {
-    picture_.width = right() + kMargin + kLegendWidth;
-    picture_.height = kTop + std::max(rows * side_, 12 * kTextLine) + kMargin;
-    picture_.rgb.resize(std::size_t{3} * picture_.width * picture_.height);
-    paint(0, 0, picture_.height, picture_.width, kPaper);
-  }
+/// Rectangles and letters; what lies outside of the picture is left out.
+struct Sheet {
+  RgbPicture picture;
 
-  void fill(const SenselPlace& place, const MarkColour& colour) {
-    paint(top_of(place.first), left_of(place.second), side_, side_, colour);
-  }
-
-  void frame(const SenselPlace& place, const MarkColour& colour) {
-    if (side_ < kLeastFramed) return fill(place, colour);
-    frame(top_of(place.first), left_of(place.second), side_, colour);
-  }
-
-  /// Paper and a cross, where the array has no sensel.
-  void cross_out(const SenselPlace& place) {
-    cross_out(top_of(place.first), left_of(place.second), side_);
-  }
-
-  /// Marks a row or a column in the margins at both of its ends.
-  void mark(bool is_row, std::uint32_t line, const MarkColour& colour) {
-    for (const std::uint32_t begin :
-         {is_row ? left_ - kMark : kTop - kMark, is_row ? right() : kTop + rows_ * side_}) {
-      if (is_row) paint(top_of(line), begin, side_, kMark, colour);
-      if (!is_row) paint(begin, left_of(line), kMark, side_, colour);
-    }
-  }
-
-  /// Writes the numbers of rows and columns, as many as there is room for.
-  void number_lines() {
-    const std::uint32_t widest = static_cast<std::uint32_t>(std::to_string(cols_).size()) + 1;
-    for (std::uint32_t row = 0; row < rows_; row += step_of(kTextLine)) {
-      const std::string text = std::to_string(row);
-      write(top_of(row) + side_ / 2 - std::min(side_ / 2, 7 * kDot / 2),
-            left_ - kMark - kDot - kLetterStep * static_cast<std::uint32_t>(text.size()), text);
-    }
-    for (std::uint32_t col = 0; col < cols_; col += step_of(widest * kLetterStep)) {
-      const std::string text = std::to_string(col);
-      const std::uint32_t half = kLetterStep * static_cast<std::uint32_t>(text.size()) / 2;
-      write(kTop - kMark - kTextLine, left_of(col) + side_ / 2 - std::min(side_ / 2, half), text);
-    }
-  }
-
-  void title(std::string_view line, std::string_view below) {
-    write(kDot * 4, kMark, line);
-    write(kDot * 4 + kTextLine, kMark, below);
-  }
-
-  /// A bar of greys from 0 to `full`, beside the squares.
-  void scale(const std::string& full) {
-    const std::uint32_t height = 5 * kTextLine;
-    for (std::uint32_t y = 0; y < height; ++y) {
-      const auto grey = static_cast<std::uint8_t>(255 - 255 * y / (height - 1));
-      paint(kTop + y, right() + kMargin, 1, kTextLine, {grey, grey, grey});
-    }
-    write(kTop, right() + kMargin + kTextLine + kDot * 3, full);
-    write(kTop + height - 7 * kDot, right() + kMargin + kTextLine + kDot * 3, "0 counts");
-    legend_ = kTop + 6 * kTextLine;
-  }
-
-  void add_to_legend(ArrayFault fault) {
-    const std::uint32_t left = right() + kMargin;
-    const std::uint32_t side = 7 * kDot;
-    if (legend_ + kTextLine > picture_.height) return;
-    if (fault == ArrayFault::absent) cross_out(legend_, left, side);
-    if (fault != ArrayFault::absent) frame(legend_, left, side, colour_of(fault));
-    write(legend_, left + kTextLine, fault == ArrayFault::absent ? "no sensel" : name_of(fault));
-    legend_ += kTextLine;
-  }
-
-  [[nodiscard]] RgbPicture take() { return std::move(picture_); }
-
- private:
-  static constexpr std::uint32_t kMark = 10;
-  static constexpr std::uint32_t kMargin = 2 * kMark;
-  static constexpr std::uint32_t kTop = 4 * kTextLine;
-
-  [[nodiscard]] std::uint32_t top_of(std::uint32_t row) const { return kTop + row * side_; }
-  [[nodiscard]] std::uint32_t left_of(std::uint32_t col) const { return left_ + col * side_; }
-  [[nodiscard]] std::uint32_t right() const { return left_of(cols_); }
-
-  /// Lines from number to number: 1, 2, 5, 10, ... of at least so many pixels.
-  [[nodiscard]] std::uint32_t step_of(std::uint32_t pixels) const {
-    for (std::uint32_t ten = 1;; ten *= 10) {
-      for (const std::uint32_t step : {ten, 2 * ten, 5 * ten}) {
-        if (step * side_ >= pixels) return step;
+  void paint(std::uint32_t top, std::uint32_t left, std::uint32_t height, std::uint32_t width,
+             const MarkColour& colour) {
+    for (std::uint32_t y = top; y < std::min(top + height, picture.height); ++y) {
+      for (std::uint32_t x = left; x < std::min(left + width, picture.width); ++x) {
+        std::ranges::copy(colour, &picture.rgb[3 * (std::size_t{y} * picture.width + x)]);
       }
-    }
-  }
-
-  void frame(std::uint32_t top, std::uint32_t left, std::uint32_t side, const MarkColour& colour) {
-    const std::uint32_t width = std::max(side / 8, 1U);
-    paint(top, left, width, side, colour);
-    paint(top + side - width, left, width, side, colour);
-    paint(top, left, side, width, colour);
-    paint(top, left + side - width, side, width, colour);
-  }
-
-  void cross_out(std::uint32_t top, std::uint32_t left, std::uint32_t side) {
-    paint(top, left, side, side, kPaper);
-    for (std::uint32_t i = side / 4; i < side - side / 4; ++i) {
-      paint(top + i, left + i, 1, 1, kFaintInk);
-      paint(top + i, left + side - 1 - i, 1, 1, kFaintInk);
     }
   }
 
   void write(std::uint32_t top, std::uint32_t left, std::string_view text) {
     for (const char each : text) {
-      const bool is_known = each >= ' ' && each <= 'z';
-      const std::uint64_t dots =
-          kLetters.at(static_cast<std::size_t>((is_known ? each : '?') - ' '));
+      const auto place = static_cast<std::size_t>(each - ' ');
+      const std::uint64_t dots = kLetters[place < kLetters.size() ? place : '?' - ' '];
       for (std::uint32_t dot = 0; dot < 35; ++dot) {
-        const std::uint32_t x = dot / 7;
-        const std::uint32_t y = dot % 7;
-        if ((dots >> (8 * (4 - x) + y) & 1U) == 0) continue;
-        paint(top + kDot * y, left + kDot * x, kDot, kDot, kInk);
+        if ((dots >> (8 * (4 - dot / 7) + dot % 7) & 1U) == 0) continue;
+        paint(top + kDot * (dot % 7), left + kDot * (dot / 7), kDot, kDot, kInk);
       }
       left += kLetterStep;
     }
   }
 
-  /// Paints a rectangle, as far as it lies in the picture.
-  void paint(std::uint32_t top, std::uint32_t left, std::uint32_t height, std::uint32_t width,
-             const MarkColour& colour) {
-    for (std::uint32_t y = top; y < std::min(top + height, picture_.height); ++y) {
-      for (std::uint32_t x = left; x < std::min(left + width, picture_.width); ++x) {
-        std::ranges::copy(
-            colour, picture_.rgb.begin() +
-                        static_cast<std::ptrdiff_t>(3 * (std::size_t{y} * picture_.width + x)));
+  /// A frame in the colour of a fault; of an absent sensel a cross on paper.
+  void mark(std::uint32_t top, std::uint32_t left, std::uint32_t side, ArrayFault fault) {
+    const MarkColour colour = colour_of(fault);
+    const std::uint32_t width = std::max(side / 8, 1U);
+    if (fault == ArrayFault::absent) paint(top, left, side, side, kPaper);
+    for (std::uint32_t i = 0; i < side; ++i) {
+      if (fault == ArrayFault::absent) {
+        paint(top + i, left + i, 1, 1, colour);
+        paint(top + i, left + side - 1 - i, 1, 1, colour);
+      } else {
+        const bool is_whole = i < width || i + width >= side;
+        paint(top + i, left, 1, is_whole ? side : width, colour);
+        paint(top + i, left + side - width, 1, width, colour);
       }
     }
   }
-
-  std::uint32_t rows_;
-  std::uint32_t cols_;
-  std::uint32_t side_;  ///< of a square, pixels
-  std::uint32_t left_;  ///< of the squares, pixels
-  std::uint32_t legend_ = 0;
-  RgbPicture picture_;
 };
+
+std::uint32_t width_of(std::uint32_t number) {
+  return kLetterStep * static_cast<std::uint32_t>(std::to_string(number).size());
+}
 
 }  // namespace
 
 RgbPicture draw(const Diagnosis& diagnosis, const std::string& title) {
-  SenselSquares squares(diagnosis.rows, diagnosis.cols);
+  const auto& [rows, cols] = std::pair(diagnosis.rows, diagnosis.cols);
+  const std::uint32_t side = std::clamp(kLargestSide / std::max(rows, cols), 1U, kLargestSquare);
+  const std::uint32_t left = 2 * kMark + width_of(rows);
+  const std::uint32_t right = left + cols * side;
+  const std::uint32_t bottom = kTop + rows * side;
+  Sheet sheet{{std::max(right, 20 * kLetterStep) + 22 * kLetterStep,
+               std::max(bottom, kTop + 12 * kTextLine) + 2 * kMark}};
+  sheet.picture.rgb.resize(std::size_t{3} * sheet.picture.width * sheet.picture.height);
+  sheet.paint(0, 0, sheet.picture.height, sheet.picture.width, kPaper);
+  sheet.write(kMark, kMark, title);
+  sheet.write(kMark + kTextLine, kMark,
+              fmt::format("Largest change under load, {} x {} sensels", rows, cols));
   std::vector<float> sorted = diagnosis.picture;
   const double full = std::max(1e-30F, quantile(sorted, 0.99));
-  for (std::uint32_t row = 0; row < diagnosis.rows; ++row) {
-    for (std::uint32_t col = 0; col < diagnosis.cols; ++col) {
-      const double signal = diagnosis.picture[std::size_t{row} * diagnosis.cols + col];
-      const auto grey =
-          static_cast<std::uint8_t>(std::lround(255 * std::clamp(signal / full, 0.0, 1.0)));
-      squares.fill({row, col}, {grey, grey, grey});
-    }
+  for (std::uint32_t i = 0; i < rows * cols; ++i) {
+    const auto grey = static_cast<std::uint8_t>(
+        std::lround(255 * std::clamp(double{diagnosis.picture[i]} / full, 0.0, 1.0)));
+    sheet.paint(kTop + i / cols * side, left + i % cols * side, side, side, {grey, grey, grey});
   }
-  squares.number_lines();
-  squares.title(title, fmt::format("Largest change under load, {} x {} sensels", diagnosis.rows,
-                                   diagnosis.cols));
-  squares.scale(fmt::format("{:.3g} counts", full));
-  std::vector<ArrayFault> named;
+  for (std::uint32_t row = 0; row < rows; row += kTextLine / side + 1) {
+    sheet.write(kTop + row * side + side / 2 - 7, left - kMark - kDot - width_of(row),
+                std::to_string(row));
+  }
+  for (std::uint32_t col = 0; col < cols; col += (width_of(cols) + kLetterStep) / side + 1) {
+    sheet.write(kTop - kMark - kTextLine, left + col * side + side / 2 - width_of(col) / 2,
+                std::to_string(col));
+  }
+  for (std::uint32_t y = 0; y < 100; ++y) {
+    const auto grey = static_cast<std::uint8_t>(255 - 255 * y / 99);
+    sheet.paint(kTop + y, right + 2 * kMark, 1, kTextLine, {grey, grey, grey});
+  }
+  const std::uint32_t words = right + 2 * kMark + kTextLine + kDot;
+  sheet.write(kTop, words, fmt::format("{:.3g} counts", full));
+  sheet.write(kTop + 100 - 7 * kDot, words, "0 counts");
+  std::set<ArrayFault> named;
   for (const ArrayFinding& finding : diagnosis.findings) {
-    const MarkColour colour = colour_of(finding.fault);
-    for (const SenselPlace& place : finding.sensels) {
-      if (finding.fault == ArrayFault::absent) squares.cross_out(place);
-      if (finding.fault != ArrayFault::absent) squares.frame(place, colour);
+    const ArrayFault fault = finding.fault;
+    for (const auto& [row, col] : finding.sensels) {
+      sheet.mark(kTop + row * side, left + col * side, side, fault);
     }
     for (const std::uint32_t line : finding.lines) {
-      squares.mark(is_of_rows(finding.fault), line, colour);
+      const bool is_row = is_of_rows(fault);
+      const std::uint32_t at = (is_row ? kTop : left) + line * side;
+      for (const std::uint32_t end : {(is_row ? left : kTop) - kMark, is_row ? right : bottom}) {
+        if (is_row) sheet.paint(at, end, side, kMark, colour_of(fault));
+        if (!is_row) sheet.paint(end, at, kMark, side, colour_of(fault));
+      }
     }
-    if ((finding.sensels.empty() && finding.lines.empty()) ||
-        std::ranges::find(named, finding.fault) != named.end()) {
-      continue;
-    }
-    named.push_back(finding.fault);
-    squares.add_to_legend(finding.fault);
+    if (finding.sensels.empty() && finding.lines.empty()) continue;
+    if (!named.insert(fault).second) continue;
+    const std::uint32_t at = kTop + 100 + static_cast<std::uint32_t>(named.size()) * kTextLine;
+    sheet.mark(at, right + 2 * kMark, 7 * kDot, fault);
+    sheet.write(at, words, fault == ArrayFault::absent ? "no sensel" : name_of(fault));
   }
-  return squares.take();
+  return std::move(sheet.picture);
 }
 
 }  // namespace pillarfield
