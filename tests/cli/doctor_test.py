@@ -272,7 +272,7 @@ class DoctorTest(CommandTest):
         top, left, side = 80, 44, 37
         bottom, right, paper, ink, red = top + ROWS * side, left + COLS * side, [24] * 3, [225] * 3, [255, 40, 40]
         absent = pixels[top + 4 * side:top + 5 * side, left + 20 * side:left + 21 * side]
-        self.assertEqual((absent[0, 0].tolist(), absent[side // 2, side // 2].tolist()), (paper, [90, 90, 100]))
+        self.assertEqual((absent[0, side // 2].tolist(), absent[side // 2, side // 2].tolist()), (paper, [90, 90, 100]))
         column = left + 7 * side + side // 2
         for row in (top - 5, bottom + 5):
             self.assertEqual(pixels[row, column].tolist(), red)
