@@ -14,7 +14,7 @@ namespace {
 /// Distance from the typical level, in spreads, beyond which a level is an outlier.
 constexpr double kFar = 6;
 /// Least distance of a value that means nothing from the readings, in their range.
-constexpr double kClear = 0.2;
+constexpr double kClear = 1;
 /// Least share of sensels that must vary for a constant 0 to be odd, and for a constant reading at
 /// the typical level to be stuck.
 constexpr double kMostVary = 0.8;

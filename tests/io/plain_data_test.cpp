@@ -403,6 +403,24 @@ TEST_F(TextOfFrames, PartsAreChosenAndLinesWithTimesAreFrames) {
   EXPECT_EQ(open(insoles + "   MVP\t 9\t 9\t 9\t 9\t\n", pitched)->frames(), 2);
 }
 
+TEST_F(PlainTable, CellsWithoutASenselAreNamedAndAbsent) {
+  // One cell varies in few frames only, and one rests beside two that are always loaded.
+  const auto absent = [&](double nothing, double rest) {
+    std::string text;
+    for (int frame = 0; frame < 200; ++frame) {
+      text += fmt::format("{},{},{},{},{},{}\n", nothing, nothing, rest, 100 + frame % 7,
+                          100 + frame % 5, frame == 101 ? 150 : 100);
+    }
+    const auto source = open(text, {.rate_hz = 10, .frame_size = FrameSize{2, 3}});
+    const Calibration& calibration = source->calibration();
+    return std::ranges::count(calibration.mask, kAbsent);
+  };
+  EXPECT_EQ(absent(-1, 100), 2);
+  EXPECT_EQ(absent(30000, 100), 2);
+  EXPECT_EQ(absent(100, 80), 0);
+  EXPECT_EQ(absent(80, 80), 0);
+}
+
 TEST_F(PlainTable, MistakesNameTheirLine) {
   const ReadOptions shape = {.frame_size = FrameSize{2, 2}, .untimed = true};
   EXPECT_TRUE(has_all(refused("1,2\n3\n"), {"table.csv:2", "has 1 numbers", "2"}));
@@ -460,7 +478,8 @@ TEST(FrameSeriesOf, FilesAndFoldersAreOneSourceInNaturalOrder) {
     EXPECT_EQ(source->sensel_type(), SenselType::f32);  // as one of them needs
     EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0.5, 1, 1}));
     EXPECT_EQ(times_of(*source), (std::vector<double>{0, 0.1, 0.2}));
-    EXPECT_TRUE(has_all(source->notes().front(), {"3 files", "frame_2.csv to frame_10.csv", "2 x 2"}));
+    EXPECT_TRUE(
+        has_all(source->notes().front(), {"3 files", "frame_2.csv to frame_10.csv", "2 x 2"}));
   }
   const auto refused = [&](const ReadOptions& options) {
     return error_of([&] { static_cast<void>(open_frames(folder, options)); });

@@ -35,6 +35,7 @@ class ArraySource final : public FileSource {
   void take_as_frame();
   void take_lines(const FrameSize& size);
   void check_size(const ReadOptions& options) const;
+  [[nodiscard]] std::vector<SenselEvidence> looked_at(std::uint64_t looks);
   void note_absent();
 
   std::unique_ptr<NumberArray> array_;
@@ -137,10 +138,8 @@ void ArraySource::check_size(const ReadOptions& options) const {
   }
 }
 
-/// Marks the cells whose reading stands for "no sensel", by some of the frames.
-void ArraySource::note_absent() {
-  constexpr std::uint64_t kMostLooks = 64;
-  const std::uint64_t looks = std::min(frames_, kMostLooks);
+/// What sensels read in so many of the frames, evenly spaced.
+std::vector<SenselEvidence> ArraySource::looked_at(std::uint64_t looks) {
   std::vector<SenselEvidence> sensels(skin_.sensels());
   FrameBuffer frame(type_, skin_.rows, skin_.cols);
   const bool mirrors = std::exchange(mirrors_, false);
@@ -153,8 +152,17 @@ void ArraySource::note_absent() {
     }
   }
   mirrors_ = mirrors;
+  return sensels;
+}
+
+/// Marks the cells whose reading stands for "no sensel".
+void ArraySource::note_absent() {
+  constexpr std::uint64_t kMostLooks = 64;
+  const std::uint64_t looks = std::min(frames_, kMostLooks);
+  if (looks < kLeastAbsentLooks || !absent_value(looked_at(looks))) return;
+  const std::vector<SenselEvidence> sensels = looked_at(frames_);
   const std::optional<float> value = absent_value(sensels);
-  if (!value || looks < kLeastAbsentLooks) return;
+  if (!value) return;
   calibration_.mask.assign(sensels.size(), kGood);
   for (std::size_t i = 0; i < sensels.size(); ++i) {
     if (sensels[i].is_constant() && sensels[i].read.lowest == *value)
