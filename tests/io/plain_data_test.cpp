@@ -411,7 +411,7 @@ TEST_F(PlainTable, CellsWithoutASenselAreNamedAndAbsent) {
       text += fmt::format("{},{},{},{},{},{}\n", nothing, nothing, rest, 100 + frame % 7,
                           100 + frame % 5, frame == 101 ? 150 : 100);
     }
-    const auto source = open(text, {.rate_hz = 10, .frame_size = FrameSize{2, 3}});
+    const auto source = open(text, {.frame_size = FrameSize{2, 3}, .rate_hz = 10});
     const Calibration& calibration = source->calibration();
     return std::ranges::count(calibration.mask, kAbsent);
   };
