@@ -25,9 +25,10 @@ double pressure(double row, double col) {
 ForceField pressed_ball(double moved, double load, bool slips) {
   ForceField field(kSide, kSide);
   for (std::uint32_t i = 0; i < field.elements(); ++i) {
-    const double normal = load * pressure(i / kSide, i % kSide - moved);
+    const std::uint32_t row = i / kSide;
+    const double normal = load * pressure(row, i % kSide - moved);
     if (normal <= 0) continue;
-    const bool ambiguous = slips && i / kSide < kSide / 2;
+    const bool ambiguous = slips && row < kSide / 2;
     field.normal[i] = static_cast<float>(normal * (ambiguous ? 1.3 : 1));
     field.status[i] = ambiguous ? 9 | status::kAmbiguous : status::kUsable;
   }
@@ -56,7 +57,8 @@ Found past_of(double moved, double load, double told_moved) {
   Found found;
   int pillars = 0;
   for (std::uint32_t i = 0; i < kSide * kSide / 2; ++i) {
-    const double truth = load * pressure(i / kSide, i % kSide - moved);
+    const std::uint32_t row = i / kSide;
+    const double truth = load * pressure(row, i % kSide - moved);
     const auto known = past.at(i, 10, kNoiseN);
     if (truth < 0.4 * load || !known) continue;
     found.error += std::pow(known->normal / truth - 1, 2);
