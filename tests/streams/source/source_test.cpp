@@ -326,7 +326,7 @@ TEST(StdinSource, TakesTheConstantsThatPacketsState) {
   for (const auto& packets : {std::vector{frame}, rows}) {
     const Skin skin = skin_from(packets);
     EXPECT_EQ(skin.layout, SkinLayout::pillars);
-    EXPECT_DOUBLE_EQ(skin.sensel_pitch_mm, 5);
+    EXPECT_DOUBLE_EQ(skin.sensel_pitch_mm.col_mm, 5);
     EXPECT_EQ(skin.counts_per_newton, 47);
     EXPECT_TRUE(skin.stated.layout && skin.states_pitch() && skin.states_counts_per_newton());
   }
