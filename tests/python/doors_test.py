@@ -180,7 +180,7 @@ class Doors(unittest.TestCase):
             total = json.loads(listener.recv(65536))
             with pf.live_forces(f"shm:{ring}") as results:
                 shown = next(results)
-            with WebSocket(int(address[1]), protocols=("pillarfield.page.v1",)) as page:
+            with WebSocket(int(address[1]), protocols=("pillarfield.page.v2",)) as page:
                 page.write("next")
                 picture = b"\1"
                 while picture[0] != 0:
@@ -193,9 +193,9 @@ class Doors(unittest.TestCase):
         self.agree(layout, (total["total"]["force"]["normal"], total["total"].get("peak_pressure_kpa", pressure),
                             len(total["contacts"])), way + ", JSON")
         self.agree(layout, answer_of(shown.normal, shown._skin.element_pitch_mm, len(shown.contacts)), way + ", ring")
-        rows, cols, planes, pitch_mm = struct.unpack_from("<3If", picture, 4)
-        end = 20 + 4 * planes * rows * cols
-        normal = np.frombuffer(picture, "<f4", planes * rows * cols, 20).reshape(planes, rows, cols)[-1]
+        rows, cols, planes, pitch_mm, _ = struct.unpack_from("<3I2f", picture, 4)
+        end = 24 + 4 * planes * rows * cols
+        normal = np.frombuffer(picture, "<f4", planes * rows * cols, 24).reshape(planes, rows, cols)[-1]
         text = json.loads(picture[end + rows * cols:])
         self.agree(layout, answer_of(normal, pitch_mm, len(text["contacts"])), way + ", page")
         self.agree(layout, self.answer_of_file("live.h5"), way + ", file")
