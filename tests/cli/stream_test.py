@@ -290,7 +290,8 @@ class Network(StreamTest):
             self.assertIn(words or "", errors)
 
     def test_options_about_files_are_refused(self):
-        for option in (("--dataset", "a"), ("--times", "a"), ("--shape", "4x6"), ("--axes", "rows,columns")):
+        for option in (("--dataset", "a"), ("--times", "a"), ("--shape", "4x6"), ("--columns", "1-24"),
+                       ("--axes", "rows,columns")):
             for command in ("stream", "doctor"):
                 self.assert_fails(command, "udp:127.0.0.1:0", *option, names=(option[0], "leave it out"))
 
