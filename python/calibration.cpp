@@ -143,6 +143,13 @@ void bind_calibration(py::module_& module) {
           "uint8 [rows, cols], or None")
       .def_readonly("threshold_counts", &SkinCalibration::threshold_counts, "counts, or None")
       .def_readonly("counts_per_newton", &SkinCalibration::counts_per_newton, "counts/N, or None")
+      .def_readonly("sensel_pitch_mm", &SkinCalibration::sensel_pitch_mm, "mm, or None")
+      .def_property_readonly(
+          "layout",
+          [](const SkinCalibration& self) {
+            return self.layout ? std::optional<std::string>(name_of(*self.layout)) : std::nullopt;
+          },
+          "'pillars', 'sensels', or None")
       .def_property_readonly("effects", &effects_of,
                              "names of the corrections that all sensels share")
       .def_property_readonly("history", &history_of, "one line a step, oldest first")

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <mutex>
 #include <numeric>
 #include <string>
@@ -32,7 +33,8 @@ readings: uint8, uint16 or float32 [frames, rows, cols], dense
 times: float64 [frames], s
 skin: Skin with constants; its rows and columns are replaced by those of the array
 calibration: Calibration, or None
-axes_are_known: else raises Error if the frames seem to lie along another axis)";
+axes_are_known: else raises Error if the frames seem to lie along another axis
+falling: readings fall under load; they are mirrored as they are read)";
 
 using TimeArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
@@ -40,8 +42,11 @@ using TimeArray = py::array_t<double, py::array::c_style | py::array::forcecast>
 class ArraySource final : public FrameSource {
  public:
   ArraySource(py::array readings, const TimeArray& times, const Skin& skin,
-              const std::optional<SkinCalibration>& calibration)
-      : readings_(std::move(readings)), type_(sensel_type_of(readings_)), skin_(skin) {
+              const std::optional<SkinCalibration>& calibration, bool falling)
+      : readings_(std::move(readings)),
+        type_(sensel_type_of(readings_)),
+        skin_(skin),
+        mirrors_(falling) {
     if (readings_.ndim() != 3 || times.ndim() != 1 || times.shape(0) != readings_.shape(0)) {
       throw Error("frames", "their shape does not fit the times",
                   "give readings [frames, rows, cols] and times [frames]");
@@ -54,11 +59,15 @@ class ArraySource final : public FrameSource {
       skin_.cols = frame.cols;
       first_ = static_cast<const std::byte*>(frame.data);
     }
+    skin_.falling |= falling;
     check(skin_, "frames");
-    if (skin_.has_pillars()) warnings_ = size_warnings(skin_.rows, skin_.cols);
-    if (!calibration) return;
-    require_fitting(*calibration, skin_, "frames");
-    apply(*calibration, skin_, calibration_);
+    if (calibration) {
+      require_fitting(*calibration, skin_, "frames");
+      apply(*calibration, skin_, calibration_);
+    }
+    warnings_ = layout_warnings(skin_);
+    if (!skin_.has_pillars()) return;
+    std::ranges::move(size_warnings(skin_.rows, skin_.cols), std::back_inserter(warnings_));
   }
 
   [[nodiscard]] const std::string& format() const override { return format_; }
@@ -75,6 +84,7 @@ class ArraySource final : public FrameSource {
       throw Error("frames", "their array was resized", "give an array that keeps its size");
     }
     std::memcpy(bytes.data(), first_ + index * bytes.size(), bytes.size());
+    if (mirrors_) mirror(frame);
     return times_[index];
   }
   void read_truth(std::uint64_t, ForceField&) override {}
@@ -84,6 +94,7 @@ class ArraySource final : public FrameSource {
   py::array readings_;
   SenselType type_;
   Skin skin_;
+  bool mirrors_;
   Calibration calibration_;
   std::uint64_t frames_ = 0;
   const std::byte* first_ = nullptr;
@@ -173,13 +184,7 @@ std::unique_ptr<Frames> open(
   options.falling = falling;
   options.untimed = untimed;
   if (!axes.empty()) options.axes = parse_axes(axes);
-  if (!layout.empty()) {
-    options.layout = layout_named(layout);
-    if (!options.layout) {
-      throw Error("layout", fmt::format("'{}' is not a layout", layout),
-                  "give 'pillars' or 'sensels'");
-    }
-  }
+  options.layout = layout_in(layout);
   return std::make_unique<Frames>(
       std::visit([&](const auto& given) { return open_frames(given, options); }, path));
 }
@@ -187,8 +192,8 @@ std::unique_ptr<Frames> open(
 std::unique_ptr<Frames> of_array(const py::array& readings, const TimeArray& times,
                                  const Skin& skin,
                                  const std::optional<SkinCalibration>& calibration,
-                                 bool axes_are_known) {
-  auto source = std::make_unique<ArraySource>(readings, times, skin, calibration);
+                                 bool axes_are_known, bool falling) {
+  auto source = std::make_unique<ArraySource>(readings, times, skin, calibration, falling);
   if (!axes_are_known) require_likely_axes(*source, "frames");
   return std::make_unique<Frames>(std::move(source));
 }
@@ -229,7 +234,8 @@ void bind_frames(py::module_& module) {
            py::arg("layout") = "", py::arg("falling") = false, py::arg("untimed") = false,
            py::arg("columns") = "")
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
-                  py::arg("calibration"), py::arg("axes_are_known") = false, kArray)
+                  py::arg("calibration"), py::arg("axes_are_known") = false,
+                  py::arg("falling") = false, kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),
            "Writes all frames as a recording.")
       .def_property_readonly(

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "pillarfield/recording.h"
@@ -13,6 +15,9 @@
 #include "python/arrays.h"
 
 namespace pillarfield::python {
+
+/// The layout of this name; unset for an empty one. Throws Error for another word.
+[[nodiscard]] std::optional<SkinLayout> layout_in(const std::string& name);
 
 /// The frames first, first + step, ... of a file.
 struct IndexRange {

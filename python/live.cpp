@@ -16,6 +16,8 @@
 #include "pillarfield/result_stream.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
+#include "python/frames.h"
+#include "python/pitch.h"
 #include "python/process.h"
 #include "python/signals.h"
 
@@ -101,12 +103,17 @@ class SharedStream {
 /// A live source, used by one thread at a time.
 class LiveFrames {
  public:
-  LiveFrames(const std::string& source, const Skin& skin, std::uint32_t serial_baud,
+  LiveFrames(const std::string& source, const std::optional<Skin>& skin, std::uint32_t serial_baud,
+             const std::string& layout, std::optional<Pitch> pitch_mm, bool falling,
              std::optional<double> timeout_s) {
     const py::gil_scoped_release unlocked;
     LiveSourceOptions options;
     options.skin = skin;
     options.serial_baud = serial_baud;
+    options.read.layout = layout_in(layout);
+    options.read.sensel_pitch_mm = pitch_mm;
+    options.read.falling = falling;
+    options.say = [&](const std::string& note) { notes_.push_back(note); };
     if (timeout_s) options.most_wait = nanoseconds_of(*timeout_s);
     SignalCheck check_signals;
     options.stop = [&] { return check_signals(), false; };
@@ -128,6 +135,7 @@ class LiveFrames {
   }
   void close() { stream_->close(); }
   [[nodiscard]] const Skin& skin() const { return skin_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] SenselType sensel_type() const { return sensel_type_; }
 
  private:
@@ -155,6 +163,7 @@ class LiveFrames {
 
   std::optional<SharedStream<FrameStream>> stream_;
   Skin skin_;
+  std::vector<std::string> notes_;
   SenselType sensel_type_ = SenselType::u8;
   std::unique_ptr<StreamedFrame> frame_;
 };
@@ -273,8 +282,10 @@ class Sink {
 
 void bind_live(py::module_& module) {
   py::class_<LiveFrames>(module, "LiveFrames", kLiveSource)
-      .def(py::init<const std::string&, const Skin&, std::uint32_t, std::optional<double>>(),
-           py::arg("source"), py::arg("skin"), py::arg("serial_baud"), py::arg("timeout_s"))
+      .def(py::init<const std::string&, const std::optional<Skin>&, std::uint32_t,
+                    const std::string&, std::optional<Pitch>, bool, std::optional<double>>(),
+           py::arg("source"), py::arg("skin"), py::arg("serial_baud"), py::arg("layout"),
+           py::arg("pitch_mm"), py::arg("falling"), py::arg("timeout_s"))
       .def("next", &LiveFrames::next, py::arg("timeout_s"))
       .def_property_readonly("health", &LiveFrames::health,
                              "What came and what did not: frames, lost, incomplete, late, ..., "
@@ -284,6 +295,8 @@ void bind_live(py::module_& module) {
       .def("close", &LiveFrames::close, "Closes the source.")
       .def_property_readonly("skin", &LiveFrames::skin,
                              "Skin with the rows and columns of the frames, for a Plan")
+      .def_property_readonly("notes", &LiveFrames::notes,
+                             "What its user should know, one sentence each")
       .def_property_readonly(
           "sensel_type", [](const LiveFrames& self) { return name_of(self.sensel_type()); },
           "'uint8', 'uint16' or 'float32', for a Plan");

@@ -27,6 +27,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/frames.h"
+#include "python/pitch.h"
 
 namespace pillarfield::python {
 namespace {
@@ -44,7 +45,7 @@ friction: friction coefficient if it is known to 3 %, 0.1..9.9
 friction_bound: its upper bound, 0.1..100
 friction_prior: (median, spread of the logarithm) of the friction
 unrelated_frames: consecutive frames are unrelated; nothing is carried over
-threshold_counts, counts_per_newton, full_scale_counts: replace constants of the skin
+pitch_mm, threshold_counts, counts_per_newton, full_scale_counts: replace constants of the skin
 parity_tolerance_counts: tolerance of V1 + V3 = V2 + V4; None: no test
 noise_counts: standard deviation of a raw reading, counts
 baseline_time_s: time constant with which the tare follows drift, s; None: it is fixed
@@ -98,7 +99,9 @@ bool set(PlanSettings& settings, const std::string& name, const py::handle& valu
         setting.whole ? argument<int>(value, name) : argument<double>(value, name);
     return true;
   }
-  if (name == "layout") {
+  if (name == "pitch_mm") {
+    settings.sensel_pitch_mm = argument<Pitch>(value, name);
+  } else if (name == "layout") {
     settings.layout = choice_named(argument<std::string>(value, name), kLayouts, "layout");
   } else if (name == "estimator") {
     settings.estimator = choice_named(argument<std::string>(value, name), kEstimators, "estimator");
@@ -117,9 +120,9 @@ bool set(PlanSettings& settings, const std::string& name, const py::handle& valu
 
 /// Names of all arguments that set() takes, and of the others of Plan().
 std::vector<std::string> plan_options() {
-  std::vector<std::string> names = {"skin",    "sensel_type",    "calibration",
-                                    "scene",   "layout",         "estimator",
-                                    "outputs", "friction_prior", "unrelated_frames"};
+  std::vector<std::string> names = {"skin",           "sensel_type",     "calibration", "scene",
+                                    "layout",         "pitch_mm",        "estimator",   "outputs",
+                                    "friction_prior", "unrelated_frames"};
   for (const PlanSetting& setting : kPlanSettings) names.emplace_back(setting.name);
   return names;
 }
@@ -176,6 +179,7 @@ SolverPlan plan_of(Frames& frames, const Skin& skin, const CalibrationOrPath& ca
                    const SceneOrPath& scene, const py::kwargs& given) {
   SolverPlan plan;
   plan.skin = skin;
+  plan.skin.falling |= frames.source->skin().falling;
   plan.sensel_type = frames.source->sensel_type();
   return plan_with(std::move(plan), calibration, scene, given, [&] {
     // Its holder may wait for Python's lock.

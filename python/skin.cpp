@@ -12,6 +12,7 @@
 #include "pillarfield/status.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/frames.h"
 #include "python/pitch.h"
 
 namespace pillarfield::python {
@@ -28,9 +29,11 @@ Sensels are counted in rows from the top (+y) and in columns from the left (-x).
 stands on the sensels (2r..2r+1, 2c..2c+1).
 
 rows, cols: sensels, 2..65534
-sensel_pitch_mm: distance of sensels, mm; (7.62, 5.08) where rows lie 7.62 mm apart and columns
-    5.08 mm, without pillars
-counts_per_newton: counts that a sensel reads per newton on its pillar, 1e-2..1e6
+layout: 'pillars', one on each 2 x 2 sensels, with three components of force; 'sensels', nothing on them:
+    normal force on each; without a word pillars, of which frames that do not state them warn
+sensel_pitch_mm: distance of sensels, mm, by default 0.632; (7.62, 5.08) where rows lie 7.62 mm apart and
+    columns 5.08 mm, without pillars
+counts_per_newton: counts that a sensel reads per newton on its pillar, or on itself, 1e-2..1e6; by default 320
 threshold_counts: a sensel is usable if its reading is above
 full_scale_counts: a reading is saturated from here on; None: never
 power_law: (exponent, reference_counts) of sensels whose response is a power of the force, or None
@@ -71,27 +74,23 @@ Surface height_map(const FloatPlane& heights_mm) {
   return surface;
 }
 
-SkinLayout layout_of(const std::string& name) {
-  if (const auto layout = layout_named(name)) return *layout;
-  throw Error("Skin", fmt::format("'{}' is not a layout", name), "give 'pillars' or 'sensels'");
-}
-
-Skin make_skin(std::uint32_t rows, std::uint32_t cols, const Pitch& sensel_pitch_mm,
-               double counts_per_newton, double threshold_counts,
+Skin make_skin(std::uint32_t rows, std::uint32_t cols, const std::optional<Pitch>& sensel_pitch_mm,
+               std::optional<double> counts_per_newton, double threshold_counts,
                std::optional<double> full_scale_counts, const std::optional<Law>& power_law,
-               std::optional<Surface> surface, const std::string& layout,
+               std::optional<Surface> surface, const std::optional<std::string>& layout,
                const py::kwargs& unknown) {
   refuse("Skin", unknown, kArguments);
   Skin skin;
   skin.rows = rows;
   skin.cols = cols;
-  skin.sensel_pitch_mm = sensel_pitch_mm;
-  skin.counts_per_newton = counts_per_newton;
+  skin.sensel_pitch_mm = sensel_pitch_mm.value_or(skin.sensel_pitch_mm);
+  skin.counts_per_newton = counts_per_newton.value_or(skin.counts_per_newton);
+  skin.stated = {layout.has_value(), sensel_pitch_mm.has_value(), counts_per_newton.has_value()};
   skin.threshold_counts = threshold_counts;
   skin.full_scale_counts = full_scale_counts;
   skin.power_law = law_of(power_law);
   skin.surface = std::move(surface);
-  skin.layout = layout_of(layout);
+  skin.layout = layout_in(layout.value_or("")).value_or(skin.layout);
   check(skin, "Skin");
   return skin;
 }
@@ -173,16 +172,20 @@ void bind_surface(py::module_& module) {
 
 }  // namespace
 
+std::optional<SkinLayout> layout_in(const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  if (const auto layout = layout_named(name)) return layout;
+  throw Error("layout", fmt::format("'{}' is not a layout", name), "give 'pillars' or 'sensels'");
+}
+
 void bind_skin(py::module_& module) {
   bind_surface(module);
-  const Skin usual;
   py::class_<Skin>(module, "Skin", kSkin)
       .def(py::init(&make_skin), py::arg("rows"), py::arg("cols"), py::kw_only(),
-           py::arg("sensel_pitch_mm") = usual.sensel_pitch_mm,
-           py::arg("counts_per_newton") = usual.counts_per_newton,
-           py::arg("threshold_counts") = usual.threshold_counts,
+           py::arg("sensel_pitch_mm") = py::none(), py::arg("counts_per_newton") = py::none(),
+           py::arg("threshold_counts") = Skin{}.threshold_counts,
            py::arg("full_scale_counts") = py::none(), py::arg("power_law") = py::none(),
-           py::arg("surface") = py::none(), py::arg("layout") = name_of(usual.layout))
+           py::arg("surface") = py::none(), py::arg("layout") = py::none())
       .def_readonly("rows", &Skin::rows, "sensel rows")
       .def_readonly("cols", &Skin::cols, "sensel columns")
       .def_readonly("sensel_pitch_mm", &Skin::sensel_pitch_mm, "distance of sensels, mm")
@@ -201,6 +204,23 @@ void bind_skin(py::module_& module) {
       .def_property_readonly(
           "layout", [](const Skin& self) { return name_of(self.layout); },
           "'pillars', or 'sensels' without pillars")
+      .def_property_readonly(
+          "stated",
+          [](const Skin& self) {
+            std::vector<std::string> names;
+            if (self.stated.layout) names.emplace_back("layout");
+            if (self.states_pitch()) names.emplace_back("sensel_pitch_mm");
+            if (self.states_counts_per_newton()) names.emplace_back("counts_per_newton");
+            return names;
+          },
+          "those of 'layout', 'sensel_pitch_mm' and 'counts_per_newton' that are not assumed")
+      .def(
+          "mirrored",
+          [](Skin self) {
+            self.falling = true;
+            return self;
+          },
+          "The skin of readings that fall under load, once they are mirrored.")
       .def_property_readonly("pillar_rows", &Skin::pillar_rows, "pillar rows")
       .def_property_readonly("pillar_cols", &Skin::pillar_cols, "pillar columns")
       .def_property_readonly("pillar_pitch_mm", &Skin::pillar_pitch_mm, "distance of pillars, mm")
@@ -217,9 +237,15 @@ void bind_skin(py::module_& module) {
             py::dict values;
             for (const std::string& name : kArguments)
               values[name.c_str()] = self.attr(name.c_str());
+            const auto& skin = self.cast<const Skin&>();
+            if (!skin.stated.layout && skin.has_pillars()) values["layout"] = py::none();
+            if (!skin.states_pitch()) values["sensel_pitch_mm"] = py::none();
+            if (!skin.states_counts_per_newton()) values["counts_per_newton"] = py::none();
             return values;
           },
           [](const py::dict& values) { return py::type::of<Skin>()(**values).cast<Skin>(); }));
+  module.def("layout_warnings", &layout_warnings, py::arg("skin"),
+             "The sentence about a skin of pillars whose layout nothing states, or none.");
   module.def("regions", &regions, "The Region of each status byte, 256 bytes.");
   module.def("poses", &poses, py::arg("skin"),
              "Position (mm), tangents and normal of each pillar: [4, pillar rows, cols, 3].");

@@ -30,8 +30,8 @@ constexpr int kSlots = 3;
 /// Frames of a Python iterator of (readings, time), which it converted to the plan's type.
 class IteratorStream final : public FrameStream {
  public:
-  IteratorStream(py::iterator frames, const SolverPlan& plan)
-      : frames_(std::move(frames)), plan_(plan) {}
+  IteratorStream(py::iterator frames, const SolverPlan& plan, bool falling)
+      : frames_(std::move(frames)), plan_(plan), mirrors_(falling) {}
 
   [[nodiscard]] const Skin& skin() const override { return plan_.skin; }
   [[nodiscard]] SenselType sensel_type() const override { return plan_.sensel_type; }
@@ -49,6 +49,7 @@ class IteratorStream final : public FrameStream {
     check(view, plan_.skin, plan_.sensel_type, "frames");
     const std::span<std::byte> bytes = frame.buffer.bytes();
     std::memcpy(bytes.data(), view.data, bytes.size());
+    if (mirrors_) mirror(frame.buffer);
     frame.readings = frame.buffer.view();
     frame.time_s = time_s;
     frame.sequence = next_++;
@@ -62,6 +63,7 @@ class IteratorStream final : public FrameStream {
  private:
   py::iterator frames_;
   const SolverPlan& plan_;
+  bool mirrors_;
   std::uint64_t next_ = 0;
 };
 
@@ -130,9 +132,9 @@ py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
 }
 
 py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool contacts,
-                        const std::string& device) {
+                        const std::string& device, bool falling) {
   Collector collector(plan);
-  IteratorStream stream(frames, plan);
+  IteratorStream stream(frames, plan, falling);
   {
     const py::gil_scoped_release unlocked;
     run(stream, plan, contacts, device_named(device), collector);
@@ -178,7 +180,7 @@ void bind_solve(py::module_& module) {
   module.def("solve_source", &solve_source, py::arg("source"), py::arg("plan"), py::arg("contacts"),
              py::arg("device"), kText);
   module.def("solve_iterator", &solve_iterator, py::arg("frames"), py::arg("plan"),
-             py::arg("contacts"), py::arg("device"), kText);
+             py::arg("contacts"), py::arg("device"), py::arg("falling") = false, kText);
   module.def("solve_part", &solve_part_of, py::arg("source"), py::arg("plan"),
              py::arg("source_name"), py::arg("output"), py::arg("index"), py::arg("count"),
              py::arg("checkpoint_every"), py::arg("warm_up"), py::arg("contacts"),

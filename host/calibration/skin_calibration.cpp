@@ -27,6 +27,7 @@ Skin skin_of(const SkinCalibration& calibration) {
   skin.counts_per_newton = calibration.counts_per_newton.value_or(skin.counts_per_newton);
   skin.power_law = calibration.power_law;
   skin.layout = calibration.layout.value_or(skin.layout);
+  skin.sensel_pitch_mm = calibration.sensel_pitch_mm.value_or(skin.sensel_pitch_mm);
   skin.falling = calibration.falling;
   return skin;
 }
@@ -82,6 +83,7 @@ SkinCalibration blank_calibration(const Skin& skin) {
   calibration.rows = skin.rows;
   calibration.cols = skin.cols;
   calibration.layout = skin.layout;
+  if (skin.states_pitch()) calibration.sensel_pitch_mm = skin.sensel_pitch_mm;
   calibration.falling = skin.falling;
   return calibration;
 }
@@ -125,10 +127,14 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) 
   planes.mask = std::move(mask);
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
   skin.layout = calibration.layout.value_or(skin.layout);
+  skin.sensel_pitch_mm = calibration.sensel_pitch_mm.value_or(skin.sensel_pitch_mm);
+  skin.stated.layout |= calibration.layout.has_value();
+  skin.stated.sensel_pitch |= calibration.sensel_pitch_mm.has_value();
   if (!planes.effects.curve.empty()) skin.power_law.reset();
   // A power law applies only with the counts per newton fitted with it.
   if (!calibration.counts_per_newton) return;
   skin.counts_per_newton = *calibration.counts_per_newton;
+  skin.stated.counts_per_newton = true;
   skin.power_law = calibration.power_law;
 }
 

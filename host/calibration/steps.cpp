@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "base/nearest_word.h"
@@ -144,12 +145,16 @@ void check(const StepKind& step, const StepValues& values, std::size_t files, st
 
 namespace {
 
-/// The layout that is given, else that of the calibration, else that of the frames.
-void take_layout(const StepKind& step, StepWork& work) {
+/// Layout and pitch that are given, else those of the calibration, else those of the frames.
+void take_constants(const StepKind& step, StepWork& work) {
   std::optional<SkinLayout>& layout = work.before.layout;
+  std::optional<Pitch>& pitch_mm = work.before.sensel_pitch_mm;
   for (StepFrames& each : work.files) {
     if (each.layout) layout = each.layout;
     each.skin.layout = layout.value_or(each.skin.layout);
+    if (each.sensel_pitch_mm) pitch_mm = each.sensel_pitch_mm;
+    if (!pitch_mm && each.skin.states_pitch()) pitch_mm = each.skin.sensel_pitch_mm;
+    each.skin.sensel_pitch_mm = pitch_mm.value_or(each.skin.sensel_pitch_mm);
     if (!step.only || *step.only == each.skin.layout) continue;
     const bool needs_pillars = *step.only == SkinLayout::pillars;
     throw Error(each.name(),
@@ -165,16 +170,19 @@ void take_layout(const StepKind& step, StepWork& work) {
 StepResult run_step(const StepKind& step, std::vector<StepFrames> files,
                     std::optional<SkinCalibration> before, StepValues values) {
   check(step, values, files.size(), values.logs.size());
+  std::vector<std::string> warnings;
+  if (!before || !before->layout) warnings = layout_warnings(files.front().skin);
   StepWork work;
   work.before = before ? *std::move(before) : blank_calibration(files.front().skin);
   work.files = std::move(files);
   work.values = std::move(values);
-  take_layout(step, work);
+  take_constants(step, work);
   for (const StepFrames& each : work.files) {
     require_fitting(work.before, each.skin, each.name());
     mask_missing(work.before, each.mask);
   }
   SkinCalibration calibration = step.run(work);
+  std::ranges::move(warnings, std::back_inserter(work.report.warnings));
   calibration.history.push_back(
       step_done(step.name, names_of(work.files), work.frames(), work.parameters));
   return {std::move(calibration), std::move(work.report)};

@@ -75,8 +75,9 @@ struct StepFrames {
   std::string file;  ///< empty for an array
   Skin skin;
   SenselType sensel_type = SenselType::u8;
-  std::optional<SkinLayout> layout = {};  ///< given beside the frames; unset: that of `skin`
-  std::vector<std::uint8_t> mask;         ///< as Calibration::mask
+  std::optional<SkinLayout> layout = {};      ///< given beside the frames; unset: that of `skin`
+  std::optional<Pitch> sensel_pitch_mm = {};  ///< given beside the frames
+  std::vector<std::uint8_t> mask;             ///< as Calibration::mask
   std::uint64_t frames = 0;
   std::function<void(const Use&)> for_each;  ///< calls it with each frame
 

@@ -19,27 +19,9 @@
 /// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
 
-/// Options of the solver plan.
-struct PlanOptions {
-  ReadOptions read;  ///< of the frames and the calibration
-  std::string scene;
-  std::string calibration;
-  PlanSettings settings;
-  mutable std::shared_ptr<const SkinCalibration> read_calibration;  ///< of calibration_of()
-};
-
-/// The calibration of the options, whose file is read once; null without one. Throws Error where it
-/// cannot be read.
-[[nodiscard]] const SkinCalibration* calibration_of(const PlanOptions& options);
-
-/// The options of opening the frames: `read`, and the constants that the others, the calibration
-/// and the scene give. Throws Error where one of these cannot be read.
-[[nodiscard]] ReadOptions frame_options(const PlanOptions& options);
-
-/// build_plan() with the files of the options; a `source` that is a scene is applied too. Throws
-/// Error where a file cannot be read or does not fit.
-[[nodiscard]] SolverPlan plan_of(const PlanOptions& options, SolverPlan plan,
-                                 const std::string& source,
+/// build_plan() with the files of the options; prints the warnings of a scene. A `source` that is a
+/// scene is applied too. Throws Error where a file cannot be read or does not fit.
+[[nodiscard]] SolverPlan plan_of(PlanOptions options, SolverPlan plan, const std::string& source,
                                  const std::function<double()>& frame_interval_s);
 
 struct PrintOptions {

@@ -61,6 +61,7 @@ Diagnosis look_at_source(const DoctorOptions& options) {
   LiveSourceOptions live;
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
+  live.read = options.read;
   const auto length = std::chrono::duration_cast<SourceClock::duration>(
       std::chrono::duration<double>(options.seconds));
   const auto end = SourceClock::now() + length;

@@ -68,8 +68,8 @@ struct SolveSummary {
 
 /// The settings of the file, then of the command line.
 SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
-  return plan_of(options.plan, plan_of_frames(source), options.input,
-                 [&] { return frame_interval_of(source, options.input); });
+  return cli::plan_of(options.plan, plan_of_frames(source), options.input,
+                      [&] { return frame_interval_of(source, options.input); });
 }
 
 ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {

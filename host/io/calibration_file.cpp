@@ -58,9 +58,10 @@ void write_history(const hdf5::File& file, const std::vector<CalibrationStep>& h
 void write_all(const hdf5::File& file, const SkinCalibration& calibration) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(calibration_format::kName));
   hdf5::write_attribute(file, file.id.get(), "version", calibration_format::kVersion);
-  const hdf5::Handle skin = write_skin(
-      file, {std::nullopt, calibration.counts_per_newton, calibration.threshold_counts,
-             std::nullopt, calibration.power_law, calibration.layout, calibration.falling});
+  const hdf5::Handle skin =
+      write_skin(file, {calibration.sensel_pitch_mm, calibration.counts_per_newton,
+                        calibration.threshold_counts, std::nullopt, calibration.power_law,
+                        calibration.layout, calibration.falling});
   hdf5::write_attribute(file, skin.get(), calibration_format::kRows,
                         static_cast<int>(calibration.rows));
   hdf5::write_attribute(file, skin.get(), calibration_format::kCols,
@@ -150,6 +151,7 @@ SkinCalibration read_calibration(const hdf5::File& file) {
   calibration.rows = read_size(file, skin.get(), calibration_format::kRows);
   calibration.cols = read_size(file, skin.get(), calibration_format::kCols);
   const StoredSkin constants = read_skin(file);
+  calibration.sensel_pitch_mm = constants.sensel_pitch_mm;
   calibration.counts_per_newton = constants.counts_per_newton;
   calibration.threshold_counts = constants.threshold_counts;
   calibration.power_law = constants.power_law;

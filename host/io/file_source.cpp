@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "calibration/wire_correction.h"
-#include "io/layout_note.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tare.h"
@@ -38,28 +37,17 @@ void FileSource::require_fitting(const FrameBuffer& frame) const {
 }
 
 void FileSource::take_constants(const StoredSkin& stored, const ReadOptions& options) {
-  const auto take = [&](const char* name, const auto& given, const auto& constant, auto& value,
-                        double usual) {
-    if (given || constant) {
-      value = given ? *given : *constant;
-    } else {
-      warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, usual));
-    }
+  pillarfield::take_constants(skin_, stored, options);
+  const auto tell = [&](const char* name, bool is_known, double value) {
+    if (is_known) return;
+    warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, value));
   };
-  take("sensel_pitch_mm", options.sensel_pitch_mm, stored.sensel_pitch_mm, skin_.sensel_pitch_mm,
-       skin_.sensel_pitch_mm.col_mm);
-  take("counts_per_newton", options.counts_per_newton, stored.counts_per_newton,
-       skin_.counts_per_newton, skin_.counts_per_newton);
-  if (options.tare_frames == 0) {
-    take("threshold_counts", options.threshold_counts, stored.threshold_counts,
-         skin_.threshold_counts, skin_.threshold_counts);
-  }
-  skin_.full_scale_counts =
-      options.full_scale_counts ? options.full_scale_counts : stored.full_scale_counts;
-  skin_.power_law = stored.power_law;
-  skin_.falling = options.falling || stored.falling;
+  tell("sensel_pitch_mm", skin_.stated.sensel_pitch, skin_.sensel_pitch_mm.col_mm);
+  tell("counts_per_newton", skin_.stated.counts_per_newton, skin_.counts_per_newton);
+  tell("threshold_counts",
+       options.tare_frames > 0 || options.threshold_counts || stored.threshold_counts,
+       skin_.threshold_counts);
   mirrors_ = options.falling && !stored.falling;
-  skin_.layout = options.layout.value_or(stored.layout.value_or(SkinLayout::sensels));
 }
 
 void FileSource::assume_times(const ReadOptions& options, const char* failure) {
@@ -161,12 +149,6 @@ std::string TimeOrder::faults() const {
   if (ties_ > 0 && steps_back_ > 0) text += ", ";
   if (steps_back_ > 0) text += count(steps_back_, "time steps back", "times step back");
   return fmt::format("{}, first at frame {}", text, first_fault_);
-}
-
-std::string layout_note(const Skin& skin) {
-  return skin.has_pillars()
-             ? "2 x 2 sensels are a pillar with shear (--layout sensels: each by itself)"
-             : "each sensel by itself, without shear (--layout pillars: 2 x 2 are a pillar)";
 }
 
 void FileSource::warn_of_size() {

@@ -3,22 +3,12 @@
 #include <optional>
 
 #include "io/hdf5/file.h"
+#include "io/skin_constants.h"
 #include "pillarfield/calibration.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/surface.h"
 
 namespace pillarfield {
-
-/// Constants of a skin in the group /skin of recordings and calibration files; each may be absent.
-struct StoredSkin {
-  std::optional<Pitch> sensel_pitch_mm;
-  std::optional<double> counts_per_newton;
-  std::optional<double> threshold_counts;
-  std::optional<double> full_scale_counts;
-  std::optional<PowerLaw> power_law;
-  std::optional<SkinLayout> layout;
-  bool falling = false;
-};
 
 /// Creates the group /skin with the constants that are set, and returns it.
 hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);

@@ -1,13 +1,18 @@
 #include "pillarfield/plan_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "base/quantile.h"
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/tare.h"
 #include "pillarfield/tuning.h"
 
@@ -35,6 +40,9 @@ void set_given(Member& member, const std::optional<double>& value) {
 }
 
 void apply_numbers(const PlanSettings& settings, SolverPlan& plan) {
+  if (settings.sensel_pitch_mm) plan.skin.sensel_pitch_mm = *settings.sensel_pitch_mm;
+  plan.skin.stated.sensel_pitch |= settings.sensel_pitch_mm.has_value();
+  plan.skin.stated.counts_per_newton |= settings.counts_per_newton.has_value();
   set_given(plan.skin.threshold_counts, settings.threshold_counts);
   set_given(plan.skin.counts_per_newton, settings.counts_per_newton);
   set_given(plan.skin.full_scale_counts, settings.full_scale_counts);
@@ -117,7 +125,10 @@ SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::strin
   if (from.calibration != nullptr) {
     apply_calibration(*from.calibration, from.keeps_tare, where, plan);
   }
-  if (settings.layout) plan.skin.layout = *settings.layout;
+  if (settings.layout) {
+    plan.skin.layout = *settings.layout;
+    plan.skin.stated.layout = true;
+  }
   apply_numbers(settings, plan);
   if (!settings.threshold_counts) set_default_threshold(plan);
   if (settings.baseline_time_s) baseline_time_s = settings.baseline_time_s;
@@ -135,6 +146,77 @@ SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::strin
     plan.baseline_interval = static_cast<int>(*settings.baseline_interval);
   }
   return plan;
+}
+
+namespace {
+
+/// Refuses a tare of the frames where that of the calibration is needed behind its wires.
+void check_tare_frames(const PlanOptions& options, const SensorEffects& effects) {
+  if (options.read.tare_frames == 0 || !effects.wires || has_offset_tares(effects)) return;
+  throw Error("--tare-frames", "the tare of a skin with crosstalk of wires needs its calibration",
+              fmt::format("write one: pillarfield calibrate tare UNLOADED --calibration {} -o FILE",
+                          printable(options.calibration)));
+}
+
+template <class Constant>
+void take_known(std::optional<Constant>& constant, const std::optional<Constant>& known) {
+  if (!constant) constant = known;
+}
+
+}  // namespace
+
+const SkinCalibration* calibration_of(const PlanOptions& options) {
+  if (!options.read_calibration && !options.calibration.empty()) {
+    options.read_calibration = std::make_shared<const SkinCalibration>(
+        read_calibration_file(options.calibration, options.read));
+  }
+  return options.read_calibration.get();
+}
+
+ReadOptions frame_options(const PlanOptions& options) {
+  ReadOptions read = options.read;
+  take_known(read.counts_per_newton, options.settings.counts_per_newton);
+  take_known(read.threshold_counts, options.settings.threshold_counts);
+  take_known(read.full_scale_counts, options.settings.full_scale_counts);
+  std::optional<double> threshold;
+  if (const SkinCalibration* const calibration = calibration_of(options)) {
+    take_known(read.sensel_pitch_mm, calibration->sensel_pitch_mm);
+    take_known(read.counts_per_newton, calibration->counts_per_newton);
+    threshold = calibration->threshold_counts;
+  }
+  if (!options.scene.empty()) {
+    const Skin skin = load_scene(options.scene).skin;
+    take_known(read.sensel_pitch_mm, std::optional(skin.sensel_pitch_mm));
+    take_known(read.counts_per_newton, std::optional(skin.counts_per_newton));
+    take_known(threshold, std::optional(skin.threshold_counts));
+  }
+  if (read.tare_frames == 0) take_known(read.threshold_counts, threshold);
+  return read;
+}
+
+SolverPlan build_plan(SolverPlan plan, const PlanOptions& options, const std::string& where,
+                      const std::function<double()>& frame_interval_s) {
+  PlanSources from = {.keeps_tare = options.read.tare_frames > 0, .settings = options.settings};
+  PlanSettings& settings = from.settings;
+  take_known(settings.layout, options.read.layout);
+  take_known(settings.sensel_pitch_mm, options.read.sensel_pitch_mm);
+  take_known(settings.counts_per_newton, options.read.counts_per_newton);
+  take_known(settings.threshold_counts, options.read.threshold_counts);
+  take_known(settings.full_scale_counts, options.read.full_scale_counts);
+  std::optional<Scene> scene;
+  if (!options.scene.empty()) from.scene = &scene.emplace(load_scene(options.scene));
+  from.calibration = calibration_of(options);
+  if (from.calibration != nullptr) check_tare_frames(options, from.calibration->planes.effects);
+  return build_plan(std::move(plan), from, where, frame_interval_s);
+}
+
+std::optional<FrameSize> stated_size(const PlanOptions& options) {
+  if (const SkinCalibration* const calibration = calibration_of(options)) {
+    return FrameSize{calibration->rows, calibration->cols};
+  }
+  if (options.scene.empty()) return std::nullopt;
+  const Skin skin = load_scene(options.scene).skin;
+  return FrameSize{skin.rows, skin.cols};
 }
 
 }  // namespace pillarfield

@@ -52,6 +52,14 @@ std::optional<SkinLayout> layout_named(std::string_view name) {
   return std::nullopt;
 }
 
+bool Skin::states_pitch() const {
+  return stated.sensel_pitch || sensel_pitch_mm != Skin{}.sensel_pitch_mm;
+}
+
+bool Skin::states_counts_per_newton() const {
+  return stated.counts_per_newton || counts_per_newton != Skin{}.counts_per_newton;
+}
+
 double straightened(const PowerLaw& law, double reading) {
   return law.reference_counts * std::pow(reading / law.reference_counts, law.exponent);
 }
@@ -87,6 +95,13 @@ void check(const Skin& skin, std::string_view where) {
                             *skin.full_scale_counts, skin.threshold_counts),
                 "raise full_scale_counts or lower threshold_counts");
   }
+}
+
+std::vector<std::string> layout_warnings(const Skin& skin) {
+  if (skin.stated.layout || !skin.has_pillars()) return {};
+  return {
+      "The skin states no layout and nothing states pillars: 2 x 2 sensels are taken as a pillar "
+      "with shear; give layout='pillars', or layout='sensels' for each sensel by itself."};
 }
 
 }  // namespace pillarfield

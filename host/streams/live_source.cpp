@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/nearest_word.h"
+#include "io/skin_constants.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 
@@ -65,6 +66,13 @@ std::unique_ptr<FrameStream> open_live_source(const std::string& source,
   if (kind == nullptr) {
     throw Error(printable(source), "it is not a live source",
                 fmt::format("give one of {}{}", forms_of_sources(), suggested_source(source)));
+  }
+  if (const auto given = given_file_options(options.read); !given.empty()) {
+    throw Error(printable(source),
+                fmt::format("{} is for files, and this is a live source", given.front()),
+                given.front() == "--tare-frames"
+                    ? "leave it out; take the tare live, or give --calibration FILE"
+                    : "leave it out");
   }
   return kind->open(source.substr(kind->prefix.size()), options);
 }

@@ -30,6 +30,8 @@ class Calibration:
     mask: Optional[npt.NDArray[np.uint8]]
     noise: Optional[_Floats]
     threshold_counts: Optional[float]
+    sensel_pitch_mm: Union[None, float, tuple[float, float]]
+    layout: Optional[str]
     counts_per_newton: Optional[float]
     effects: list[str]
     history: list[str]
@@ -119,7 +121,8 @@ class FrameSource:
                  falling: bool = ..., untimed: bool = ..., columns: str = ...) -> None: ...
     @staticmethod
     def of_array(readings: npt.NDArray[Any], times: npt.NDArray[np.float64], skin: Skin,
-                 calibration: Optional[Calibration], axes_are_known: bool = ...) -> FrameSource: ...
+                 calibration: Optional[Calibration], axes_are_known: bool = ...,
+                 falling: bool = ...) -> FrameSource: ...
     def read(self, first: int, step: int, count: int) -> npt.NDArray[Any]: ...
     def read_truth(self, first: int, step: int, count: int) -> dict[str, Any]: ...
     def write(self, path: _Path, *, overwrite: bool) -> None: ...
@@ -129,7 +132,9 @@ class LiveFrames:
     health: dict[str, Any]
     sensel_type: str
     skin: Skin
-    def __init__(self, source: str, skin: Skin, serial_baud: int,
+    notes: list[str]
+    def __init__(self, source: str, skin: Optional[Skin], serial_baud: int, layout: str,
+                 pitch_mm: Union[None, float, tuple[float, float]], falling: bool,
                  timeout_s: Optional[float]) -> None: ...
     def close(self) -> None: ...
     def discard_waiting(self) -> None: ...
@@ -204,6 +209,7 @@ class Skin:
     sensel_pitch_mm: Union[float, tuple[float, float]]
     pillar_pitch_mm: float
     layout: str
+    stated: list[str]
     element_rows: int
     element_cols: int
     element_pitch_mm: Union[float, tuple[float, float]]
@@ -213,12 +219,13 @@ class Skin:
     full_scale_counts: Optional[float]
     power_law: Optional[tuple[float, float]]
     surface: Optional[Surface]
+    def mirrored(self) -> Skin: ...
     def __init__(self, rows: int, cols: int, *,
-                 sensel_pitch_mm: Union[float, tuple[float, float]] = ...,
-                 counts_per_newton: float = ..., threshold_counts: float = ...,
+                 sensel_pitch_mm: Union[None, float, tuple[float, float]] = ...,
+                 counts_per_newton: Optional[float] = ..., threshold_counts: float = ...,
                  full_scale_counts: Optional[float] = ...,
                  power_law: Optional[tuple[float, float]] = ...,
-                 surface: Optional[Surface] = ..., layout: str = ...) -> None: ...
+                 surface: Optional[Surface] = ..., layout: Optional[str] = ...) -> None: ...
 
 class Surface:
     axis_deg: float

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._error import ArgumentError, Error, FrameError, MissingError
-from ._frames import Path, range_of
+from ._frames import Path, range_of, warn
 from ._lerobot import Columns, Features, columns_and_features
 from ._picture import picture
 from ._status import REGIONS, Status
@@ -189,6 +189,8 @@ class ForceField:
         if kpa is None:
             raise Error("ForceField.pressure", f"'{unit}' is not a unit of pressure",
                         f"give {' or '.join(_core.pressure_units)}")
+        if "sensel_pitch_mm" not in self._skin.stated:
+            warn([f"A pitch of {self._skin.sensel_pitch_mm:.3g} mm is assumed; give pitch_mm= to solve()."])
         return self.normal * np.float32(1000 / kpa / self._skin.element_area_mm2)
 
     @property

@@ -6,14 +6,17 @@ import dataclasses
 import math
 from collections.abc import Iterator, Sequence
 from types import TracebackType
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Readings
+from ._frames import Readings, warn
+
+
+Pitch = Union[None, float, tuple[float, float]]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,8 +39,10 @@ class LiveSource(_core.LiveFrames):
     """Frames of a sensor as they come, an iterator of Frame; live() opens one."""
 
     def __init__(self, source: str, *, skin: Optional[_core.Skin] = None,
-                 serial_baud: int = 2_000_000, timeout: Optional[float] = None) -> None:
-        super().__init__(source, skin or _core.Skin(2, 2), serial_baud, timeout)
+                 serial_baud: int = 2_000_000, layout: str = "", pitch_mm: Pitch = None,
+                 falling: bool = False, timeout: Optional[float] = None) -> None:
+        super().__init__(source, skin, serial_baud, layout, pitch_mm, falling, timeout)
+        warn(self.notes)
 
     def receive(self, timeout_s: float) -> Optional[Frame]:
         """The next frame, or None if none comes in time; raises StopIteration at the end."""
@@ -61,14 +66,17 @@ class LiveSource(_core.LiveFrames):
 
 
 def live(source: str, *, skin: Optional[_core.Skin] = None, serial_baud: int = 2_000_000,
+         layout: str = "", pitch_mm: Pitch = None, falling: bool = False,
          timeout: Optional[float] = None) -> LiveSource:
     """Opens a live source and waits for its first frame; Ctrl+C gives up.
 
     source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'
         of a FlexiTac board, or '-' for standard input
-    skin: constants of the skin; rows and columns come from the frames; without its layout 'sensels',
-        or that of a FlexiTac board, 2 x 2 sensels are a pillar
+    skin: constants of the skin; rows and columns come from the frames, and what it does not state from
+        the sensor, if that states it; by default each sensel is by itself
     serial_baud: of 'serial:'
+    layout, pitch_mm: 'pillars' or 'sensels', and distance of sensels, in place of those of skin and sensor
+    falling: readings fall under load; they are mirrored, 255 or 65535 less the reading, or negated
     timeout: of the wait for the first frame, s; None: it has no end
 
     Raises Error for another source, one that cannot be opened, or no frame in time. What a sensor sends never raises:
@@ -79,7 +87,8 @@ def live(source: str, *, skin: Optional[_core.Skin] = None, serial_baud: int = 2
     Traceback (most recent call last):
     pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]
     """
-    return LiveSource(source, skin=skin, serial_baud=serial_baud, timeout=timeout)
+    return LiveSource(source, skin=skin, serial_baud=serial_baud, layout=layout, pitch_mm=pitch_mm,
+                      falling=falling, timeout=timeout)
 
 
 class LiveForces(_core.LiveResults):

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import readings_of
+from ._frames import readings_of, warn
 
 
 class Processor(_core.Processor):
@@ -30,7 +30,7 @@ class Processor(_core.Processor):
     several threads may use one Processor. Raises Error if an option is out of range.
 
     >>> import numpy as np, pillarfield as pf
-    >>> plan = pf.Plan(pf.Skin(8, 12, counts_per_newton=320))
+    >>> plan = pf.Plan(pf.Skin(8, 12, counts_per_newton=320, layout="pillars"))
     >>> with pf.Processor(plan) as processor:
     ...     processor.submit(np.full((8, 12), 32, np.uint8))
     ...     forces = processor.receive()
@@ -40,6 +40,7 @@ class Processor(_core.Processor):
 
     def __init__(self, plan: _core.Plan, *, frames_in_flight: int = 2, lent: int = 4,
                  contacts: bool = False, device: str = "") -> None:
+        warn(_core.layout_warnings(plan.skin))
         super().__init__(plan, frames_in_flight, lent, contacts, device)
         self._in_flight = frames_in_flight
         self._submitted = 0

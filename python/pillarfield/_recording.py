@@ -12,7 +12,8 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import Axes, Path, Readings, axis_words, frames_first, is_files, range_of, readings_of, times_of
+from ._frames import (Axes, Path, Readings, axis_words, frames_first, is_files, range_of, readings_of, times_of,
+                      warn)
 from ._scene import Simulation
 
 
@@ -139,13 +140,15 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
         skin, calibration = skin or frames.skin, calibration or frames.calibration
         times = frames.times if times is None else times
         frames = frames[:]
-    source_of(frames, skin, times, rate_hz, calibration, axes).write(path, overwrite=overwrite)
+    source = source_of(frames, skin, times, rate_hz, calibration, axes)
+    warn(_core.layout_warnings(source.skin))
+    source.write(path, overwrite=overwrite)
 
 
 def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
               rate_hz: Optional[float] = None,
               calibration: Optional[_core.Calibration] = None,
-              axes: Axes = "") -> _core.FrameSource:
+              axes: Axes = "", falling: bool = False) -> _core.FrameSource:
     """Frames with random access from a path, an array, a Recording or a Simulation.
 
     axes: of an array, or that of a path.
@@ -153,7 +156,10 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
     if (is_files(frames) or isinstance(frames, Recording)) and times is not None:
         raise Error("times", "files have times of their own", "give times with an array")
     if is_files(frames):
-        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes))
+        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), falling=falling)
+    if falling and isinstance(frames, (Recording, Simulation)):
+        raise Error("falling", f"a {type(frames).__name__} has its readings already",
+                    "give falling to pf.Recording()" if isinstance(frames, Recording) else "leave it out")
     if isinstance(frames, Recording):
         if rate_hz is not None:
             raise Error("rate_hz", "this Recording was opened without it", "give it to pf.Recording()")
@@ -180,7 +186,7 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
         readings = readings.reshape(1, *readings.shape)
     return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
                                       skin_of(skin, readings.shape[-2:]), calibration,
-                                      axes_are_known)
+                                      axes_are_known, falling)
 
 
 def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:

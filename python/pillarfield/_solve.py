@@ -28,7 +28,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           skin: Optional[_core.Skin] = None,
           calibration: Union[_core.Calibration, Step, Path, None] = None, tare_frames: int = 0,
           times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-          axes: Axes = "", contacts: bool = False, device: str = "", **options: Any) -> ForceField:
+          axes: Axes = "", falling: bool = False, contacts: bool = False, device: str = "",
+          **options: Any) -> ForceField:
     """Solves frames of readings into forces.
 
     frames: path of a recording or Tekscan export, of a folder of files, or a list of paths, which are
@@ -42,10 +43,11 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     rate_hz: frames per second of arrays and iterators, 100 by default, and of files without times
     axes: order of the axes of an array, such as 'rows,columns,frames' or ('rows', 'columns'); by
         default frames, rows, columns, and an array that more likely has another order is refused
+    falling: readings fall under load; they are mirrored, 255 or 65535 less the reading, or negated
     contacts: find and track the contacts too
     device: 'host', 'opencl', or an OpenCL device by its index or a part of its name; '': the host for
         small skins, else the best of OpenCL
-    options: those of Plan: layout, estimator, outputs, noise_counts, threshold_counts, ...
+    options: those of Plan: layout, pitch_mm, estimator, outputs, noise_counts, threshold_counts, ...
 
     Returns the forces of all frames, planes [T, R, C], or with pillars (layout='pillars')
     [T, R // 2, C // 2]; of a frame [R, C] one field. Arrays of
@@ -69,11 +71,14 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         if tare_frames:
             raise Error("tare_frames", "an iterator's frames come once",
                         "give calibration=pf.calibrate.tare(unloaded)")
-        _warn([_SCALE_ASSUMED], _constants_given(skin, calibration, options))
-        return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
+        live_skin = getattr(frames, "skin", None)  # as a LiveSource has it
+        given = _constants_given(skin, calibration, options) | set(live_skin.stated if live_skin else [])
+        _warn([_SCALE_ASSUMED], given)
+        return _solve_iterator(frames, skin or live_skin, calibration, rate_hz or 100.0, falling, contacts,
+                               device, options)
     if isinstance(frames, (list, tuple)) and not is_files(frames):
         frames = array_of(frames)
-    source = source_of(frames, skin, times, rate_hz, axes=axes)
+    source = source_of(frames, skin, times, rate_hz, axes=axes, falling=falling)
     if not isinstance(tare_frames, numbers.Integral):
         raise ArgumentError("tare_frames", f"it is {tare_frames!r:.60}", "give a whole number of frames")
     if tare_frames:
@@ -81,7 +86,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
             raise Error("tare_frames", f"{tare_frames} of {len(source)} frames cannot be the unloaded ones",
                         "give 10 or more, but fewer than there are")
         calibration = tare(source.read(0, 1, tare_frames), calibration or source.calibration,
-                           skin=skin or source.skin).calibration
+                           skin=skin.mirrored() if skin and falling else skin or source.skin).calibration
     _warn(([_SCALE_ASSUMED] if source.format == "array" else []) + source.warnings,
           _constants_given(skin, calibration, options))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
@@ -111,10 +116,11 @@ def _calibration_of(given: Any) -> Optional[_core.Calibration]:
 def _constants_given(skin: Optional[_core.Skin], calibration: Optional[_core.Calibration],
                      options: dict[str, Any]) -> set[str]:
     """Names of the skin's constants that a skin, a calibration, a scene or options give."""
-    names = {"sensel_pitch_mm", "counts_per_newton", "threshold_counts"}
-    if skin is not None or "scene" in options:
+    names = {"sensel_pitch_mm", "counts_per_newton", "threshold_counts", "layout"}
+    if "scene" in options:
         return names
-    return {name for name in names if getattr(calibration, name, None) is not None} | set(options)
+    given = {name for name in names if getattr(calibration, name, None) is not None} | set(options)
+    return given if skin is None else given | (names - {"layout"})
 
 
 def _warn(sentences: Iterable[str], given: set[str]) -> None:
@@ -131,13 +137,13 @@ def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any,
                   device: str, options: dict[str, Any]) -> ForceField:
     plan = _core.plan_of(source, skin, calibration=calibration, **options)
     if plan.skin.layout == "pillars" != source.skin.layout:
-        warn(_core.size_warnings(source.skin.rows, source.skin.cols))
+        warn(_core.layout_warnings(plan.skin) + _core.size_warnings(source.skin.rows, source.skin.cols))
     planes = _core.solve_source(source, plan, contacts, device)
     return _field_of(planes, plan, source.has_truth or "scene" in options)
 
 
 def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibration: Any,
-                    rate_hz: float, contacts: bool, device: str,
+                    rate_hz: float, falling: bool, contacts: bool, device: str,
                     options: dict[str, Any]) -> ForceField:
     iterator = iter(frames)
     try:
@@ -149,12 +155,13 @@ def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibrati
         raise Error("frames", f"the iterator's array has {readings.ndim} axes",
                     "give frames [rows, cols]")
     options = {"frame_interval_s": 1 / rate_hz, **options}
-    plan = _core.Plan(skin_of(skin, readings.shape), sensel_type=str(readings.dtype),
+    skin = skin_of(skin, readings.shape)
+    plan = _core.Plan(skin.mirrored() if falling else skin, sensel_type=str(readings.dtype),
                       calibration=calibration, **options)
     if plan.skin.layout == "pillars":
-        warn(_core.size_warnings(*readings.shape))
+        warn(_core.layout_warnings(plan.skin) + _core.size_warnings(*readings.shape))
     stream = timed(itertools.chain([first], iterator), str(readings.dtype), rate_hz)
-    return _field_of(_core.solve_iterator(stream, plan, contacts, device), plan, False)
+    return _field_of(_core.solve_iterator(stream, plan, contacts, device, falling), plan, False)
 
 
 def _field_of(planes: dict[str, Any], plan: _core.Plan, simulated: bool) -> ForceField:

@@ -232,7 +232,7 @@ class Patches(StreamTest):
             self.assertEqual(process.returncode, 0)
             with h5py.File(forces) as file:
                 normal = file["force/normal"][:]
-                self.assertEqual(normal.shape, (20, side // 2, side // 2))
+                self.assertEqual(normal.shape, (20, side, side))
                 np.testing.assert_allclose(normal, reading / 320, rtol=1e-6)
 
 
@@ -273,18 +273,27 @@ class Network(StreamTest):
         errors = process.communicate(timeout=PATIENCE_S)[1]
         self.assertEqual((process.returncode, errors.count("20 x 16, 12 x 16 expected")), (0, 1))
 
-    def test_one_line_tells_the_layout(self):
+    def test_one_line_tells_what_is_assumed(self):
         frames = b"".join(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, 4, 6, 0, number, number * 10**7, 0, 1, 0, 0,
                                       0, 24) + bytes(24) for number in range(20))
-        for options, words in (((), "2 x 2 sensels are a pillar with shear (--layout sensels"),
-                               (("--layout", "sensels"), None), (("--layout", "pillars"), None)):
+        constants = ("--pitch-mm", 5, "--counts-per-newton", 40)
+        for options, words in (
+                ((), "each sensel by itself, without shear (--layout pillars: 2 x 2 are a pillar); pitch 0.632 mm "
+                     "assumed (--pitch-mm); 320 counts per newton assumed (--counts-per-newton)\n"),
+                (("--layout", "sensels", *constants), None), (("--layout", "pillars", *constants), None)):
             process = self.started("-", *options, stdin=subprocess.PIPE)
             process.stdin.buffer.write(frames)
             output, errors = process.communicate(timeout=PATIENCE_S)
             self.assertEqual(process.returncode, 0)
-            self.assertIn("4 x 6 sensels" if "sensels" in options else "2 x 3 pillars", output)
-            self.assertEqual(errors.count("--layout"), words is not None, errors)
+            self.assertIn("2 x 3 pillars" if "pillars" in options else "4 x 6 sensels", output)
+            self.assertEqual(errors.count("assumed"), 0 if words is None else 2, errors)
             self.assertIn(words or "", errors)
+
+    def test_options_about_files_are_refused(self):
+        for option in (("--dataset", "a"), ("--times", "a"), ("--shape", "4x6"), ("--columns", "1-24"),
+                       ("--axes", "rows,columns")):
+            for command in ("stream", "doctor"):
+                self.assert_fails(command, "udp:127.0.0.1:0", *option, names=(option[0], "leave it out"))
 
     def test_web_pages_must_be_allowed(self):
         process = self.started(self.scene, "--repeat", "--to", "foxglove:0", "--json",

@@ -38,6 +38,7 @@ SkinCalibration full_calibration() {
   calibration.threshold_counts = 4.125;
   calibration.threshold_factor = 4;
   calibration.counts_per_newton = 317.4;
+  calibration.sensel_pitch_mm = 5.08;
   calibration.power_law = {1.2, 96.5};
   calibration.planes.bend_x = plane(-40);
   calibration.planes.bend_y = plane(10);
@@ -77,6 +78,7 @@ void expect_equal(const SkinCalibration& read, const SkinCalibration& written) {
   EXPECT_EQ(read.planes.bend_y, written.planes.bend_y);
   EXPECT_EQ(read.planes.bend_xy, written.planes.bend_xy);
   EXPECT_EQ(text_of(read.planes.effects), text_of(written.planes.effects));
+  EXPECT_EQ(read.sensel_pitch_mm, written.sensel_pitch_mm);
   EXPECT_EQ(read.threshold_counts, written.threshold_counts);
   EXPECT_EQ(read.threshold_factor, written.threshold_factor);
   EXPECT_EQ(read.counts_per_newton, written.counts_per_newton);

@@ -98,6 +98,44 @@ class Examples(unittest.TestCase):
         run("core/build/core")
 
 
+    def test_the_loop_of_the_docs_finds_the_six_bodies_of_a_relayed_scene(self):
+        [loop] = re.findall(r"^## In C\+\+$.*?^```cpp\n(.*?)^```$", (SOURCE / "docs/streams.md").read_text(),
+                            re.MULTILINE | re.DOTALL)
+        includes, body = loop.split("using namespace pillarfield;\n")
+        name = f"pillarfield-docs-{os.getpid()}"
+        folder = WORK / "loop"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(loop LANGUAGES CXX)\n"
+            "find_package(pillarfield REQUIRED)\nadd_executable(loop main.cpp)\n"
+            "target_link_libraries(loop PRIVATE pillarfield::pillarfield)\n")
+        (folder / "main.cpp").write_text(
+            f"#include <cstdio>\n#include <cstdlib>\n{includes}using namespace pillarfield;\n"
+            "void hold(std::uint64_t id, double normal_n, const std::optional<double>&) {\n"
+            "  static int calls = 0;\n"
+            "  std::printf(\"%d %.1f\\n\", static_cast<int>(id), normal_n);\n"
+            "  if (++calls == 300) std::exit(0);\n}\n"
+            f"int main() {{\n{body.replace('shm:skin', 'shm:' + name)}}}\n")
+        run("cmake", "-S", "loop", "-B", "loop/build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={PREFIX}")
+        run("cmake", "--build", "loop/build")
+        stream = subprocess.Popen([PREFIX / "bin/pillarfield", "stream", SOURCE / "scenes/demo.toml", "--repeat",
+                                   "--rate", "100", "--relay", f"shm:{name}"], env=ENVIRONMENT,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            lines = [line.split() for line in run("loop/build/loop").splitlines()]
+        finally:
+            stream.terminate()
+            stream.wait()
+        frames = [[]]
+        for track, force in lines:
+            if track in [seen for seen, _ in frames[-1]]:
+                frames.append([])
+            frames[-1].append((track, float(force)))
+        sizes = [len(frame) for frame in frames[1:-1]]
+        self.assertGreater(sizes.count(6), 0.9 * len(sizes), sizes)
+        self.assertTrue(all(5 < force < 130 for frame in frames for _, force in frame))
+
+
 class Desktop(unittest.TestCase):
     def test_man_pages_of_all_commands(self):
         if os.environ["PILLARFIELD_MAN_PAGES"] == "0":

@@ -113,17 +113,17 @@ class Images(unittest.TestCase):
         return image
 
     def test_vectors_as_red_green_blue(self):
-        image = self.see(rendering="vector_rgb")
+        image = self.see(rendering="vector_rgb", layout="pillars")
         shares = np.clip(np.stack([SHEAR_X, SHEAR_Y, NORMAL], -1) / FULL_SCALE_N, -1, 1)
         self.assertTrue((shares == 1).any() and (shares < 0).any())
         np.testing.assert_allclose(image, 128 + 127 * shares, atol=0.51)
 
     def test_normal_force_as_grey(self):
         grey = 255 * np.clip(NORMAL / FULL_SCALE_N, 0, 1)
-        np.testing.assert_allclose(self.see(), np.stack([grey] * 3, -1), atol=0.51)
+        np.testing.assert_allclose(self.see(layout="pillars"), np.stack([grey] * 3, -1), atol=0.51)
 
     def test_sensels_in_a_larger_image(self):
-        image = self.see(layout="sensels", width=48, height=40)
+        image = self.see(width=48, height=40)
         self.assertEqual(image.shape, (40, 48, 3))
         grey = 255 * np.clip(READINGS / skins.K / FULL_SCALE_N, 0, 1)
         np.testing.assert_allclose(image[2::5, ::2, 0], grey[::2], atol=0.51)
@@ -170,7 +170,7 @@ class Reading(unittest.TestCase):
         with self.assertRaises(TimeoutError):
             for _ in range(10_000):  # More than wait.
                 camera.async_read(300)
-        self.assertEqual(camera.read_latest(600_000).shape, (8, 12, 3))
+        self.assertEqual(camera.read_latest(600_000).shape, (16, 24, 3))
         with self.assertRaises(TimeoutError):
             camera.read_latest(0)
         camera.disconnect()
@@ -189,12 +189,12 @@ class Reading(unittest.TestCase):
     def test_a_source_that_ends(self):
         frames = b"".join(packet(READINGS, number) for number in range(50))
         self.assertEqual(self.program("-", 51, input=frames),
-                         "PillarfieldCamera(-): the source ended.\ndone (8, 12, 3)\n")
+                         "PillarfieldCamera(-): the source ended.\ndone (16, 24, 3)\n")
 
     def test_a_program_that_ends_without_disconnect(self):
         port = free_port()
         with Pattern(port):
-            self.assertEqual(self.program(f"udp:127.0.0.1:{port}", 3), "done (8, 12, 3)\n")
+            self.assertEqual(self.program(f"udp:127.0.0.1:{port}", 3), "done (16, 24, 3)\n")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import gc
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import threading
@@ -346,11 +347,34 @@ class Warnings(unittest.TestCase):
                              "The frames have no counts_per_newton; 320 is assumed.")
         calibration = pf.Calibration(8, 12, counts_per_newton=5)
         calibration.save(WORK / "scaled.h5", overwrite=True)
-        for given in ({"counts_per_newton": 320}, {"skin": pf.Skin(8, 12)}, {"calibration": calibration},
+        for given in ({"counts_per_newton": 320}, {"skin": pf.Skin(8, 12, layout="pillars")},
+                      {"calibration": calibration},
                       {"calibration": WORK / "scaled.h5"}):
             self.assertEqual(self.warnings_of(self.FRAMES, **given), "", given)
             self.assertEqual(self.warnings_of(iter(self.FRAMES), **given), "", given)
         self.assertEqual(self.warnings_of(pf.simulate(skins.scene())), "")
+
+    def test_a_skin_without_layout_warns_where_frames_state_no_pillars(self):
+        skin, path = pf.Skin(8, 12), WORK / "plain.npy"
+        np.save(path, self.FRAMES)
+        for frames, rate in ((self.FRAMES, {}), (iter(self.FRAMES), {}), (path, {"rate_hz": 50})):
+            self.assertIn("states no layout", self.warnings_of(frames, skin=skin, **rate))
+        for given in ({"layout": "sensels"}, {"layout": "pillars"}):
+            self.assertEqual(self.warnings_of(self.FRAMES, skin=skin, **given), "")
+        self.assertEqual(self.warnings_of(self.FRAMES, skin=pickle.loads(pickle.dumps(skin)), layout="pillars"), "")
+        for use in (lambda: pf.Processor(pf.Plan(pickle.loads(pickle.dumps(skin)))),
+                    lambda: pf.save_recording(WORK / "made.h5", self.FRAMES, skin=skin, overwrite=True),
+                    lambda: pf.calibrate.tare(np.random.default_rng(1).normal(20, 1, (50, 8, 12)), skin=skin)):
+            with self.assertWarnsRegex(UserWarning, "states no layout"):
+                use()
+
+    def test_an_assumed_pitch_is_said_with_a_pressure(self):
+        with self.assertWarnsRegex(UserWarning, "pitch of 0.632 mm is assumed; give pitch_mm="):
+            pf.solve(self.FRAMES, counts_per_newton=32).pressure()
+        forces = pf.solve(self.FRAMES, counts_per_newton=32, pitch_mm=2)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertAlmostEqual(float(forces.pressure_kpa.max()), 250, places=3)
 
     def test_passes_on_the_warnings_about_a_file(self):
         path = WORK / "plain.npy"
@@ -361,7 +385,7 @@ class Warnings(unittest.TestCase):
             rest = self.warnings_of(frames, counts_per_newton=5, threshold_counts=4, **rate)
             self.assertIn("no sensel_pitch_mm", rest)
             self.assertNotIn("counts", rest)
-            self.assertEqual(self.warnings_of(frames, skin=pf.Skin(8, 12), **rate), "")
+            self.assertEqual(self.warnings_of(frames, skin=pf.Skin(8, 12, layout="pillars"), **rate), "")
 
     def test_warns_of_odd_sizes_and_of_readings_that_give_no_force(self):
         odd = np.pad(self.FRAMES, ((0, 0), (0, 1), (0, 1)))

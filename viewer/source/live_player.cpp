@@ -1,6 +1,7 @@
 #include "viewer/source/live_player.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <atomic>
 #include <cmath>
@@ -8,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "pillarfield/calibration_file.h"
+#include "io/skin_constants.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
@@ -278,30 +279,19 @@ LiveStatus LivePlayer::status() const {
   return status;
 }
 
-SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
-  PlanSources from;
-  std::optional<SkinCalibration> calibration;
-  if (!options.calibration.empty()) {
-    calibration = read_calibration_file(options.calibration, options.producer.read);
-    from.calibration = &*calibration;
-  }
-  from.settings.counts_per_newton = options.counts_per_newton;
-  from.settings.layout = options.producer.read.layout;
-  SolverPlan plan = build_plan(plan_of_frames(stream), from, options.calibration.string(),
-                               [&] { return SolverPlan{}.frame_interval_s; });
-  if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
-  plan.angles = plan.skin.has_pillars();
-  plan.uncertainty = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
-  return plan;
-}
-
 namespace {
+
+PlanOptions plan_options(const LiveOptions& options) {
+  return {.read = options.producer.read, .calibration = options.calibration.string()};
+}
 
 OpenedSensor open_results(std::unique_ptr<ResultStream> results, const std::string& source,
                           const LiveOptions& options) {
-  if (options.counts_per_newton || !options.calibration.empty()) {
+  std::vector<std::string> given = given_constants(options.producer.read);
+  if (!options.calibration.empty()) given.emplace_back("--calibration");
+  if (!given.empty()) {
     throw Error(source, "it holds results, which are calibrated already",
-                "leave --calibration and --counts-per-newton out");
+                fmt::format("leave out {}", fmt::join(given, ", ")));
   }
   OpenedSensor opened;
   opened.curves = std::make_shared<Curves>(results->skin().element_pitch_mm(), kMostLivePoints);
@@ -311,14 +301,22 @@ OpenedSensor open_results(std::unique_ptr<ResultStream> results, const std::stri
 
 }  // namespace
 
+SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
+  SolverPlan plan =
+      build_plan(plan_of_frames(stream), plan_options(options), options.calibration.string(),
+                 [&] { return SolverPlan{}.frame_interval_s; });
+  if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
+  plan.angles = plan.skin.has_pillars();
+  plan.uncertainty = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
+  return plan;
+}
+
 OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) {
   LiveSourceOptions live;
   live.stop = options.stop;
   live.say = options.say;
-  if (!options.calibration.empty()) {
-    const auto stated = read_calibration_file(options.calibration, options.producer.read);
-    live.size = {stated.rows, stated.cols};
-  }
+  live.size = stated_size(plan_options(options));
+  live.read = options.producer.read;
   if (source.starts_with("shm:")) {
     if (auto results = open_result_stream(source, options.stop)) {
       return open_results(std::move(results), source, options);

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "viewer/source/live_view.h"
@@ -11,8 +10,7 @@
 namespace pillarfield::viewer {
 
 struct LiveOptions {
-  ProducerOptions producer = {};
-  std::optional<double> counts_per_newton = {};      ///< unset: that of the skin
+  ProducerOptions producer = {};                     ///< with the constants of the skin
   std::filesystem::path calibration = {};            ///< a file; empty: none
   std::function<bool()> stop = {};                   ///< gives up waiting for the first frame
   std::function<void(const std::string&)> say = {};  ///< as LiveSourceOptions has it

@@ -46,6 +46,7 @@ StepFrames frames_of(const std::string& file, const StepCommand& command) {
           .skin = source->skin(),
           .sensel_type = source->sensel_type(),
           .layout = command.read.layout,
+          .sensel_pitch_mm = command.read.sensel_pitch_mm,
           .mask = source->calibration().mask,
           .frames = source->frames(),
           .for_each = for_each};

@@ -11,9 +11,6 @@
 #include "cli/options/shared_arguments.h"
 #include "cli/stream/replay.h"
 #include "cli/warnings.h"
-#include "pillarfield/calibration_file.h"
-#include "pillarfield/error.h"
-#include "pillarfield/printable.h"
 #include "pipeline/plan_settings.h"
 #include "skin/limits.h"
 
@@ -33,14 +30,6 @@ void add_settings(Group& group, const char* heading, PlanSettings& settings) {
       group.number(setting.option, target, setting.unit, setting.help, low, high);
     }
   }
-}
-
-/// Refuses a tare of the frames where that of the calibration is needed behind its wires.
-void check_tare(const PlanOptions& options, const SensorEffects& effects) {
-  if (options.read.tare_frames == 0 || !effects.wires || has_offset_tares(effects)) return;
-  throw Error("--tare-frames", "the tare of a skin with crosstalk of wires needs its calibration",
-              fmt::format("write one: pillarfield calibrate tare UNLOADED --calibration {} -o FILE",
-                          printable(options.calibration)));
 }
 
 }  // namespace
@@ -104,48 +93,11 @@ void add_contacts(CLI::App* command, ContactOptions& options) {
                   "Largest movement of a contact between frames [10]", kReachMm.low, kReachMm.high);
 }
 
-const SkinCalibration* calibration_of(const PlanOptions& options) {
-  if (!options.read_calibration && !options.calibration.empty()) {
-    options.read_calibration = std::make_shared<const SkinCalibration>(
-        read_calibration_file(options.calibration, options.read));
-  }
-  return options.read_calibration.get();
-}
-
-ReadOptions frame_options(const PlanOptions& options) {
-  ReadOptions read = options.read;
-  const auto take = [](std::optional<double>& constant, const std::optional<double>& known) {
-    if (!constant) constant = known;
-  };
-  take(read.counts_per_newton, options.settings.counts_per_newton);
-  take(read.threshold_counts, options.settings.threshold_counts);
-  take(read.full_scale_counts, options.settings.full_scale_counts);
-  std::optional<double> threshold;
-  if (const SkinCalibration* const calibration = calibration_of(options)) {
-    take(read.counts_per_newton, calibration->counts_per_newton);
-    threshold = calibration->threshold_counts;
-  }
-  if (!options.scene.empty()) {
-    const Skin skin = load_scene(options.scene).skin;
-    if (!read.sensel_pitch_mm) read.sensel_pitch_mm = skin.sensel_pitch_mm;
-    take(read.counts_per_newton, skin.counts_per_newton);
-    take(threshold, skin.threshold_counts);
-  }
-  if (read.tare_frames == 0) take(read.threshold_counts, threshold);
-  return read;
-}
-
-SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::string& source,
+SolverPlan plan_of(PlanOptions options, SolverPlan plan, const std::string& source,
                    const std::function<double()>& frame_interval_s) {
-  PlanSources from = {.keeps_tare = options.read.tare_frames > 0, .settings = options.settings};
-  from.settings.layout = options.read.layout;
-  std::optional<Scene> scene;
-  const std::string& file = options.scene.empty() && is_scene(source) ? source : options.scene;
-  if (!file.empty()) from.scene = &scene.emplace(load_scene_with_warnings(file));
-  from.calibration = calibration_of(options);
-  if (from.calibration != nullptr) check_tare(options, from.calibration->planes.effects);
-  if (options.read.sensel_pitch_mm) plan.skin.sensel_pitch_mm = *options.read.sensel_pitch_mm;
-  return build_plan(std::move(plan), from, source, frame_interval_s);
+  if (options.scene.empty() && is_scene(source)) options.scene = source;
+  if (!options.scene.empty()) static_cast<void>(load_scene_with_warnings(options.scene));
+  return build_plan(std::move(plan), options, source, frame_interval_s);
 }
 
 }  // namespace pillarfield::cli

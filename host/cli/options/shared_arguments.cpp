@@ -140,8 +140,7 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
       "--layout", options.layout,
       {{"pillars", SkinLayout::pillars}, {"sensels", SkinLayout::sensels}},
       "pillars: one on each 2 x 2 sensels, three components of force; sensels: "
-      "none, normal force and pressure on each [the file's; of plain data and "
-      "Tekscan exports sensels]");
+      "none, normal force and pressure on each [the file's or sensor's; without a word sensels]");
   plain.flag("--falling", options.falling,
              "Readings fall under load: they are mirrored, 255 or 65535 less the reading");
   command

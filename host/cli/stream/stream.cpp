@@ -19,20 +19,9 @@
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
 #include "pillarfield/printable.h"
-#include "pillarfield/scene.h"
 
 namespace pillarfield::cli {
 namespace {
-
-/// The size of frames that the calibration or the scene states.
-std::optional<FrameSize> stated_size(const PlanOptions& options) {
-  if (const SkinCalibration* const calibration = calibration_of(options)) {
-    return FrameSize{calibration->rows, calibration->cols};
-  }
-  if (options.scene.empty()) return std::nullopt;
-  const Skin skin = load_scene(options.scene).skin;
-  return FrameSize{skin.rows, skin.cols};
-}
 
 std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   if (!is_live_source(options.source)) {
@@ -52,7 +41,7 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
         nanoseconds_of(std::min(options.seconds.value_or(1e9), options.most_idle_s.value_or(1e9)));
   }
   live.size = stated_size(options.plan);
-  live.skin.falling = options.plan.read.falling;
+  live.read = options.plan.read;
   live.say = [&](const std::string& words) {
     fmt::print(stderr, "pillarfield: {}: {}\n", printable(options.source), words);
   };
@@ -77,7 +66,7 @@ void check_files(const StreamOptions& options) {
 
 /// The plan has a tare, so that it can be measured anew.
 SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
-  SolverPlan plan = plan_of(options.plan, plan_of_frames(source), options.source, [&] {
+  SolverPlan plan = cli::plan_of(options.plan, plan_of_frames(source), options.source, [&] {
     if (options.rate_hz) return 1 / *options.rate_hz;
     throw Error("--rate", "--follow-baseline and creep need the rate of the sensor",
                 "give --rate HZ");
@@ -87,14 +76,13 @@ SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
   return plan;
 }
 
-/// Tells what is taken of a sensor's frames, which do not say what stands on the sensels.
-void tell_layout(const StreamOptions& options, const FrameStream& source, const Skin& skin) {
-  const PlanOptions& given = options.plan;
-  const bool is_stated = given.read.layout || !given.calibration.empty() || !given.scene.empty();
-  if (options.quiet || is_stated || !is_live_source(options.source)) return;
+/// Tells which constants of a sensor are assumed.
+void tell_assumptions(const StreamOptions& options, const FrameStream& source, const Skin& skin) {
+  const std::string note = assumption_note(skin);
+  if (options.quiet || note.empty() || !is_live_source(options.source)) return;
   print_about(options.source, "note",
               {fmt::format("Read frames of {} x {}, {}; {}", skin.rows, skin.cols,
-                           name_of(source.sensel_type()), layout_note(skin))});
+                           name_of(source.sensel_type()), note)});
 }
 
 LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, const Device& device) {
@@ -121,7 +109,7 @@ void stream(const StreamOptions& options) {
   const auto waited = std::chrono::steady_clock::now() - began;
   if (!source) return;  // Interrupted before a frame came.
   const SolverPlan plan = plan_of(options, *source);
-  tell_layout(options, *source, plan.skin);
+  tell_assumptions(options, *source, plan.skin);
   const Device device = open_device(options.device).for_plan(plan);
   const auto opened = std::chrono::steady_clock::now();
   Processor processor(device, plan,

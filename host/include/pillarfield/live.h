@@ -17,13 +17,19 @@ namespace pillarfield {
 
 /// Options of a live source.
 struct LiveSourceOptions {
-  /// Skin constants other than rows and columns, which the frames bring, and the calibration.
-  Skin skin = {};
+  /// Constants of the skin, in place of those that `skin` or the frames state, and whether readings
+  /// fall under load; the options about files must not be set.
+  ReadOptions read = {};
+  /// The skin of a program, but for rows and columns, which the frames bring. Constants that it
+  /// does not state are those of the frames; if neither states the layout, it is one of pillars, of
+  /// which `say` warns. Unset: what the frames state, else the defaults and the layout `sensels`.
+  std::optional<Skin> skin = {};
   Calibration calibration = {};
   /// The size of the frames, where it is known. `udp:`, to which anyone may send, waits for frames
   /// of this size; with another source, frames of another size are an Error.
   std::optional<FrameSize> size = {};
-  /// Called once with StreamHealth::mismatch while frames of `size` are waited for.
+  /// Called with what its user should know, such as StreamHealth::mismatch while frames of `size`
+  /// are waited for.
   std::function<void(const std::string&)> say = {};
   /// Called about ten times a second while no frame has arrived yet; true gives up.
   std::function<bool()> stop = {};
@@ -43,7 +49,8 @@ struct LiveSourceOptions {
 /// sensor that stops and starts again. next() never throws for what a sensor sends: invalid packets
 /// are counted in health(). Returns null if LiveSourceOptions::stop gave up. Throws Error if the
 /// name is none of a live source, the source cannot be opened (a ring that does not exist yet is
-/// waited for), no frame came in time, or the calibration or the size does not fit the frames.
+/// waited for), an option is one about files, no frame came in time, or the calibration or the size
+/// does not fit the frames.
 [[nodiscard]] std::unique_ptr<FrameStream> open_live_source(const std::string& source,
                                                             const LiveSourceOptions& options);
 

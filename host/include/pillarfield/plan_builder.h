@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "pillarfield/read_options.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/skin_calibration.h"
@@ -28,6 +30,7 @@ template <class Frames>
 
 /// Settings that are unset leave what the frames, the scene and the calibration say.
 struct PlanSettings {
+  std::optional<Pitch> sensel_pitch_mm;
   std::optional<double> threshold_counts;
   std::optional<double> counts_per_newton;
   std::optional<double> full_scale_counts;
@@ -63,5 +66,30 @@ struct PlanSources {
 [[nodiscard]] SolverPlan build_plan(SolverPlan plan, const PlanSources& from,
                                     const std::string& where,
                                     const std::function<double()>& frame_interval_s);
+
+/// What a user states of frames and of their plan, in the options of a program.
+struct PlanOptions {
+  ReadOptions read = {};         ///< of the frames and the calibration
+  std::string scene = {};        ///< file; empty: none
+  std::string calibration = {};  ///< file; empty: none
+  PlanSettings settings = {};
+  mutable std::shared_ptr<const SkinCalibration> read_calibration = {};  ///< of calibration_of()
+};
+
+/// The calibration of the options, whose file is read once; null without one. Throws Error where it
+/// cannot be read.
+[[nodiscard]] const SkinCalibration* calibration_of(const PlanOptions& options);
+
+/// The options of opening the frames: `read`, and the constants that the others, the calibration
+/// and the scene give. Throws Error where one of these cannot be read.
+[[nodiscard]] ReadOptions frame_options(const PlanOptions& options);
+
+/// build_plan() with the files of the options; constants of `read` count as settings.
+[[nodiscard]] SolverPlan build_plan(SolverPlan plan, const PlanOptions& options,
+                                    const std::string& where,
+                                    const std::function<double()>& frame_interval_s);
+
+/// The size of frames that the calibration or the scene states. Throws as frame_options().
+[[nodiscard]] std::optional<FrameSize> stated_size(const PlanOptions& options);
 
 }  // namespace pillarfield

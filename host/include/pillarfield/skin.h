@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "pillarfield/pitch.h"
 #include "pillarfield/surface.h"
@@ -42,6 +44,14 @@ enum class SkinLayout : std::uint8_t {
 /// The layout of this name; empty for another word.
 [[nodiscard]] std::optional<SkinLayout> layout_named(std::string_view name);
 
+/// Constants of a skin that something states: a file, a sensor, a calibration, a scene or a
+/// setting. The others are assumed.
+struct StatedConstants {
+  bool layout = false;
+  bool sensel_pitch = false;
+  bool counts_per_newton = false;
+};
+
 /// A patch of skin: its size, and the constants that all its sensels share.
 ///
 /// Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at
@@ -59,6 +69,8 @@ struct Skin {
   std::optional<Surface> surface;           ///< unset: unknown; forces stay in the skin's own axes
   SkinLayout layout = SkinLayout::pillars;
   bool falling = false;  ///< the sensor's readings fall under load, and its frames are mirrored()
+  StatedConstants stated =
+      {};  ///< the library sets it; constants other than the defaults need none
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
@@ -73,6 +85,8 @@ struct Skin {
     return std::size_t{element_rows()} * element_cols();
   }
   [[nodiscard]] Pitch element_pitch_mm() const { return (has_pillars() ? 2 : 1) * sensel_pitch_mm; }
+  [[nodiscard]] bool states_pitch() const;              ///< stated, or not the default
+  [[nodiscard]] bool states_counts_per_newton() const;  ///< stated, or not the default
   [[nodiscard]] ElementGrid element_grid() const {
     return {element_rows(), element_cols(), element_pitch_mm()};
   }
@@ -94,6 +108,10 @@ inline constexpr double kMinExponent = 0.2;
 inline constexpr double kMaxExponent = 5;
 inline constexpr double kMinReferenceCounts = 1e-3;
 inline constexpr double kMaxReferenceCounts = 1e6;
+
+/// The sentence about a skin of pillars of which nothing states the layout; none about others. For
+/// frames that meet a skin which a program made.
+[[nodiscard]] std::vector<std::string> layout_warnings(const Skin& skin);
 
 /// Throws Error, naming `where`, if a member is out of range.
 void check(const Skin& skin, std::string_view where);

@@ -35,6 +35,7 @@ struct SkinCalibration {
   std::optional<double> counts_per_newton;
   std::optional<PowerLaw> power_law;     ///< set only with counts_per_newton
   std::optional<SkinLayout> layout;      ///< unset in files of earlier versions
+  std::optional<Pitch> sensel_pitch_mm;  ///< unset where nothing stated it
   bool falling = false;                  ///< it is of mirrored readings
   std::vector<CalibrationStep> history;  ///< oldest first
 };

@@ -13,10 +13,23 @@ enum PillarfieldReadingType { PILLARFIELD_U8 = 1, PILLARFIELD_U16 = 2, PILLARFIE
 
 /* What follows a packet's header. */
 enum PillarfieldContent {
-  PILLARFIELD_FRAME = 0, /* all readings, row by row from the top left */
-  PILLARFIELD_ROWS = 1,  /* `count` whole rows from row `first` on */
-  PILLARFIELD_END = 3    /* nothing: the sensor stops */
+  PILLARFIELD_FRAME = 0,     /* all readings, row by row from the top left */
+  PILLARFIELD_ROWS = 1,      /* `count` whole rows from row `first` on */
+  PILLARFIELD_CONSTANTS = 2, /* nothing: the header states constants, beside packets of ROWS */
+  PILLARFIELD_END = 3        /* nothing: the sensor stops */
 };
+
+/* What stands on the sensels. */
+enum PillarfieldLayout {
+  PILLARFIELD_LAYOUT_NOT_STATED = 0,
+  PILLARFIELD_PILLARS = 1, /* a pillar on each 2 x 2 */
+  PILLARFIELD_SENSELS = 2  /* nothing: each sensel by itself */
+};
+
+/* `first` of FRAME and CONSTANTS: the layout, and the pitch of the sensels in mm, 0 or 1e-3 to 1e3;
+ * 0: not stated. */
+#define PILLARFIELD_STATED(layout, pitch_mm) \
+  ((uint32_t)(layout) << 30 | (uint32_t)((pitch_mm)*1e6 + 0.5))
 
 /* Added to `content`: the packet ends with a uint32_t, counted in `bytes`, the CRC-32 (of zlib,
  * zip, Ethernet) of all bytes before it, header included. For serial lines, which have none of
@@ -36,10 +49,11 @@ typedef struct PillarfieldPacket {
   uint64_t time_ns;  /* the sensor's clock when it scanned the frame, any origin; 0: none */
   uint32_t part;     /* of this packet in its frame, from 0 */
   uint32_t parts;    /* packets of the frame, at least 1 */
-  uint32_t first;    /* ROWS: the first row */
-  uint32_t count;    /* ROWS: how many */
-  uint32_t patch;    /* 0 */
-  uint32_t bytes;    /* after this header */
+  uint32_t first;    /* ROWS: the first row; FRAME, CONSTANTS: PILLARFIELD_STATED() or 0 */
+  uint32_t
+      count; /* ROWS: how many; FRAME, CONSTANTS: counts per newton, the bits of a float, or 0 */
+  uint32_t patch; /* 0 */
+  uint32_t bytes; /* after this header */
 } PillarfieldPacket;
 
 /* Limits of what is accepted. */
@@ -86,10 +100,22 @@ typedef struct PillarfieldRing {
   double pitch_mm; /* of results: from one pillar, or sensel, to the next in a row; of frames 0 */
 } PillarfieldRing;
 
+/* Constants of the skin; 0: not stated. */
+typedef struct PillarfieldConstants {
+  uint32_t layout;   /* PillarfieldLayout */
+  uint32_t mirrored; /* 1: readings that fall under load, as full scale less the reading */
+  double pitch_x_mm; /* from one column of sensels to the next */
+  double pitch_y_mm; /* from one row to the next */
+  double counts_per_newton;
+  double threshold_counts;
+  double full_scale_counts;
+  double reserved;
+} PillarfieldConstants;
+
 /* A slot of frames: this, then all readings, row by row from the top left. */
 typedef struct PillarfieldFrameSlot {
   uint64_t lock;
-  uint64_t reserved[7];
+  PillarfieldConstants constants;
   PillarfieldPacket packet; /* content FRAME */
 } PillarfieldFrameSlot;
 

@@ -392,6 +392,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     const toml::table table = toml::parse(text, name);
     Scene scene = read_scene(TomlSection(&table, "the scene", name),
                              std::filesystem::path(name).parent_path());
+    scene.skin.stated = {true, true, true};
     check(scene, name.c_str());
     scene.text = text;
     scene.file = name;

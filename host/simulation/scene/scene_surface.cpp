@@ -43,6 +43,7 @@ void set_skin(Skin& skin, const Scene& scene) {
   skin.threshold_counts = scene.skin.threshold_counts;
   skin.full_scale_counts = scene.skin.full_scale_counts;
   skin.power_law = scene.skin.power_law;
+  skin.stated = {true, true, true};
   if (auto surface = surface_of(scene)) skin.surface = std::move(surface);
 }
 

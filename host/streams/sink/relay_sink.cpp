@@ -18,12 +18,28 @@ PillarfieldReadingType type_in_ring(SenselType type) {
   return type == SenselType::u16 ? PILLARFIELD_U16 : PILLARFIELD_F32;
 }
 
+/// What readers take the frames for: as the plan does, with assumed constants left out.
+PillarfieldConstants constants_of(const Skin& skin) {
+  PillarfieldConstants constants = {};
+  constants.layout = skin.has_pillars() ? PILLARFIELD_PILLARS : PILLARFIELD_SENSELS;
+  constants.mirrored = skin.falling ? 1 : 0;
+  if (skin.states_pitch()) {
+    constants.pitch_x_mm = skin.sensel_pitch_mm.col_mm;
+    constants.pitch_y_mm = skin.sensel_pitch_mm.row_mm;
+  }
+  if (skin.states_counts_per_newton()) constants.counts_per_newton = skin.counts_per_newton;
+  constants.threshold_counts = skin.threshold_counts;
+  constants.full_scale_counts = skin.full_scale_counts.value_or(0);
+  return constants;
+}
+
 class RelaySink final : public LiveSink {
  public:
   RelaySink(const std::string& target, const LiveSinkInfo& info)
       : name_(target),
         layout_{PILLARFIELD_RING_FRAMES, info.skin.rows, info.skin.cols,
-                type_in_ring(info.sensel_type)} {
+                type_in_ring(info.sensel_type)},
+        constants_(constants_of(info.skin)) {
     check_live_relay(target);
     writer_.emplace(target.substr(kRelayPrefix.size()), layout_, slots_for(layout_));
   }
@@ -36,6 +52,7 @@ class RelaySink final : public LiveSink {
  private:
   std::string name_;
   RingLayout layout_;
+  PillarfieldConstants constants_;
   std::uint64_t session_ =
       static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
   std::optional<RingWriter> writer_;
@@ -52,6 +69,7 @@ void RelaySink::append(const SolvedFrame& frame) {
   }
   const std::size_t bytes = std::size_t{layout_.rows} * layout_.cols * size_of(frame.readings.type);
   std::byte* const slot = writer_->begin().data();
+  reinterpret_cast<PillarfieldFrameSlot*>(slot)->constants = constants_;
   reinterpret_cast<PillarfieldFrameSlot*>(slot)->packet = {
       .magic = PILLARFIELD_PACKET_MAGIC,
       .content = PILLARFIELD_FRAME,

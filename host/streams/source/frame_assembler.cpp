@@ -66,6 +66,7 @@ void FrameAssembler::add(const Packet& packet) {
     ++counts_.invalid;
     return;
   }
+  if (content_of(header) == PILLARFIELD_CONSTANTS) return;
   const Sessions::Kind session = sessions_.classify(header.session, packet.arrived);
   if (session == Sessions::Kind::replaced) {
     ++counts_.late;

@@ -4,7 +4,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <limits>
 
 namespace pillarfield {
 namespace {
@@ -25,6 +27,7 @@ std::optional<std::size_t> reading_bytes(const PillarfieldPacket& header, const 
       if (header.count < 1 || header.count > shape.rows) return std::nullopt;
       if (header.first > shape.rows - header.count) return std::nullopt;
       return header.count * shape.row_bytes();
+    case PILLARFIELD_CONSTANTS:
     case PILLARFIELD_END:
       return 0;
   }
@@ -77,6 +80,46 @@ std::optional<FrameShape> shape_of(const PillarfieldPacket& header) {
   const std::size_t checksum = is_checked(header) ? kChecksumBytes : 0;
   if (!bytes || header.bytes != *bytes + checksum) return std::nullopt;
   return shape;
+}
+
+namespace {
+
+std::optional<SkinLayout> stated_layout(std::uint32_t layout) {
+  if (layout == PILLARFIELD_PILLARS) return SkinLayout::pillars;
+  if (layout == PILLARFIELD_SENSELS) return SkinLayout::sensels;
+  return std::nullopt;
+}
+
+/// A constant that is stated; none if it is 0, or cannot be one.
+std::optional<double> stated_constant(double value, double low, double high) {
+  if (value >= low && value <= high) return value;
+  return std::nullopt;
+}
+
+}  // namespace
+
+StoredSkin stated_by(const PillarfieldConstants& constants) {
+  constexpr double kLeast = std::numeric_limits<double>::min();
+  const Pitch pitch_mm = {constants.pitch_y_mm, constants.pitch_x_mm};
+  return {.sensel_pitch_mm = is_valid(pitch_mm) ? std::optional(pitch_mm) : std::nullopt,
+          .counts_per_newton = stated_constant(constants.counts_per_newton, kMinCountsPerNewton,
+                                               kMaxCountsPerNewton),
+          .threshold_counts = stated_constant(constants.threshold_counts, kLeast, kMaxCounts),
+          .full_scale_counts = stated_constant(constants.full_scale_counts, kLeast, kMaxCounts),
+          .layout = stated_layout(constants.layout),
+          .falling = constants.mirrored == 1};
+}
+
+StoredSkin stated_by(const PillarfieldPacket& header) {
+  const PillarfieldContent content = content_of(header);
+  if (content != PILLARFIELD_FRAME && content != PILLARFIELD_CONSTANTS) return {};
+  constexpr std::uint32_t kPitchBits = 30;
+  constexpr std::uint32_t kPitchMask = (1U << kPitchBits) - 1;
+  PillarfieldConstants constants = {};
+  constants.layout = header.first >> kPitchBits;
+  constants.pitch_x_mm = constants.pitch_y_mm = 1e-6 * (header.first & kPitchMask);
+  constants.counts_per_newton = static_cast<double>(std::bit_cast<float>(header.count));
+  return stated_by(constants);
 }
 
 std::string mismatch_words(const FrameShape& came, const FrameShape& expected) {

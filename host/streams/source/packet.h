@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "io/skin_constants.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/stream_format.h"
 
@@ -40,6 +41,12 @@ struct Packet {
 /// Size and type of the packet's frame; none if a member of the header is out of range or
 /// contradicts another one.
 [[nodiscard]] std::optional<FrameShape> shape_of(const PillarfieldPacket& header);
+
+/// The constants that the header of a packet states; values out of range state nothing.
+[[nodiscard]] StoredSkin stated_by(const PillarfieldPacket& header);
+
+/// Those that a slot of a ring states.
+[[nodiscard]] StoredSkin stated_by(const PillarfieldConstants& constants);
 
 /// The type of readings that a packet or ring names as a PillarfieldReadingType.
 [[nodiscard]] std::optional<SenselType> reading_type(std::uint32_t type);

@@ -27,6 +27,11 @@ class PacketSource {
   /// Waits for a packet, at most for `timeout`, and may return earlier. The packet is not checked.
   [[nodiscard]] virtual Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) = 0;
 
+  /// The constants of the skin that the packet received last states.
+  [[nodiscard]] virtual StoredSkin stated(const Packet& packet) const {
+    return stated_by(packet.header);
+  }
+
   /// Allocates the memory for frames of this shape; the last packet received stays valid.
   virtual void prepare(const FrameShape& /*shape*/) {}
 

@@ -40,10 +40,11 @@ class FirstPackets {
   FirstPackets(const std::string& name, bool is_open_to_all, const std::optional<FrameSize>& size)
       : name_(name), is_open_to_all_(is_open_to_all), size_(size) {}
 
-  /// Takes a packet; whether the shape is known now.
-  bool add(const Packet& packet);
+  /// Takes a packet, which states these constants; whether the shape is known now.
+  bool add(const Packet& packet, const StoredSkin& stated);
 
   [[nodiscard]] const FrameShape& shape() const { return *shape_; }
+  [[nodiscard]] const StoredSkin& stated() const { return stated_; }
   [[nodiscard]] std::vector<KeptPacket> take() { return std::move(packets_); }
   /// Packets that are not kept.
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
@@ -57,6 +58,7 @@ class FirstPackets {
   bool is_open_to_all_;
   std::optional<FrameSize> size_;
   std::optional<FrameShape> shape_;
+  StoredSkin stated_;
   std::vector<KeptPacket> packets_;
   std::size_t bytes_ = 0;
   std::uint64_t invalid_ = 0;
@@ -70,19 +72,23 @@ bool FirstPackets::has_size(const FrameShape& shape) {
   throw Error(name_, mismatch_, "give the calibration or scene of this sensor");
 }
 
-bool FirstPackets::add(const Packet& packet) {
+bool FirstPackets::add(const Packet& packet, const StoredSkin& stated) {
   const auto shape = shape_of(packet.header);
   if (!shape || !is_intact(packet) || !has_size(*shape)) {
     ++invalid_;
     return false;
   }
-  if (content_of(packet.header) == PILLARFIELD_END) return false;
+  const PillarfieldContent content = content_of(packet.header);
+  if (content == PILLARFIELD_END) return false;
   if (shape != shape_) {
     invalid_ += packets_.size();
     packets_.clear();
     bytes_ = 0;
     shape_ = shape;
+    stated_ = {};
   }
+  if (content != PILLARFIELD_ROWS) stated_ = stated;
+  if (content == PILLARFIELD_CONSTANTS) return false;
   packets_.emplace_back(packet);
   bytes_ += sizeof packet.header + packet.bytes.size();
   return bytes_ >= shape->bytes();
@@ -91,12 +97,13 @@ bool FirstPackets::add(const Packet& packet) {
 class PacketStream final : public FrameStream {
  public:
   PacketStream(std::unique_ptr<PacketSource> source, FirstPackets& first, PacketOrder order,
-               const LiveSourceOptions& options)
+               Skin skin, bool mirrors, Calibration calibration)
       : source_(std::move(source)),
         first_(first.take()),
         assembler_(first.shape(), order),
-        skin_(options.skin),
-        calibration_(options.calibration) {
+        skin_(std::move(skin)),
+        mirrors_(mirrors),
+        calibration_(std::move(calibration)) {
     assembler_.set_counts({.invalid = first.invalid()});
   }
 
@@ -116,6 +123,7 @@ class PacketStream final : public FrameStream {
   std::size_t next_first_ = 0;
   FrameAssembler assembler_;
   Skin skin_;
+  bool mirrors_;  ///< falling readings
   Calibration calibration_;
 };
 
@@ -159,7 +167,7 @@ void PacketStream::discard_waiting() {
 
 bool PacketStream::pop(StreamedFrame& frame) {
   const bool popped = assembler_.pop(frame);
-  if (popped && skin_.falling) mirror(frame.buffer);
+  if (popped && mirrors_) mirror(frame.buffer);
   return popped;
 }
 
@@ -201,7 +209,7 @@ bool receive_first(const std::string& name, PacketSource& source, const LiveSour
     if (arrival == Arrival::ended) {
       throw Error(name, "ended before its first frame", "docs/streams.md describes the packets");
     }
-    if (arrival == Arrival::arrived && first.add(packet)) return true;
+    if (arrival == Arrival::arrived && first.add(packet, source.stated(packet))) return true;
     const std::string words = first.mismatch().empty() ? source.complaint() : first.mismatch();
     if (options.say && !said && !words.empty()) {
       said = true;
@@ -221,6 +229,29 @@ bool receive_first(const std::string& name, PacketSource& source, const LiveSour
   }
 }
 
+/// The skin of the frames, which state these constants.
+Skin skin_of_frames(const FrameShape& shape, StoredSkin stated, const LiveSourceOptions& options) {
+  Skin skin;
+  if (options.skin) {
+    skin = *options.skin;
+    if (skin.states_pitch()) stated.sensel_pitch_mm = skin.sensel_pitch_mm;
+    if (skin.states_counts_per_newton()) stated.counts_per_newton = skin.counts_per_newton;
+    if (skin.threshold_counts > 0) stated.threshold_counts = skin.threshold_counts;
+    if (skin.full_scale_counts) stated.full_scale_counts = skin.full_scale_counts;
+    if (skin.stated.layout || !skin.has_pillars()) stated.layout = skin.layout;
+    stated.power_law = skin.power_law;
+    const bool is_stated = options.read.layout || stated.layout;
+    if (!is_stated && options.say) {
+      for (const std::string& sentence : layout_warnings(skin)) options.say(sentence);
+    }
+    if (!is_stated) stated.layout = skin.layout;
+  }
+  skin.rows = shape.rows;
+  skin.cols = shape.cols;
+  take_constants(skin, stated, options.read);
+  return skin;
+}
+
 }  // namespace
 
 std::unique_ptr<FrameStream> open_packet_stream(const std::string& name,
@@ -229,13 +260,13 @@ std::unique_ptr<FrameStream> open_packet_stream(const std::string& name,
                                                 const LiveSourceOptions& options) {
   FirstPackets first(name, source->is_open_to_all(), options.size);
   if (!receive_first(name, *source, options, first)) return nullptr;
-  LiveSourceOptions fitting = options;
-  fitting.skin.rows = first.shape().rows;
-  fitting.skin.cols = first.shape().cols;
-  check(fitting.skin, name);
-  check(fitting.calibration, fitting.skin, name, first.shape().type);
+  Skin skin = skin_of_frames(first.shape(), first.stated(), options);
+  check(skin, name);
+  check(options.calibration, skin, name, first.shape().type);
   source->prepare(first.shape());
-  return std::make_unique<PacketStream>(std::move(source), first, order, fitting);
+  const bool mirrors = options.read.falling && !first.stated().falling;
+  return std::make_unique<PacketStream>(std::move(source), first, order, std::move(skin), mirrors,
+                                        options.calibration);
 }
 
 }  // namespace pillarfield

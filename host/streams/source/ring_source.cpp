@@ -13,6 +13,7 @@ class RingSource final : public PacketSource {
   explicit RingSource(const std::string& name) : reader_(name, RingReader::Content::frames) {}
 
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
+  [[nodiscard]] StoredSkin stated(const Packet& packet) const override;
   [[nodiscard]] Counts counts() const override;
   void clear_counts() override { reader_.clear_counts(); }
 
@@ -28,6 +29,15 @@ Arrival RingSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
   const std::size_t bytes = *content_bytes(*reader_.layout()) - sizeof(PillarfieldFrameSlot);
   packet.bytes = {slot + sizeof(PillarfieldFrameSlot), bytes};
   return Arrival::arrived;
+}
+
+StoredSkin RingSource::stated(const Packet& packet) const {
+  PillarfieldConstants constants = {};
+  std::memcpy(&constants,
+              packet.bytes.data() - sizeof(PillarfieldFrameSlot) +
+                  offsetof(PillarfieldFrameSlot, constants),
+              sizeof constants);
+  return stated_by(constants);
 }
 
 PacketSource::Counts RingSource::counts() const {

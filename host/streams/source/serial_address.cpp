@@ -100,11 +100,10 @@ struct Protocol {
   const char* name = nullptr;
   std::unique_ptr<ByteParser> (*parser)(const AddressOptions& options,
                                         const std::string& source) = nullptr;
-  std::optional<SkinLayout> layout = {};  ///< of its boards; unset: any
 };
 
 constexpr std::array kProtocols = {Protocol{"packets", packet_parser},
-                                   Protocol{"flexitac", flexitac_parser, SkinLayout::sensels}};
+                                   Protocol{"flexitac", flexitac_parser}};
 
 const Protocol& protocol_of(const AddressOptions& options, const std::string& source) {
   const auto given = options.find("protocol");
@@ -128,7 +127,7 @@ SerialAddress serial_address(const std::string& text) {
   const AddressOptions options =
       options_of(std::string_view(text).substr(std::min(question + 1, text.size())), source);
   const Protocol& protocol = protocol_of(options, source);
-  return {text.substr(0, question), protocol.parser(options, source), protocol.layout};
+  return {text.substr(0, question), protocol.parser(options, source)};
 }
 
 }  // namespace pillarfield

@@ -119,11 +119,9 @@ std::unique_ptr<FrameStream> open_serial(const std::string& rest,
         fmt::format("cannot be opened at {} baud: {}", options.serial_baud, std::strerror(errno)),
         "give a serial device that you may read, for instance serial:/dev/ttyACM0");
   }
-  LiveSourceOptions of_board = options;
-  of_board.skin.layout = address.layout.value_or(options.skin.layout);
   return open_packet_stream(
       name, std::make_unique<SerialSource>(std::move(address), options.serial_baud, opened),
-      PacketOrder::kept, of_board);
+      PacketOrder::kept, options);
 }
 
 }  // namespace

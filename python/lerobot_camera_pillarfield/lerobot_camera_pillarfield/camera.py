@@ -60,7 +60,7 @@ class PillarfieldCamera(Camera):
         """
         if self.is_connected:
             raise DeviceAlreadyConnectedError(f"{self} is already connected.")
-        source = pf.live(self.config.source, skin=pf.Skin(2, 2, layout=self.config.layout))
+        source = pf.live(self.config.source, layout=self.config.layout)
         try:
             plan = self._plan_of(source)
             check_rendering(self.config.rendering, plan.skin.layout)

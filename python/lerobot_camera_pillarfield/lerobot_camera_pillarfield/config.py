@@ -21,7 +21,8 @@ class PillarfieldCameraConfig(CameraConfig):
     full_scale_n: force on one pillar or sensel at which a channel is at its end, N
     rendering: 'normal': normal force as grey, 0 N black; 'vector_rgb': shear_x, shear_y and normal as
         red, green and blue, 0 N at 128
-    layout: 'pillars' or 'sensels', which have normal force alone; a calibration knows its own
+    layout: 'pillars' or 'sensels', which have normal force alone; '': that of calibration or sensor, else
+        sensels
     calibration: path of the skin's calibration
     counts_per_newton: of the skin; None: that of the calibration
     tare_frames: the first frames after connect(), at least 10, are of the unloaded skin; 0: no tare
@@ -33,7 +34,7 @@ class PillarfieldCameraConfig(CameraConfig):
     source: str
     full_scale_n: float
     rendering: str = "normal"
-    layout: str = "pillars"
+    layout: str = ""
     calibration: Optional[str] = None
     counts_per_newton: Optional[float] = None
     tare_frames: int = 0

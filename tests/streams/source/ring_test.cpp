@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <filesystem>
@@ -84,6 +85,33 @@ class Child {
  private:
   pid_t id_;
 };
+
+TEST(Ring, ARelayCarriesTheConstantsOfTheSkin) {
+  const Name name;
+  LiveSinkInfo info;
+  info.skin.rows = kShape.rows;
+  info.skin.cols = kShape.cols;
+  info.skin.layout = SkinLayout::sensels;
+  info.skin.sensel_pitch_mm = 5.08;
+  info.skin.threshold_counts = 3;
+  info.skin.full_scale_counts = 250;
+  info.skin.falling = true;
+  const auto relay = create_live_relay(name.source(), info);
+  const FrameBuffer frame(kShape.type, kShape.rows, kShape.cols);
+  relay->append({.readings = frame.view()});
+  // The frames are mirrored already.
+  const auto stream = open_live_source(name.source(), {.read = {.falling = true}});
+  const Skin& skin = stream->skin();
+  EXPECT_EQ(skin.layout, SkinLayout::sensels);
+  EXPECT_EQ(skin.sensel_pitch_mm, 5.08);
+  EXPECT_FALSE(skin.states_counts_per_newton());  // It was assumed.
+  EXPECT_EQ(skin.threshold_counts, 3);
+  EXPECT_EQ(skin.full_scale_counts, 250);
+  EXPECT_TRUE(skin.falling);
+  StreamedFrame got(stream->sensel_type(), skin);
+  ASSERT_EQ(stream->next(got, std::chrono::seconds(60)), Arrival::arrived);
+  EXPECT_EQ(std::ranges::count(got.buffer.bytes(), std::byte{0}), std::ssize(got.buffer.bytes()));
+}
 
 TEST(Ring, DeliversFramesAndUnlinksAtTheEnd) {
   const Name name;

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <filesystem>
 
@@ -294,6 +295,57 @@ TEST(UdpSource, AClaimFixesNoSize) {
                                        }});
   EXPECT_EQ(stream->skin().rows, kShape.rows);
   EXPECT_GE(stream->health().invalid, 1);
+}
+
+/// The skin of a source whose packets are these.
+Skin skin_from(const std::vector<SentPacket>& packets, const LiveSourceOptions& options = {}) {
+  Stdin input;
+  for (const SentPacket& packet : packets) input.send(packet.bytes());
+  return open_live_source("-", options)->skin();
+}
+
+SentPacket stating(SentPacket packet, std::uint32_t first, float counts_per_newton) {
+  packet.header.first = first;
+  packet.header.count = std::bit_cast<std::uint32_t>(counts_per_newton);
+  return packet;
+}
+
+TEST(StdinSource, TakesTheConstantsThatPacketsState) {
+  const SentPacket silent = frame_packet(kShape, 1);
+  const Skin assumed = skin_from({silent});
+  EXPECT_EQ(assumed.layout, SkinLayout::sensels);
+  EXPECT_FALSE(assumed.stated.layout || assumed.states_pitch() ||
+               assumed.states_counts_per_newton());
+
+  const SentPacket frame = stating(silent, PILLARFIELD_STATED(PILLARFIELD_PILLARS, 5), 47);
+  SentPacket constants = {frame.header, ""};
+  constants.header.content = PILLARFIELD_CONSTANTS;
+  constants.header.bytes = 0;
+  std::vector<SentPacket> rows = row_packets(kShape, 1, 4);
+  rows.insert(rows.begin() + 3, constants);
+  for (const auto& packets : {std::vector{frame}, rows}) {
+    const Skin skin = skin_from(packets);
+    EXPECT_EQ(skin.layout, SkinLayout::pillars);
+    EXPECT_DOUBLE_EQ(skin.sensel_pitch_mm.col_mm, 5);
+    EXPECT_EQ(skin.counts_per_newton, 47);
+    EXPECT_TRUE(skin.stated.layout && skin.states_pitch() && skin.states_counts_per_newton());
+  }
+  // Members that earlier drivers left as they were.
+  const Skin odd = skin_from({stating(silent, 16, 1e-40F)});
+  EXPECT_FALSE(odd.stated.layout || odd.stated.sensel_pitch || odd.stated.counts_per_newton);
+
+  const Skin given =
+      skin_from({frame}, {.read = {.sensel_pitch_mm = 2, .layout = SkinLayout::sensels}});
+  EXPECT_EQ(given.layout, SkinLayout::sensels);
+  EXPECT_EQ(given.sensel_pitch_mm, 2);
+  EXPECT_EQ(given.counts_per_newton, 47);
+
+  std::vector<std::string> said;
+  const auto say = [&](const std::string& words) { said.push_back(words); };
+  EXPECT_TRUE(skin_from({silent}, {.skin = Skin{}, .say = say}).has_pillars());
+  EXPECT_EQ(said.size(), 1);
+  EXPECT_TRUE(skin_from({frame}, {.skin = Skin{}, .say = say}).has_pillars());
+  EXPECT_EQ(said.size(), 1);
 }
 
 TEST(UdpSource, WaitsForFramesOfTheStatedSize) {

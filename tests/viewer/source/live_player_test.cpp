@@ -181,6 +181,21 @@ TEST(LivePlayer, MissingReadingsGiveNoForce) {
   EXPECT_NE(field.forces.status[2 * 8 + 2] & status::kInconsistent, 0);
 }
 
+TEST(LivePlayer, TakesAllConstantsThatAreGiven) {
+  const FakeSensor sensor(std::make_shared<Wire>());
+  const Skin given = live_plan(sensor, {.producer = {.read = {.sensel_pitch_mm = 20,
+                                                              .counts_per_newton = 47,
+                                                              .threshold_counts = 5,
+                                                              .full_scale_counts = 250}}})
+                         .skin;
+  EXPECT_EQ(given.sensel_pitch_mm, 20);
+  EXPECT_EQ(given.counts_per_newton, 47);
+  EXPECT_EQ(given.threshold_counts, 5);
+  EXPECT_EQ(given.full_scale_counts, 250);
+  EXPECT_THROW((void)open_sensor("udp:127.0.0.1:0", {.producer = {.read = {.tare_frames = 10}}}),
+               Error);
+}
+
 TEST(LivePlayer, OfSenselsShowsNormalForceAlone) {
   LiveFixture live({.producer = {.read = {.layout = SkinLayout::sensels}}});
   EXPECT_FALSE(live.player->info().skin.has_pillars());

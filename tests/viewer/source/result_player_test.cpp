@@ -201,7 +201,8 @@ TEST(ResultPlayer, HasNoReadingsToTareOrRecord) {
   EXPECT_EQ(shown.status().messages, 1U);
   EXPECT_NE(shown.status().message.find("the program that solves"), std::string::npos);
   EXPECT_THROW(control.record("recording.h5"), Error);
-  EXPECT_THROW((void)open_sensor(ring_name(), {.counts_per_newton = 100}), Error);
+  EXPECT_THROW((void)open_sensor(ring_name(), {.producer = {.read = {.counts_per_newton = 100}}}),
+               Error);
 }
 
 }  // namespace

@@ -41,15 +41,14 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
   };
   OpenedSensor opened =
       open_sensor(name, {.producer = producer_options(options, tell),
-                         .counts_per_newton = options.plain.counts_per_newton,
                          .calibration = options.calibration,
                          .stop = stop,
                          .say = [&](const std::string& words) { waiting += ": " + words; }});
   if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
   const bool solves_here = opened.player->info().has_readings;
-  if (solves_here && !options.plain.layout && options.calibration.empty()) {
-    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name),
-               layout_note(opened.player->info().skin));
+  const std::string note = assumption_note(opened.player->info().skin);
+  if (solves_here && !note.empty()) {
+    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name), note);
   }
   loaded.curves = std::move(opened.curves);
   loaded.settings = live_settings(options, opened.player->info(), scale);
