@@ -23,7 +23,7 @@ import tempfile
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TARGETS = ("recording", "forces", "parts", "calibration", "tekscan", "scene", "plain", "packets")
+TARGETS = ("recording", "forces", "calibration", "tekscan", "scene", "plain", "packets")
 
 # Above the 5 s and 1 GB of the commands, since sanitizers need more.
 TIMEOUT_S = 15

@@ -26,9 +26,6 @@ void read_plain(const std::filesystem::path& path, const ReadOptions& options);
 /// Reads a force file; also compares its frames with themselves.
 void read_forces(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads a part, and joins it with the others of its solve.
-void read_parts(const std::filesystem::path& path, const ReadOptions& options);
-
 /// Reads a calibration; also applies it to a skin of its size.
 void read_calibration(const std::filesystem::path& path, const ReadOptions& options);
 
@@ -48,7 +45,6 @@ struct Target {
 inline constexpr std::array<Target, 8> kTargets = {{
     {"recording", read_frames},
     {"forces", read_forces},
-    {"parts", read_parts},
     {"calibration", read_calibration},
     {"tekscan", read_frames},
     {"scene", read_scene},

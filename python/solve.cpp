@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -142,33 +143,27 @@ py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool
   return collector.release(contacts);
 }
 
-/// Solves a part; returns whether it was not whole before.
-bool solve_part_of(Frames& frames, const SolverPlan& plan, const std::string& source_name,
-                   const std::filesystem::path& output, std::uint64_t index, std::uint64_t count,
-                   std::uint64_t checkpoint_every, std::uint64_t warm_up, bool contacts,
-                   const std::string& device_name) {
+/// Solves the frames first to end - 1 into an HDF5 file.
+void solve_to_file(Frames& frames, const SolverPlan& plan, const std::string& source_name,
+                   const std::filesystem::path& output, std::uint64_t first, std::uint64_t end,
+                   std::optional<std::uint64_t> warm_up, bool contacts,
+                   const std::string& device_name, bool overwrite) {
   const py::gil_scoped_release unlocked;
   const std::lock_guard alone(frames.alone);
   RangeOptions options;
-  options.checkpoints = {checkpoint_every, warm_up};
+  options.warm_up = warm_up;
   if (contacts) set_sensor(options.contacts.emplace(), plan);
   SignalCheck check_signals;
   options.stop = [&] { return check_signals(), false; };
   const Device device = device_named(device_name).for_plan(plan);
-  ForcePart part;
-  part.index = index;
-  part.count = count;
-  return solve_part(*frames.source, device, plan, options, output,
-                    file_info(plan, device.info().name, source_name), part)
-      .has_value();
-}
-
-void join(const std::filesystem::path& output, bool overwrite, bool trust) {
-  const py::gil_scoped_release unlocked;
-  SignalCheck check_signals;
-  join_parts(output, {.replace = overwrite ? Replace::anything : Replace::results,
-                      .read = {.trust = trust},
-                      .progress = [&](auto...) { check_signals(); }});
+  ForceFileInfo info = file_info(plan, device.info().name, source_name);
+  info.contacts = options.contacts;
+  info.first_frame = first;
+  info.frames = end - std::min(first, end);
+  const auto sink =
+      create_force_sink(output, info, overwrite ? Replace::anything : Replace::results);
+  static_cast<void>(solve_range(*frames.source, device, plan, {first, end}, options, {sink.get()}));
+  sink->finish();
 }
 
 }  // namespace
@@ -181,18 +176,10 @@ void bind_solve(py::module_& module) {
              py::arg("device"), kText);
   module.def("solve_iterator", &solve_iterator, py::arg("frames"), py::arg("plan"),
              py::arg("contacts"), py::arg("device"), py::arg("falling") = false, kText);
-  module.def("solve_part", &solve_part_of, py::arg("source"), py::arg("plan"),
-             py::arg("source_name"), py::arg("output"), py::arg("index"), py::arg("count"),
-             py::arg("checkpoint_every"), py::arg("warm_up"), py::arg("contacts"),
-             py::arg("device"), "Solves a part; whether it was not whole before.");
-  module.def("join_parts", &join, py::arg("output"), py::arg("overwrite"), py::arg("trust"),
-             "Joins parts.");
-  module.def(
-      "most_parts",
-      [](std::uint64_t frames, std::uint64_t every) {
-        return most_parts(frames, {every, 0});
-      },
-      py::arg("frames"), py::arg("checkpoint_every"), "The largest useful number of parts.");
+  module.def("solve_to_file", &solve_to_file, py::arg("source"), py::arg("plan"),
+             py::arg("source_name"), py::arg("output"), py::arg("first"), py::arg("end"),
+             py::arg("warm_up"), py::arg("contacts"), py::arg("device"), py::arg("overwrite"),
+             "Solves a range of frames into an HDF5 file.");
 }
 
 }  // namespace pillarfield::python

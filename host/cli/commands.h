@@ -15,6 +15,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/skin_calibration.h"
+#include "pillarfield/solve_range.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
@@ -41,13 +42,6 @@ struct SimulateOptions : WriteOptions {
   bool uncalibrated = false;
 };
 
-/// Ranges of frames that are solved apart.
-struct PartOptions {
-  std::string part;  ///< "7/64"; empty: all frames
-  std::optional<std::uint64_t> checkpoint_every;
-  std::optional<std::uint64_t> warm_up;
-};
-
 struct SolveOptions : WriteOptions {
   std::vector<std::string> inputs;  ///< files and folders
   std::string input;                ///< the one, or the first; set by solve()
@@ -56,11 +50,8 @@ struct SolveOptions : WriteOptions {
   std::string contacts_file;  ///< empty: none
   ContactOptions contacts;
   PressureUnit pressure_unit = kPressureUnits.front();  ///< of the table of contacts
-  PartOptions part;
-};
-
-struct JoinCommand : WriteOptions {
-  ReadOptions read;
+  std::optional<FrameRange> frames;                     ///< unset: all
+  std::optional<std::uint64_t> warm_up;                 ///< RangeOptions::warm_up
 };
 
 struct StreamOptions : PrintOptions {
@@ -135,7 +126,6 @@ struct DoctorOptions : PrintOptions {
 
 void simulate(const SimulateOptions& options);
 void solve(const SolveOptions& given);
-void join(const JoinCommand& command);
 void stream(const StreamOptions& options);
 void control(const ControlOptions& options);
 void compare(const CompareOptions& options);

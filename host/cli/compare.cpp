@@ -281,13 +281,14 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
                             skin.element_cols(), name_of(skin.layout)),
                 "give the recording that these forces were solved from");
   }
-  if (info.part) {
-    if (info.part->frames == recording.frames()) return forces.frames();
+  const std::uint64_t left = recording.frames() - std::min(info.first_frame, recording.frames());
+  if (info.first_frame > 0 && forces.frames() > left) {
     throw Error(options.forces,
-                fmt::format("it is part of {} frames and {} has {}", info.part->frames,
+                fmt::format("it holds frames from {} on, and {} has {}", info.first_frame,
                             options.recording, recording.frames()),
                 "give the recording that these forces were solved from");
   }
+  if (info.first_frame > 0) return forces.frames();
   const std::uint64_t frames = std::min(forces.frames(), recording.frames());
   if (forces.frames() != recording.frames()) {
     fmt::print(stderr, "{}: it has {} frames and {} has {}; the first {} are compared\n",
@@ -305,7 +306,7 @@ void compare(const CompareOptions& options) {
       open_frames(options.recording, {.trust = options.read.trust, .untimed = true});
   const std::uint64_t frames = common_frames(forces, *recording, options);
   const ForceFileInfo& info = forces.info();
-  const std::uint64_t first = info.part ? frames_of(*info.part).first : 0;
+  const std::uint64_t first = info.first_frame;
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;

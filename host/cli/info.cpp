@@ -157,10 +157,7 @@ Json facts_of_forces(const std::string& file, const InfoOptions& options) {
                 {"warnings", reader.warnings()}});
   if (info.segment_point) facts["segment_point"] = *info.segment_point;
   add_surface(facts, info.surface);
-  if (info.part) {
-    facts["part"] = fmt::format("{}/{}", info.part->index, info.part->count);
-    facts["first_frame"] = frames_of(*info.part).first;
-  }
+  if (info.first_frame > 0) facts["first_frame"] = info.first_frame;
   return facts;
 }
 

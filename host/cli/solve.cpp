@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 #include <system_error>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,7 +14,6 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
-#include "cli/part_share.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
@@ -60,7 +58,6 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
 
 struct SolveSummary {
   PipelineStatistics done;
-  bool skipped = false;  ///< its part was whole already
   RegionCount regions;
   double startup_seconds = 0;  ///< opening the files and the device, compiling
   double seconds = 0;          ///< reading, solving and writing, which overlap
@@ -90,13 +87,14 @@ class Counter final : public ForceSink {
 
   void append(const SolvedFrame& frame) override {
     regions_.add(frame.forces.status);
-    progress_.show(frame.sequence + 1);
+    progress_.show(++frames_);
   }
   [[nodiscard]] const RegionCount& regions() const { return regions_; }
 
  private:
   Progress progress_;
   RegionCount regions_;
+  std::uint64_t frames_ = 0;
 };
 
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
@@ -130,10 +128,6 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
   json["seconds"] = summary.seconds;
   json["warnings"] = source.warnings();
   json["notes"] = source.notes();
-  if (!options.part.part.empty()) {
-    json["part"] = options.part.part;
-    json["was_whole"] = summary.skipped;
-  }
   if (!options.contacts_file.empty()) {
     json["contacts_output"] = options.contacts_file;
     json["contacts"] = summary.done.contacts;
@@ -142,17 +136,8 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
   fmt::print("{}\n", json_text(json));
 }
 
-void print_part(const SolveOptions& options, const SolveSummary& summary) {
-  const auto [index, count] = *part_of(options.part.part);
-  fmt::print("{} {}\n", summary.skipped ? "Left as it was:" : "Wrote",
-             printable(part_file(options.output, index).string()));
-  fmt::print("When all {} are whole: pillarfield join {}\n", counted(count, "part"),
-             printable(options.output));
-}
-
 void print_text(const SolveOptions& options, const SolverPlan& plan, const Device& solver,
                 const SolveSummary& summary) {
-  if (summary.skipped) return print_part(options, summary);
   const RegionCount& regions = summary.regions;
   const auto frames = static_cast<double>(summary.done.frames);
   const auto elements = static_cast<double>(regions.all());
@@ -194,11 +179,10 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
                summary.done.most_contacts, printable(options.contacts_file));
   }
-  if (!options.part.part.empty()) return print_part(options, summary);
   if (!options.output.empty()) fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// What a solve of all frames or of a part needs.
+/// What a solve needs.
 struct Job {
   const SolveOptions& options;
   FrameSource& source;
@@ -209,11 +193,14 @@ struct Job {
   ReadingCheck& check;
 };
 
-/// Solves all frames into the outputs of the options.
-void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveSummary& summary) {
+/// Solves the frames into the outputs of the options.
+void solve_frames(const Job& job, const std::optional<PlannedOutput>& table,
+                  SolveSummary& summary) {
   const SolveOptions& options = job.options;
   ForceFileInfo info = file_info(options, job.plan, job.device);
-  info.frames = job.source.frames();
+  const FrameRange frames = options.frames.value_or(FrameRange{0, job.source.frames()});
+  info.frames = frames.end - frames.first;
+  info.first_frame = frames.first;
   std::vector<std::unique_ptr<ForceSink>> files;
   if (!options.output.empty()) {
     files.push_back(create_force_sink(options.output, info, options.replace));
@@ -226,38 +213,12 @@ void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveS
   }
   std::vector<ForceSink*> sinks = {&job.counter, &job.check};
   for (const auto& file : files) sinks.push_back(file.get());
-  summary.done =
-      solve_range(job.source, job.device, job.plan, {0, job.source.frames()}, job.range, sinks);
+  summary.done = solve_range(job.source, job.device, job.plan, frames, job.range, sinks);
   if (summary.done.stopped) {
     stop_if_interrupted(summary.done.frames,
                         options.output.empty() ? options.contacts_file : options.output);
   }
   for (const auto& file : files) file->finish();
-}
-
-/// Solves the part of the options, unless it is whole.
-void solve_one_part(const Job& job, SolveSummary& summary) {
-  const std::string& output = job.options.output;
-  ForcePart part;
-  std::tie(part.index, part.count) = *part_of(job.options.part.part);
-  const auto done =
-      solve_part(job.source, job.device, job.plan, job.range, output,
-                 file_info(job.options, job.plan, job.device), part, {&job.counter, &job.check});
-  summary.skipped = !done;
-  if (!done) return;
-  if (done->stopped) stop_if_interrupted(done->frames, part_file(output, part.index));
-  summary.done = *done;
-}
-
-void check_part_options(const SolveOptions& options) {
-  if (options.part.part.empty()) return;
-  if (!is_hdf5_name(options.output)) {
-    throw Error(options.output, "parts are HDF5 files", "end its name in .h5");
-  }
-  if (options.contacts_file.empty() || name_same_file(options.contacts_file, options.output))
-    return;
-  throw Error(options.contacts_file, "the contacts of parts lie in the force file",
-              fmt::format("give --contacts {}", options.output));
 }
 
 /// The files that this process writes.
@@ -312,7 +273,6 @@ void solve_series(SolveOptions options, const std::vector<std::filesystem::path>
   while (options.input.size() > 1 && options.input.ends_with('/')) options.input.pop_back();
   const Stopwatch watch;
   const std::optional<PlannedOutput> table = contact_table(options);
-  check_part_options(options);
   std::vector<std::filesystem::path> inputs = files;
   inputs.insert(inputs.end(), {options.plan.scene, options.plan.calibration});
   check_outputs(inputs, outputs_of(options, table), options.replace);
@@ -322,7 +282,7 @@ void solve_series(SolveOptions options, const std::vector<std::filesystem::path>
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device).for_plan(plan);
   RangeOptions range;
-  range.checkpoints = checkpoints_of(options.part);
+  range.warm_up = options.warm_up;
   range.processor = {.frames_in_flight = kFramesInFlight,
                      .on_compiling = terminal_line(options.quiet)};
   if (!options.contacts_file.empty()) range.contacts = options.contacts;
@@ -334,9 +294,10 @@ void solve_series(SolveOptions options, const std::vector<std::filesystem::path>
     return is_interrupted();
   };
   {
-    Counter counter(source->frames(), options.quiet);
+    const auto frames = options.frames.value_or(FrameRange{0, source->frames()});
+    Counter counter(frames.end - frames.first, options.quiet);
     const Job job = {options, *source, device, plan, range, counter, check};
-    options.part.part.empty() ? solve_all(job, table, summary) : solve_one_part(job, summary);
+    solve_frames(job, table, summary);
     summary.regions = counter.regions();
   }
   summary.seconds = watch.seconds() - summary.startup_seconds;

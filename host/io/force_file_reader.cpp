@@ -255,7 +255,7 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   read_size(status.shape());
   read_info();
   read_surface_of_skin();
-  info.part = read_part(file);
+  info.first_frame = read_first_frame(file);
   count_frames();
 }
 

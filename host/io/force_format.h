@@ -34,14 +34,7 @@ inline constexpr const char* kMagnitude = "/force/magnitude";
 inline constexpr const char* kPressure = "/force/pressure";
 inline constexpr const char* kUncertainty = "/uncertainty";
 
-/// Attributes of a part.
-inline constexpr const char* kPart = "/part";
-inline constexpr const char* kIndex = "index";
-inline constexpr const char* kCount = "count";
-inline constexpr const char* kFrames = "frames";
-inline constexpr const char* kCheckpointEvery = "checkpoint_every";
-inline constexpr const char* kWarmUp = "warm_up";
-inline constexpr const char* kFingerprint = "fingerprint";
+inline constexpr const char* kFirstFrame = "first_frame";
 
 inline constexpr const char* kContacts = "/contacts";
 inline constexpr const char* kPatch = "/contacts/patch";

@@ -14,7 +14,7 @@ docs/python.md is the manual.
 
 from . import _arguments as _arguments  # Wraps the functions that the others import.
 from . import _pickle as _pickle  # Registers what it pickles.
-from . import calibrate, distributed
+from . import calibrate
 from ._compare import Comparison, ContactErrors, ResultantErrors, compare
 from ._core import (Calibration, Contact, ContactTotal, Device, FrameContacts, Plan, RegionErrors,
                     Scene, Skin, Surface, VectorErrors, __version__, devices)
@@ -25,7 +25,7 @@ from ._live import Frame, LiveForces, LiveSink, LiveSource, live, live_forces, s
 from ._processor import Contacts, Processor
 from ._recording import ForceFile, Recording, open, save_recording
 from ._scene import Simulation, scene, simulate
-from ._solve import solve
+from ._solve import solve, solve_to_file
 from ._status import Region, Status
 from .calibrate import SenselFinding
 
@@ -34,5 +34,5 @@ __all__ = ["ArrayFinding", "Calibration", "Comparison", "Contact", "ContactError
            "LiveForces", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
            "RegionErrors", "ResultantErrors", "Scene", "SenselFinding", "Simulation", "Skin",
            "Status", "Surface", "Uncertainty", "VectorErrors", "__version__", "calibrate",
-           "compare", "devices", "distributed", "doctor", "live", "live_forces", "open", "save_recording", "scene",
-           "simulate", "sink", "solve"]
+           "compare", "devices", "doctor", "live", "live_forces", "open", "save_recording", "scene",
+           "simulate", "sink", "solve", "solve_to_file"]

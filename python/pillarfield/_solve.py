@@ -16,7 +16,7 @@ from . import _core
 from ._error import ArgumentError, Error
 from ._field import ForceField
 from ._frames import Axes, Path, array_of, is_files, readings_of, timed, warn
-from ._recording import Recording, skin_of, source_of
+from ._recording import ForceFile, Recording, skin_of, source_of
 from ._scene import Simulation
 from .calibrate import Step, tare
 
@@ -92,6 +92,34 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, options)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+
+
+def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 0, end: Optional[int] = None,
+                  warm_up: Optional[int] = None, contacts: bool = False,
+                  calibration: Union[_core.Calibration, Step, Path, None] = None, device: str = "",
+                  overwrite: bool = False, **options: Any) -> ForceFile:
+    """Solves frames of a file into a file of forces, of which one frame at a time is in memory.
+
+    frames: path of a file of frames, or a Recording of it
+    output: path of the result, .h5
+    first, end: the frames from `first`, 0 by default, to before `end`; by default all. Processes on any
+        machines may solve ranges of one recording (docs/python.md)
+    warm_up: frames before `first` that are solved first, for what frames leave to the next ones; by
+        default 3 s, or 3 time constants of a followed baseline or of creep
+    contacts: find and track the contacts too
+    calibration, device, options: as in solve()
+    overwrite: replace an output of any kind; results are replaced without it
+
+    Returns the opened result. Raises Error if a file or an option is wrong.
+    """
+    _refuse_unknown(options)
+    source = frames if isinstance(frames, Recording) else Recording(frames)
+    plan = _core.plan_of(source, source.skin, calibration=_calibration_of(calibration) or source.calibration,
+                         **options)
+    name = os.path.basename(frames) if isinstance(frames, (str, os.PathLike)) else "recording"
+    _core.solve_to_file(source, plan, name, output, first, len(source) if end is None else end, warm_up,
+                        contacts, device, overwrite)
+    return ForceFile(output)
 
 
 def _refuse_unknown(options: dict[str, Any]) -> None:

@@ -59,6 +59,26 @@ class Work(CommandTest):
         self.assertLess(regions["1"]["rms_n"], 1.5 / 320)
         self.assertGreater(regions["1"]["rms_n"], 0.3 / 320)
 
+    def test_ranges_of_frames(self):
+        """A range has the bits of all frames; one with a memory is warmed up by the frames before."""
+        def normal(*options):
+            run("solve", self.recording, "-o", self.forces, *options)
+            with h5py.File(self.forces) as file:
+                return file["force/normal"][...]
+        run("simulate", self.scene, "-o", self.recording)
+        whole = normal()
+        numpy.testing.assert_array_equal(normal("--frames", "3:5"), whole[2:5])
+        self.assertEqual(run_json("info", self.forces)["first_frame"], 2)
+        compared = run_json("compare", self.forces, self.recording)
+        self.assertLess(compared["regions"]["1"]["rms_n"], 1.5 / 320)
+        drift = ("--follow-baseline", 0.1, "--noise", 0.5)
+        numpy.testing.assert_array_equal(normal(*drift, "--frames", "3:6"), normal(*drift)[2:])
+        cold = normal(*drift, "--frames", "3:6", "--warm-up", 0)
+        self.assertTrue((cold != normal(*drift)[2:]).any())
+        for frames, status in (("0:3", 2), ("5:3", 2), ("3", 2), ("3:7", 1)):
+            self.assertIn("frames", run("solve", self.recording, "-o", self.forces, "--frames", frames,
+                                        expect=status).stderr)
+
     def test_estimators_and_uncertainty(self):
         self.scene.write_text(BALL.replace("threshold_counts = 2", "threshold_counts = 3"))
         run("simulate", self.scene, "-o", self.recording)

@@ -2,7 +2,6 @@
 
 import os
 import pathlib
-import shutil
 import struct
 import unittest
 import zlib
@@ -62,21 +61,16 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(pf.Error, "uncertainty"):
             simple.intervals
 
-    def test_parts(self):
-        """Parts that any engine solves, joined; a lost one is named."""
-        recording, output = WORK / "press.h5", WORK / "joined.h5"
-        shutil.rmtree(WORK / "joined.h5.parts", ignore_errors=True)
-        for part in (3, 1, 2):
-            self.assertTrue(pf.distributed.solve_part(recording, output, part, 3))
-        self.assertFalse(pf.distributed.solve_part(recording, output, 2, 3))
-        pf.distributed.join(output, overwrite=True)
-        np.testing.assert_array_equal(pf.open(output)[:].normal, self.forces.normal)
-        for options, words in (({"contacts": True}, "checkpoint_every"), ({"estimator": 7}, "")):
-            with self.assertRaisesRegex((pf.Error, TypeError), words):
-                pf.distributed.solve_part(recording, output, 2, 3, **options)
-        (WORK / "joined.h5.parts" / "00002.h5").unlink()
-        with self.assertRaisesRegex(pf.Error, "lacks 1 of 3 parts: 00002.h5"):
-            pf.distributed.join(output, overwrite=True)
+    def test_ranges(self):
+        """Ranges of frames have the bits of all frames where frames leave nothing to the next ones."""
+        recording, output = WORK / "press.h5", WORK / "range.h5"
+        normal = [pf.solve_to_file(recording, output, first=first, end=end)[:].normal
+                  for first, end in ((0, 3), (3, 7), (7, None))]
+        np.testing.assert_array_equal(np.concatenate(normal), self.forces.normal)
+        with self.assertRaisesRegex(pf.Error, "give frames within 0:"):
+            pf.solve_to_file(recording, output, first=3, end=1000)
+        with self.assertRaisesRegex(TypeError, "no argument"):
+            pf.solve_to_file(recording, output, estimater="paper")
 
     def test_recording(self):
         recording, frames = pf.open(WORK / "press.h5"), self.simulation.frames

@@ -22,7 +22,7 @@ UNIT = (r"\bN\b|\bmm|\bkPa\b|\brad\b|\bs\b|\bcounts\b|\bdegrees\b|per second|coe
 
 def names():
     """(full name, value) of all functions, classes and their members."""
-    for owner in (pf, pf.calibrate, pf.distributed):
+    for owner in (pf, pf.calibrate):
         for name in owner.__all__:
             value = getattr(owner, name)
             if inspect.ismodule(value) or isinstance(value, str):
@@ -76,8 +76,7 @@ class Values(unittest.TestCase):
         simulation = pf.simulate(scene)
         pf.save_recording(WORK / "rec.h5", simulation, overwrite=True)
         options = {"estimator": "contact", "noise_counts": 0.5}
-        pf.distributed.solve_part(WORK / "rec.h5", WORK / "out.h5", 1, 1, contacts=True, **options)
-        pf.distributed.join(WORK / "out.h5", overwrite=True)
+        pf.solve_to_file(WORK / "rec.h5", WORK / "out.h5", contacts=True, **options)
         contacts = pf.solve(WORK / "rec.h5", contacts=True, **options).contacts
         tested = set()
         with h5py.File(WORK / "out.h5") as file:

@@ -6,9 +6,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "base/nearest_word.h"
 #include "base/reworded.h"
@@ -16,7 +19,6 @@
 #include "cli/options/argument_group.h"
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
-#include "cli/part_share.h"
 #include "pillarfield/error.h"
 #include "pipeline/plan_settings.h"
 #include "skin/limits.h"
@@ -42,34 +44,35 @@ void add_simulate(CLI::App& parent, Work& work) {
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
 
-/// Accepts K/N.
-CLI::Validator part_of_all() {
-  const auto error_of = [](const std::string& text) -> std::string {
-    return part_of(text) ? ""
-                         : fmt::format("'{}' is not a part K/N, such as 7/64; N is at most {}",
-                                       text, kMostParts);
-  };
-  return {error_of, ""};
+/// The range of FIRST:LAST, counted from 1; unset for another text.
+std::optional<FrameRange> range_of(const std::string& text) {
+  FrameRange range;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, range.first);
+  if (first.ec != std::errc{} || first.ptr == end || *first.ptr != ':') return std::nullopt;
+  const auto last = std::from_chars(first.ptr + 1, end, range.end);
+  if (last.ec != std::errc{} || last.ptr != end) return std::nullopt;
+  if (range.first == 0 || range.end < range.first) return std::nullopt;
+  --range.first;
+  return range;
 }
 
-void add_parts(CLI::App* command, PartOptions& options) {
-  Group group(command, "Parts");
-  group
-      .text("--part", options.part, "K/N",
-            "Solve only the K-th of N ranges of frames, into the folder OUTPUT.parts, unless it is "
-            "there; join puts the parts together")
-      ->check(part_of_all());
-  CLI::Option* const every = group.whole(
-      "--checkpoint-every", options.checkpoint_every, "FRAMES",
-      "Begin anew at multiples of this frame what is carried from frame to frame, so that parts "
-      "may begin there [never]",
-      1, 1'000'000'000);
-  group
+void add_range(CLI::App* command, SolveOptions& options) {
+  constexpr const char* kGroup = "Range";
+  command
+      ->add_option_function<std::string>(
+          "--frames", [&options](const std::string& text) { options.frames = range_of(text); },
+          "Solve only these frames, counted from 1 [all]")
+      ->type_name("FIRST:LAST")
+      ->group(kGroup)
+      ->check([](const std::string& text) {
+        return range_of(text) ? "" : fmt::format("'{}' is not FIRST:LAST, counted from 1", text);
+      });
+  Group(command, kGroup)
       .whole("--warm-up", options.warm_up, "FRAMES",
-             "Frames before each checkpoint that are solved first [a tenth of "
-             "--checkpoint-every]",
-             0, 1'000'000'000)
-      ->needs(every);
+             "Frames before these that are solved first, for what frames leave to the next ones "
+             "[3 s, or 3 time constants of baseline and creep; none if nothing is left]",
+             0, 1'000'000'000);
 }
 
 void add_solve(CLI::App& parent, Work& work) {
@@ -117,23 +120,8 @@ void add_solve(CLI::App& parent, Work& work) {
               "Largest movement of a contact between frames [10]", kReachMm.low, kReachMm.high)
       ->needs(file);
   add_pressure_unit(contacts, options->pressure_unit)->needs(file);
-  add_parts(command, options->part);
+  add_range(command, *options);
   add_device(command, options->device);
-  add_general(command, *options, "Print the summary as JSON", kQuietWriter);
-}
-
-void add_join(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<JoinCommand>(
-      parent, work, join, "join", "Join the parts of solve --part into one file of forces.",
-      "  pillarfield simulate scenes/sliding.toml -o sliding.h5\n"
-      "  pillarfield solve sliding.h5 -o forces.h5 --part 1/2\n"
-      "  pillarfield solve sliding.h5 -o forces.h5 --part 2/2\n"
-      "  pillarfield join forces.h5\n");
-  Group input(command, "Input");
-  input.file("OUTPUT", options->output,
-             "Output of solve (.h5), whose parts lie in the folder OUTPUT.parts");
-  add_trust(command, options->read);
-  add_overwrite(command, options->replace);
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
 
@@ -241,7 +229,6 @@ Work parse_arguments(int argc, char** argv) {
       "  pillarfield compare forces.h5 demo.h5\n");
   add_simulate(app, work);
   add_solve(app, work);
-  add_join(app, work);
   add_stream(app, work);
   add_control(app, work);
   add_compare(app, work);

@@ -61,8 +61,8 @@ using SenselPlace = std::pair<std::uint32_t, std::uint32_t>;
 /// A fault, its places and its figure.
 struct ArrayFinding {
   ArrayFault fault = ArrayFault::dead;
-  std::vector<SenselPlace> sensels = {};     ///< of faults of sensels
-  std::vector<std::uint32_t> lines = {};     ///< rows or columns of faults of lines
+  std::vector<SenselPlace> sensels = {};  ///< of faults of sensels
+  std::vector<std::uint32_t> lines = {};  ///< rows or columns of faults of lines
   /// absent, stuck, saturated: median reading, counts. dead and dead lines: largest response in
   /// per cent of that of the neighbours. Shorted lines: difference of the lines in per cent of
   /// their signal. Order: number of lines out of place. Crosstalk: per cent of the largest signal
@@ -125,8 +125,8 @@ struct Diagnosis {
   std::optional<double> column_crosstalk_percent = {};
   std::vector<ArrayFinding> findings = {};
   std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel; unset: may be sound
-  /// Whether the readings show no force, whatever is done: they are all equal, scaled frame by frame,
-  /// cut to two values, or their bytes are swapped.
+  /// Whether the readings show no force, whatever is done: they are all equal, scaled frame by
+  /// frame, cut to two values, or their bytes are swapped.
   [[nodiscard]] bool is_no_force() const;
 
   std::vector<float> picture = {};  ///< largest change of each sensel under load, counts

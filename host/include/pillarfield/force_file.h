@@ -9,7 +9,6 @@
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
-#include "pillarfield/force_parts.h"
 #include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
 #include "pillarfield/pressure_unit.h"
@@ -36,7 +35,7 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
   SensorEffects effects = {};               ///< of the skin's calibration; HDF5 only
   std::optional<Surface> surface = {};      ///< of the skin; HDF5 only
-  std::optional<ForcePart> part = {};       ///< it holds one part of the frames; HDF5 only
+  std::uint64_t first_frame = 0;            ///< of the source, where a range was solved; HDF5 only
   SkinLayout layout = SkinLayout::pillars;  ///< without pillars: normal force alone
   PressureUnit pressure_unit = kPressureUnits.front();  ///< of contacts in CSV and JSON
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small

@@ -1,59 +1,46 @@
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_file.h"
-#include "pillarfield/force_parts.h"
 #include "pillarfield/pipeline.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
 
 namespace pillarfield {
 
-/// How ranges of frames are solved.
+/// Consecutive frames, from `first` to before `end`.
+struct FrameRange {
+  std::uint64_t first = 0;
+  std::uint64_t end = 0;
+};
+
+/// Options of solve_range().
 struct RangeOptions {
   std::optional<ContactOptions> contacts = {};  ///< track contacts with these options
-  Checkpoints checkpoints = {};
+  /// Frames before the range that are solved first, and not passed on. Unset: warm_up_frames().
+  std::optional<std::uint64_t> warm_up = {};
   Processor::Options processor = {.frames_in_flight = 3};
   std::function<bool()> stop = {};  ///< as Pipeline::Options::stop
 };
 
-/// Whether a frame of such a solve depends on earlier ones: through a followed baseline, a bent
-/// skin, hysteresis, creep, friction carried over, or the identity of contacts.
-[[nodiscard]] bool carries_state(const SolverPlan& plan, bool contacts);
+/// Number of earlier frames that matter to a frame of such a solve: three time constants of a
+/// followed baseline and of creep, and three seconds for friction, contacts, hysteresis and
+/// bending; 0 if frames leave nothing to the next ones.
+[[nodiscard]] std::uint64_t warm_up_frames(const SolverPlan& plan, bool contacts);
 
-/// Solves the frames of a range and passes them to sinks, which it does not finish.
+/// Solves the frames of a range and passes them to sinks, which it does not finish. The frames
+/// before it, as many as the warm-up has, are solved first, so that the range has what frames leave
+/// to the next ones; ids of contacts count from there. Without such memory, the bits are those of a
+/// solve of all frames.
 ///
-/// At each checkpoint, state begins anew: the processor and the tracker of contacts are made again
-/// and given Checkpoints::warm_up frames before. A followed baseline begins with the drift that ten
-/// frames of each earlier distance show. Hence the same
-/// bits in a range that begins at a checkpoint and in all frames. Contacts after a checkpoint have
-/// new ids.
-///
-/// Throws Error if the plan carries state and the range begins at no checkpoint, and as Pipeline.
+/// Throws Error if the range is empty or reaches beyond the frames of the source, and as Pipeline.
 PipelineStatistics solve_range(FrameSource& source, const Device& device, const SolverPlan& plan,
                                const FrameRange& range, const RangeOptions& options,
                                const std::vector<ForceSink*>& sinks);
-
-/// 16 hexadecimal digits that differ, but for chance, if frames, plan, calibration or options of
-/// contacts do. Of the frames, 32 are read: the first, the last, and evenly spaced ones.
-[[nodiscard]] std::string fingerprint_of(FrameSource& source, const SolverPlan& plan,
-                                         const std::optional<ContactOptions>& contacts);
-
-/// Solves one part of an output into part_file(), unless that holds it already; makes its folder.
-/// `info` describes the output, `part` all but its fingerprint, and `others` are passed the frames
-/// too. Returns nothing if the part was whole. A part that ends early leaves no file.
-///
-/// Throws Error as solve_range(), and if another process writes the part.
-std::optional<PipelineStatistics> solve_part(FrameSource& source, const Device& device,
-                                             const SolverPlan& plan, const RangeOptions& options,
-                                             const std::filesystem::path& output,
-                                             ForceFileInfo info, ForcePart part,
-                                             std::vector<ForceSink*> others = {});
 
 }  // namespace pillarfield

@@ -63,27 +63,6 @@ void Hdf5Table::put(double value) {
   next_column_ = (next_column_ + 1) % columns_.size();
 }
 
-void Hdf5Table::append(const hdf5::File& file,
-                       const std::function<Shift(const std::string&)>& shift_of) {
-  write();
-  std::uint64_t rows = 0;
-  for (Column& column : columns_) {
-    const hdf5::StoredFrames stored(file, group_ + "/" + column.name, 0);
-    std::vector<double> values(stored.frames());
-    stored.get_all(0, values.size(), H5T_NATIVE_DOUBLE, values.data());
-    const Shift shift = shift_of(column.name);
-    for (double& value : values) {
-      if (shift.zero_too || value != 0) value += shift.by;
-    }
-    column.dataset.append(H5T_NATIVE_DOUBLE, values.data(), values.size());
-    if (&column == columns_.data()) rows = values.size();
-    if (values.size() == rows) continue;
-    throw Error(file.path.string(), fmt::format("the columns of {} differ in length", group_),
-                hdf5::kDamaged);
-  }
-  rows_ += rows;
-}
-
 void Hdf5Table::write() {
   for (Column& column : columns_) {
     column.dataset.append(H5T_NATIVE_DOUBLE, column.waiting.data(), column.waiting.size());
@@ -137,26 +116,6 @@ void ContactTables::append(const FrameContacts& frame) {
     ended_.put(index);
     put_row(ended_columns(), contact, ended_);
   }
-}
-
-void ContactTables::append(const hdf5::File& part, std::uint64_t first) {
-  const auto frame = static_cast<double>(first);
-  const auto contacts = static_cast<double>(contacts_.rows());
-  const auto ended = static_cast<double>(ended_.rows());
-  const auto shift_of = [=, id = largest_id_](const std::string& column) -> Hdf5Table::Shift {
-    if (column == force_format::kFrameColumn) return {frame, true};
-    if (column == force_format::kPatchRows[0]) return {contacts, true};
-    if (column == force_format::kPatchRows[2]) return {ended, true};
-    const bool is_id = column == "id" || column == "parent" || column == "merged_into";
-    return {is_id ? id : 0, false};
-  };
-  contacts_.append(part, shift_of);
-  ended_.append(part, shift_of);
-  patch_.append(part, shift_of);
-  const hdf5::StoredFrames stored(part, std::string(force_format::kContacts) + "/id", 0);
-  std::vector<double> ids(stored.frames());
-  stored.get_all(0, ids.size(), H5T_NATIVE_DOUBLE, ids.data());
-  if (!ids.empty()) largest_id_ += std::ranges::max(ids);
 }
 
 void ContactTables::write() {

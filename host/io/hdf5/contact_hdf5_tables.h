@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,14 +28,6 @@ class Hdf5Table {
   /// Appends one value of the current row, in the order of the columns.
   void put(double value);
 
-  /// Writes all rows of a table of another file with the same columns; `shift_of` returns what is
-  /// added to the values of a column that are not 0, or to all where `zero_too`.
-  struct Shift {
-    double by = 0;
-    bool zero_too = false;
-  };
-  void append(const hdf5::File& file, const std::function<Shift(const std::string&)>& shift_of);
-
   [[nodiscard]] std::uint64_t rows() const { return rows_; }  ///< rows begun so far
   void write();
   void close();
@@ -61,10 +52,6 @@ class ContactTables {
 
   void append(const FrameContacts& frame);
 
-  /// Appends the tables of a part that begins at the frame `first`. Its contacts get ids above the
-  /// largest one so far.
-  void append(const hdf5::File& part, std::uint64_t first);
-
   [[nodiscard]] std::uint64_t frames() const { return patch_.rows(); }
   void write();
   void close();
@@ -74,7 +61,6 @@ class ContactTables {
   Hdf5Table contacts_;
   Hdf5Table patch_;
   Hdf5Table ended_;
-  double largest_id_ = 0;  ///< of the parts appended
 };
 
 }  // namespace pillarfield

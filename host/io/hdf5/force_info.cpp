@@ -21,28 +21,6 @@ constexpr const char* kConvention =
 
 constexpr const char* kConventionOfSensels = "normal is positive when pressed";
 
-/// A whole number that an attribute may hold.
-std::uint64_t read_count(const hdf5::File& file, hid_t group, const char* name) {
-  constexpr double kMost = 0x1p46;  // A product with a number of parts fits in 64 bits.
-  const auto value = hdf5::read_number(file, group, name);
-  if (value && *value >= 0 && *value <= kMost) return static_cast<std::uint64_t>(*value);
-  throw Error(file.path.string(), fmt::format("has no valid attribute '{}' of its parts", name),
-              hdf5::kDamaged);
-}
-
-void write_part(const hdf5::File& file, const ForcePart& part) {
-  const hdf5::Handle group = hdf5::create_group(file, force_format::kPart);
-  const auto write = [&](const char* name, std::uint64_t value) {
-    hdf5::write_attribute(file, group.get(), name, static_cast<double>(value));
-  };
-  write(force_format::kIndex, part.index);
-  write(force_format::kCount, part.count);
-  write(force_format::kFrames, part.frames);
-  write(force_format::kCheckpointEvery, part.checkpoints.every);
-  write(force_format::kWarmUp, part.checkpoints.warm_up);
-  hdf5::write_attribute(file, group.get(), force_format::kFingerprint, part.fingerprint);
-}
-
 }  // namespace
 
 void write_info(const hdf5::File& file, const ForceFileInfo& info,
@@ -67,7 +45,10 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
   hdf5::write_attribute(file, root, force_format::kProgramVersion, std::string(kVersion));
   write_pitch(file, root, force_format::pitch_of(info.layout), info.element_pitch_mm);
   write_effects(file, force_format::kEffects, info.effects);
-  if (info.part) write_part(file, *info.part);
+  if (info.first_frame > 0) {
+    hdf5::write_attribute(file, root, force_format::kFirstFrame,
+                          static_cast<double>(info.first_frame));
+  }
   if (!info.surface) return;
   const ElementGrid pillars = {info.rows, info.cols, info.element_pitch_mm};
   check(*info.surface, pillars, path.c_str());
@@ -81,18 +62,14 @@ void write_pressure_unit(const hdf5::File& file, const ForceFileInfo& info) {
                         std::string(kPressureUnits.front().name));
 }
 
-std::optional<ForcePart> read_part(const hdf5::File& file) {
-  if (!hdf5::exists(file, force_format::kPart)) return std::nullopt;
-  const hdf5::Handle group = hdf5::open_object(file, force_format::kPart);
-  const auto count = [&](const char* name) { return read_count(file, group.get(), name); };
-  ForcePart part;
-  part.index = count(force_format::kIndex);
-  part.count = count(force_format::kCount);
-  part.frames = count(force_format::kFrames);
-  part.checkpoints = {count(force_format::kCheckpointEvery), count(force_format::kWarmUp)};
-  part.fingerprint = hdf5::read_text(file, group.get(), force_format::kFingerprint).value_or("");
-  check(part, file.path.string());
-  return part;
+std::uint64_t read_first_frame(const hdf5::File& file) {
+  const auto first = hdf5::read_number(file, file.id.get(), force_format::kFirstFrame);
+  if (!first) return 0;
+  constexpr double kMost = 0x1p46;
+  if (*first >= 0 && *first <= kMost) return static_cast<std::uint64_t>(*first);
+  throw Error(file.path.string(),
+              fmt::format("has no valid attribute '{}'", force_format::kFirstFrame),
+              hdf5::kDamaged);
 }
 
 }  // namespace pillarfield
