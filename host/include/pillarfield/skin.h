@@ -69,8 +69,7 @@ struct Skin {
   std::optional<Surface> surface;           ///< unset: unknown; forces stay in the skin's own axes
   SkinLayout layout = SkinLayout::pillars;
   bool falling = false;  ///< the sensor's readings fall under load, and its frames are mirrored()
-  StatedConstants stated =
-      {};  ///< the library sets it; constants other than the defaults need none
+  StatedConstants stated = {};  ///< set by the library; constants other than the defaults need none
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }

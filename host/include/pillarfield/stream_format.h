@@ -50,10 +50,9 @@ typedef struct PillarfieldPacket {
   uint32_t part;     /* of this packet in its frame, from 0 */
   uint32_t parts;    /* packets of the frame, at least 1 */
   uint32_t first;    /* ROWS: the first row; FRAME, CONSTANTS: PILLARFIELD_STATED() or 0 */
-  uint32_t
-      count; /* ROWS: how many; FRAME, CONSTANTS: counts per newton, the bits of a float, or 0 */
-  uint32_t patch; /* 0 */
-  uint32_t bytes; /* after this header */
+  uint32_t count;    /* ROWS: how many; FRAME, CONSTANTS: counts per newton as a float, or 0 */
+  uint32_t patch;    /* 0 */
+  uint32_t bytes;    /* after this header */
 } PillarfieldPacket;
 
 /* Limits of what is accepted. */
