@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "io/skin_constants.h"
+#include "host/io/skin_constants.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
