@@ -71,7 +71,8 @@ struct LiveFieldOwner {
 
 struct LivePlayer::State final : ForceSink {
   State(std::unique_ptr<FrameStream> from, const std::string& name, SolverPlan with,
-        Processor solver, std::shared_ptr<Curves> measured, NewestField& shown, Wanted& asked);
+        Processor solver, std::shared_ptr<Curves> measured, NewestField& shown, Wanted& asked,
+        bool keeps_threshold);
   ~State() override;
 
   void append(const SolvedFrame& frame) override;
@@ -114,13 +115,13 @@ struct LivePlayer::State final : ForceSink {
 
 LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& name,
                          SolverPlan with, Processor solver, std::shared_ptr<Curves> measured,
-                         NewestField& shown, Wanted& asked)
+                         NewestField& shown, Wanted& asked, bool keeps_threshold)
     : stream(std::move(from)),
       plan(std::move(with)),
       processor(std::move(solver)),
       info(live_info(name, plan, processor)),
       curves(std::move(measured)),
-      session(*stream, plan, processor, recording_info(info, plan)),
+      session(*stream, plan, processor, recording_info(info, plan), keeps_threshold),
       tracker(plan.skin.element_pitch_mm(), info.contacts),
       fields(FieldProducer::kMostShown, [this] { return std::make_unique<LiveField>(plan); }),
       wanted(asked),
@@ -232,9 +233,10 @@ void LivePlayer::State::publish(const SolvedFrame& frame) {
 }
 
 LivePlayer::LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name,
-                       const SolverPlan& plan, Processor processor, std::shared_ptr<Curves> curves)
+                       const SolverPlan& plan, Processor processor, std::shared_ptr<Curves> curves,
+                       bool keeps_threshold)
     : state_(std::make_unique<State>(std::move(stream), name, plan, std::move(processor),
-                                     std::move(curves), newest_, wanted_)) {}
+                                     std::move(curves), newest_, wanted_, keeps_threshold)) {}
 
 LivePlayer::~LivePlayer() = default;
 
@@ -332,7 +334,8 @@ OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) 
   OpenedSensor opened;
   opened.curves = std::make_shared<Curves>(plan.skin.element_pitch_mm(), kMostLivePoints);
   opened.player = std::make_unique<LivePlayer>(std::move(stream), source, plan,
-                                               std::move(processor), opened.curves);
+                                               std::move(processor), opened.curves,
+                                               options.producer.read.threshold_counts.has_value());
   return opened;
 }
 

@@ -26,7 +26,7 @@ class LivePlayer final : public LiveView {
 
   /// `processor` is made for `plan`, with kFramesInFlight slots.
   LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name, const SolverPlan& plan,
-             Processor processor, std::shared_ptr<Curves> curves);
+             Processor processor, std::shared_ptr<Curves> curves, bool keeps_threshold = false);
   ~LivePlayer() override;
 
   [[nodiscard]] const SourceInfo& info() const override;
