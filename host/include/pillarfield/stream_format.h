@@ -28,8 +28,13 @@ enum PillarfieldLayout {
 
 /* `first` of FRAME and CONSTANTS: the layout, and the pitch of the sensels in mm, 0 or 1e-3 to 1e3;
  * 0: not stated. */
+#ifdef __cplusplus
+#define PILLARFIELD_UINT32(value) static_cast<uint32_t>(value)
+#else
+#define PILLARFIELD_UINT32(value) ((uint32_t)(value))
+#endif
 #define PILLARFIELD_STATED(layout, pitch_mm) \
-  ((uint32_t)(layout) << 30 | (uint32_t)((pitch_mm)*1e6 + 0.5))
+  (PILLARFIELD_UINT32(layout) << 30 | PILLARFIELD_UINT32((pitch_mm)*1e6 + 0.5))
 
 /* Added to `content`: the packet ends with a uint32_t, counted in `bytes`, the CRC-32 (of zlib,
  * zip, Ethernet) of all bytes before it, header included. For serial lines, which have none of
