@@ -13,7 +13,8 @@ namespace pillarfield::cli {
 void print_about(const std::string& file, const char* kind,
                  const std::vector<std::string>& sentences);
 
-/// Opens frames of files and folders, prints the warnings about them and, unless `quiet`, the notes.
+/// Opens frames of files and folders, prints the warnings about them and, unless `quiet`, the
+/// notes.
 [[nodiscard]] std::unique_ptr<FrameSource> open_frames_with_warnings(
     const std::vector<std::string>& files, const ReadOptions& options, bool quiet);
 

@@ -52,8 +52,8 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
 }  // namespace
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format(), npy_format(),   npz_format(),
-                                     mat_format(),     mcap_format(),  table_format(),
+  static const std::array formats = {tekscan_format(), npy_format(),  npz_format(),
+                                     mat_format(),     mcap_format(), table_format(),
                                      sections_format()};
   return formats;
 }

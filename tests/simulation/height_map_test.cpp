@@ -206,8 +206,7 @@ TEST(HeightMap, OnlyRegularFilesWithAKnownEndingAreOpened) {
     return message_of([&] { static_cast<void>(read_height_map(path)); });
   };
   EXPECT_EQ(refused("/nowhere/a.npy"), "/nowhere/a.npy: No such file or directory; check its name");
-  EXPECT_EQ(refused("/dev/zero"),
-            "/dev/zero: is not a height map; name a file that ends in .npy");
+  EXPECT_EQ(refused("/dev/zero"), "/dev/zero: is not a height map; name a file that ends in .npy");
   const auto folder = scratch("folder.npy");
   std::filesystem::create_directory(folder);
   EXPECT_EQ(refused(folder), folder.string() + ": is a directory; name a file in it");
