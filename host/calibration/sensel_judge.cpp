@@ -15,6 +15,9 @@ namespace {
 constexpr double kFar = 6;
 /// Least distance of a value that means nothing from the readings, in their range.
 constexpr double kClear = 1;
+/// Distance of the typical level from an end of the range, in the range, at which sensels rest
+/// there.
+constexpr double kNearEnd = 0.1;
 /// Least share of sensels that must vary for a constant 0 to be odd, and for a constant reading at
 /// the typical level to be stuck.
 constexpr double kMostVary = 0.8;
@@ -78,7 +81,11 @@ SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t fram
   std::size_t varying = 0;
   for (std::size_t i = 0; i < sensels_.size(); ++i) {
     const SenselEvidence& each = sensels_[i];
-    if (!each.is_constant()) ++varying;
+    if (!each.is_constant()) {
+      ++varying;
+      lowest_ = std::min<double>(lowest_, each.read.lowest);
+      highest_ = std::max<double>(highest_, each.read.highest);
+    }
     const bool is_excluded = !mask.empty() && mask[i] != 1;
     if (is_excluded || lacks_readings(each.read, frames_) || is_saturated(each.read)) continue;
     if (each.is_constant() && absent_ && each.read.lowest == *absent_) continue;
@@ -124,6 +131,11 @@ std::optional<SenselFault> SenselJudge::verdict(std::size_t sensel) const {
 std::optional<SenselFault> SenselJudge::verdict_of_constant(std::size_t sensel) const {
   const float value = sensels_[sensel].read.lowest;
   if (absent_ && value == *absent_) return SenselFault::absent;
+  // At an end of the range near which the others rest, noise is cut off.
+  const bool is_at_end = value >= highest_ || value <= lowest_;
+  if (is_at_end && std::abs(value - typical_.level) < kNearEnd * (highest_ - lowest_)) {
+    return std::nullopt;
+  }
   const bool most_vary = vary_share_ >= kMostVary;
   const bool is_far = is_far_above(sensel) || is_far_below(sensel);
   if (value == 0) {

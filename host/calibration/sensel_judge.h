@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -69,7 +70,9 @@ class SenselJudge {
   std::uint32_t frames_;
   double full_scale_;
   TypicalSensel typical_;
-  double vary_share_ = 0;  ///< share of the sensels that vary
+  double vary_share_ = 0;                                      ///< share of the sensels that vary
+  double lowest_ = std::numeric_limits<double>::infinity();    ///< of the sensels that vary
+  double highest_ = -std::numeric_limits<double>::infinity();  ///< of these
   std::optional<float> absent_;
 };
 

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -164,26 +163,33 @@ LineSimilarities similarities_of(const LineLoads& loads) {
   return similar;
 }
 
-/// The lines whose neighbours are less like them than others are.
+/// The lines whose neighbours are less like them than others are, in pairs that lie apart.
 std::vector<std::uint32_t> lines_out_of_place(const LineLoads& loads) {
   const LineSimilarities similar = similarities_of(loads);
   const std::size_t lines = loads.lines.size();
   std::vector<std::uint32_t> out;
-  std::vector<double> others;
   std::vector<double> closest;
+  bool lies_apart = false;
   for (std::size_t a = 0; a < lines; ++a) {
-    others.clear();
-    for (std::size_t b = 0; b < lines; ++b) {
-      if (b != a) others.push_back(similar(a, b));
+    std::vector<std::size_t> others(lines);
+    std::iota(others.begin(), others.end(), std::size_t{0});
+    std::ranges::sort(others, [&](std::size_t b, std::size_t c) {
+      return (b == a ? -1 : similar(a, b)) > (c == a ? -1 : similar(a, c));
+    });
+    closest.push_back(similar(a, others[0]));
+    const std::size_t beside = a > 0 && a + 1 < lines ? 2 : 1;
+    double excess = 0;
+    for (std::size_t n = 0; n < beside; ++n) excess += similar(a, others[n]);
+    if (a > 0) excess -= similar(a, a - 1);
+    if (a + 1 < lines) excess -= similar(a, a + 1);
+    if (excess <= kOutOfPlace) continue;
+    for (std::size_t n = 0; n < beside; ++n) {
+      const std::uint32_t other = loads.lines[others[n]];
+      lies_apart |= std::ranges::count(out, other) > 0 && other + 1 < loads.lines[a];
     }
-    std::ranges::sort(others, std::greater<>());
-    closest.push_back(others[0]);
-    const bool is_inner = a > 0 && a + 1 < lines;
-    const double beside = (a > 0 ? similar(a, a - 1) : 0) + (a + 1 < lines ? similar(a, a + 1) : 0);
-    const double most = others[0] + (is_inner ? others[1] : 0);
-    if (most - beside > kOutOfPlace) out.push_back(loads.lines[a]);
+    out.push_back(loads.lines[a]);
   }
-  if (median(closest) < kLeastSimilar) out.clear();
+  if (!lies_apart || median(closest) < kLeastSimilar) out.clear();
   return out;
 }
 
