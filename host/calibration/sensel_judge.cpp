@@ -77,6 +77,7 @@ SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t fram
       full_scale_(full_scale),
       absent_(absent_value(sensels_)) {
   std::vector<double> levels;
+  std::vector<double> varying_levels;
   std::vector<double> noises;
   std::size_t varying = 0;
   for (std::size_t i = 0; i < sensels_.size(); ++i) {
@@ -89,6 +90,7 @@ SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t fram
     const bool is_excluded = !mask.empty() && mask[i] != 1;
     if (is_excluded || lacks_readings(each.read, frames_) || is_saturated(each.read)) continue;
     if (each.is_constant() && absent_ && each.read.lowest == *absent_) continue;
+    if (!each.is_constant()) varying_levels.push_back(each.level);
     levels.push_back(each.level);
     noises.push_back(each.noise);
   }
@@ -97,6 +99,7 @@ SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t fram
   if (levels.empty()) return;
   typical_.level = median(levels);
   typical_.noise = median(noises);
+  typical_.low = varying_levels.empty() ? 0 : quantile(varying_levels, 0.02);
   for (double& level : levels) level = std::abs(level - typical_.level);
   // The median deviation of a normal distribution is 0.6745 of its standard deviation.
   typical_.spread = std::max(1.4826 * median(levels), typical_.noise);
@@ -137,10 +140,11 @@ std::optional<SenselFault> SenselJudge::verdict_of_constant(std::size_t sensel) 
     return std::nullopt;
   }
   const bool most_vary = vary_share_ >= kMostVary;
-  const bool is_far = is_far_above(sensel) || is_far_below(sensel);
   if (value == 0) {
-    return most_vary && is_far ? std::optional(SenselFault::absent) : std::nullopt;
+    const bool is_odd = most_vary && typical_.low > 4 * typical_.noise + 1;
+    return is_odd ? std::optional(SenselFault::absent) : std::nullopt;
   }
+  const bool is_far = is_far_above(sensel) || is_far_below(sensel);
   const bool shows_noise = typical_.noise > kVisibleNoise && frames_ >= kVisibleFrames;
   return is_far || (most_vary && shows_noise) ? std::optional(SenselFault::stuck) : std::nullopt;
 }

@@ -16,7 +16,7 @@ namespace pillarfield {
 // in, verdict out, with one set of constants.
 
 /// Multiple of the typical noise above which a sensel is noisy.
-inline constexpr double kNoisy = 8;
+inline constexpr double kNoisy = 6;
 
 /// Evidence of one sensel from raw readings, counts.
 struct SenselEvidence {
@@ -34,6 +34,7 @@ struct SenselEvidence {
 struct TypicalSensel {
   std::size_t count = 0;
   double level = 0;
+  double low = 0;     ///< 2nd percentile of the levels of those that vary
   double spread = 0;  ///< robust standard deviation of the levels, at least the noise
   double noise = 0;
 };

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -15,24 +16,8 @@
 namespace pillarfield {
 namespace {
 
-/// Similarities of lines, [line, line], in 0..1.
-class LineSimilarities {
- public:
-  explicit LineSimilarities(std::size_t lines) : lines_(lines), values_(lines * lines) {}
-
-  [[nodiscard]] std::size_t lines() const { return lines_; }
-  [[nodiscard]] double operator()(std::size_t a, std::size_t b) const {
-    return values_[a * lines_ + b];
-  }
-  void set(std::size_t a, std::size_t b, double value) {
-    values_[a * lines_ + b] = value;
-    values_[b * lines_ + a] = value;
-  }
-
- private:
-  std::size_t lines_;
-  std::vector<double> values_;
-};
+/// Similarities of lines, [line][line], in 0..1; 0 with themselves.
+using LineSimilarities = std::vector<std::vector<double>>;
 
 constexpr std::size_t kLeastOrderFrames = 30;
 constexpr std::size_t kLeastLines = 4;
@@ -154,10 +139,10 @@ LineSimilarities similarities_of(const LineLoads& loads) {
   };
   std::vector<double> lengths(lines);
   for (std::size_t a = 0; a < lines; ++a) lengths[a] = std::sqrt(product(a, a));
-  LineSimilarities similar(lines);
+  LineSimilarities similar(lines, std::vector<double>(lines));
   for (std::size_t a = 0; a < lines; ++a) {
     for (std::size_t b = a + 1; b < lines; ++b) {
-      similar.set(a, b, product(a, b) / (lengths[a] * lengths[b]));
+      similar[a][b] = similar[b][a] = product(a, b) / (lengths[a] * lengths[b]);
     }
   }
   return similar;
@@ -173,15 +158,13 @@ std::vector<std::uint32_t> lines_out_of_place(const LineLoads& loads) {
   for (std::size_t a = 0; a < lines; ++a) {
     std::vector<std::size_t> others(lines);
     std::iota(others.begin(), others.end(), std::size_t{0});
-    std::ranges::sort(others, [&](std::size_t b, std::size_t c) {
-      return (b == a ? -1 : similar(a, b)) > (c == a ? -1 : similar(a, c));
-    });
-    closest.push_back(similar(a, others[0]));
+    std::ranges::sort(others, std::greater<>(), [&](std::size_t b) { return similar[a][b]; });
+    closest.push_back(similar[a][others[0]]);
     const std::size_t beside = a > 0 && a + 1 < lines ? 2 : 1;
     double excess = 0;
-    for (std::size_t n = 0; n < beside; ++n) excess += similar(a, others[n]);
-    if (a > 0) excess -= similar(a, a - 1);
-    if (a + 1 < lines) excess -= similar(a, a + 1);
+    for (std::size_t n = 0; n < beside; ++n) excess += similar[a][others[n]];
+    if (a > 0) excess -= similar[a][a - 1];
+    if (a + 1 < lines) excess -= similar[a][a + 1];
     if (excess <= kOutOfPlace) continue;
     for (std::size_t n = 0; n < beside; ++n) {
       const std::uint32_t other = loads.lines[others[n]];
