@@ -10,6 +10,7 @@
 namespace pillarfield {
 namespace {
 
+constexpr double kNearlyAll = 0.95;
 constexpr double kHardlyAny = 0.01;
 
 }  // namespace
