@@ -284,8 +284,8 @@ WeightResult WeightFinder::result() const {
   for (const Recording& each : recordings_) weights_n.push_back(each.weight_n);
   const WeightSelection selection = select_frames(all, after.planes, weights_n);
   const std::vector<double> copies = copies_of(after.planes, skin_);
-  refuse_standing_body(all, after.planes, name);
   require_selection(selection, result, name);
+  refuse_standing_body(all, after.planes, name);
   const std::vector<WeighedFrame>& frames = selection.frames;
 
   WeighedArray array{skin_.rows, skin_.cols, threshold_, {}, copies, after.planes.dead_zone};
