@@ -285,7 +285,7 @@ class DoctorTest(CommandTest):
                     self.assertIn(fault, [finding["fault"] for finding in report["findings"]])
                     if fault in ("missing frames", "repeated frames"):
                         self.assertEqual((len(report["findings"]), report["polarity"]), (1, "rises"))
-                        run(*report["next"].split()[1:], cwd=self.folder)
+                        run(*report["next"].split()[1:], "--overwrite", cwd=self.folder)
 
     def test_absent_cells(self):
         """A value that stands for "no sensel" is named, and the next command solves the others."""
@@ -302,7 +302,7 @@ class DoctorTest(CommandTest):
                 self.assertEqual("--falling" in report["next"], falling)
                 run(*report["next"].split()[1:], cwd=self.folder)
                 with h5py.File(self.folder / "forces.h5") as file:
-                    normal = file["frames/normal"][()]
+                    normal = file["force/normal"][()]
                 self.assertLess(np.abs(normal[100]).sum(), 0.05 * normal[-1].sum())
                 (self.folder / "forces.h5").unlink()
 
