@@ -24,8 +24,6 @@ constexpr double kMostVary = 0.8;
 /// Noise, counts, and frames from which a reading cannot be constant by chance.
 constexpr double kVisibleNoise = 0.4;
 constexpr std::uint32_t kVisibleFrames = 100;
-/// Share of the full scale from which readings without load are at full scale.
-constexpr double kIdleAtFullScale = 0.9;
 /// Frames in which others must predict a response, and its least precision.
 constexpr std::uint32_t kLeastEvidence = 6;
 constexpr double kLeastPrecision = 0.025;
@@ -71,11 +69,8 @@ std::optional<float> absent_value(std::span<const SenselEvidence> sensels) {
 }
 
 SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames,
-                         double full_scale, std::span<const std::uint8_t> mask)
-    : sensels_(std::move(sensels)),
-      frames_(frames),
-      full_scale_(full_scale),
-      absent_(absent_value(sensels_)) {
+                         std::span<const std::uint8_t> mask)
+    : sensels_(std::move(sensels)), frames_(frames), absent_(absent_value(sensels_)) {
   std::vector<double> levels;
   std::vector<double> varying_levels;
   std::vector<double> noises;
@@ -124,8 +119,7 @@ bool SenselJudge::is_far_below(std::size_t sensel) const {
 std::optional<SenselFault> SenselJudge::verdict(std::size_t sensel) const {
   const SenselEvidence& each = sensels_[sensel];
   if (lacks_readings(each.read, frames_)) return SenselFault::not_a_number;
-  const bool idles_there = typical_.level > kIdleAtFullScale * full_scale_;
-  if (is_saturated(each.read) && !idles_there) return SenselFault::saturated;
+  if (is_saturated(each.read)) return SenselFault::saturated;
   if (each.is_constant()) return verdict_of_constant(sensel);
   const bool is_noisy = typical_.noise > 0 && each.noise > kNoisy * typical_.noise;
   return is_noisy ? std::optional(SenselFault::noisy) : std::nullopt;

@@ -16,7 +16,7 @@ namespace pillarfield {
 // in, verdict out, with one set of constants.
 
 /// Multiple of the typical noise above which a sensel is noisy.
-inline constexpr double kNoisy = 6;
+inline constexpr double kNoisy = 8;
 
 /// Evidence of one sensel from raw readings, counts.
 struct SenselEvidence {
@@ -49,9 +49,8 @@ struct TypicalSensel {
 /// Verdicts by the readings of single sensels.
 class SenselJudge {
  public:
-  /// `full_scale` in counts, infinite if unknown. Sensels that `mask` excludes, where it is not
-  /// empty, are not typical.
-  SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames, double full_scale,
+  /// Sensels that `mask` excludes, where it is not empty, are not typical.
+  SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames,
               std::span<const std::uint8_t> mask);
 
   /// not_a_number, absent, saturated, stuck or noisy; unset: nothing is wrong with its readings.
@@ -69,7 +68,6 @@ class SenselJudge {
 
   std::vector<SenselEvidence> sensels_;
   std::uint32_t frames_;
-  double full_scale_;
   TypicalSensel typical_;
   double vary_share_ = 0;                                      ///< share of the sensels that vary
   double lowest_ = std::numeric_limits<double>::infinity();    ///< of the sensels that vary

@@ -138,7 +138,7 @@ constexpr double kDeadLineShare = 0.15;
 constexpr double kFewSensels = 4;
 constexpr double kAllSensels = 0.8;
 /// Signal of a weak touch in the usual one, and the largest noise of a silent sensel in deviations.
-constexpr double kWeakTouch = 0.35;
+constexpr double kWeakTouch = 0.2;
 constexpr double kSilentNoise = 4.5;
 
 /// The kind of finding of a verdict.
@@ -367,12 +367,15 @@ class NeighbourVerdicts {
 
 }  // namespace
 
-void find_odd_readings(Examination& seen) {
+void find_odd_readings(Examination& seen, const Diagnosis& found) {
+  constexpr double kIdleAtFullScale = 0.9;
+  const bool idles_there = found.idle_counts > kIdleAtFullScale * seen.full_scale;
   std::vector<SenselEvidence> evidence;
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
     evidence.push_back({seen.read[i], seen.idle[i], seen.noise[i]});
+    if (idles_there) evidence.back().read.saturated = 0;
   }
-  const SenselJudge judge(std::move(evidence), seen.frames_with_readings, seen.full_scale, {});
+  const SenselJudge judge(std::move(evidence), seen.frames_with_readings, {});
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
     seen.verdicts.push_back(judge.verdict(i));
     seen.good[i] = seen.verdicts.back() ? 0 : 1;
