@@ -15,14 +15,15 @@ namespace {
 constexpr double kFar = 6;
 /// Least distance of a value that means nothing from the readings, in their range.
 constexpr double kClear = 1;
+/// Distance of the typical level from an end of the range, in the range, at which sensels rest
+/// there.
+constexpr double kNearEnd = 0.1;
 /// Least share of sensels that must vary for a constant 0 to be odd, and for a constant reading at
 /// the typical level to be stuck.
 constexpr double kMostVary = 0.8;
 /// Noise, counts, and frames from which a reading cannot be constant by chance.
 constexpr double kVisibleNoise = 0.4;
 constexpr std::uint32_t kVisibleFrames = 100;
-/// Share of the full scale from which readings without load are at full scale.
-constexpr double kIdleAtFullScale = 0.9;
 /// Frames in which others must predict a response, and its least precision.
 constexpr std::uint32_t kLeastEvidence = 6;
 constexpr double kLeastPrecision = 0.025;
@@ -68,20 +69,23 @@ std::optional<float> absent_value(std::span<const SenselEvidence> sensels) {
 }
 
 SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames,
-                         double full_scale, std::span<const std::uint8_t> mask)
-    : sensels_(std::move(sensels)),
-      frames_(frames),
-      full_scale_(full_scale),
-      absent_(absent_value(sensels_)) {
+                         std::span<const std::uint8_t> mask)
+    : sensels_(std::move(sensels)), frames_(frames), absent_(absent_value(sensels_)) {
   std::vector<double> levels;
+  std::vector<double> varying_levels;
   std::vector<double> noises;
   std::size_t varying = 0;
   for (std::size_t i = 0; i < sensels_.size(); ++i) {
     const SenselEvidence& each = sensels_[i];
-    if (!each.is_constant()) ++varying;
+    if (!each.is_constant()) {
+      ++varying;
+      lowest_ = std::min<double>(lowest_, each.read.lowest);
+      highest_ = std::max<double>(highest_, each.read.highest);
+    }
     const bool is_excluded = !mask.empty() && mask[i] != 1;
     if (is_excluded || lacks_readings(each.read, frames_) || is_saturated(each.read)) continue;
     if (each.is_constant() && absent_ && each.read.lowest == *absent_) continue;
+    if (!each.is_constant()) varying_levels.push_back(each.level);
     levels.push_back(each.level);
     noises.push_back(each.noise);
   }
@@ -90,6 +94,7 @@ SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t fram
   if (levels.empty()) return;
   typical_.level = median(levels);
   typical_.noise = median(noises);
+  typical_.low = varying_levels.empty() ? 0 : quantile(varying_levels, 0.02);
   for (double& level : levels) level = std::abs(level - typical_.level);
   // The median deviation of a normal distribution is 0.6745 of its standard deviation.
   typical_.spread = std::max(1.4826 * median(levels), typical_.noise);
@@ -114,8 +119,7 @@ bool SenselJudge::is_far_below(std::size_t sensel) const {
 std::optional<SenselFault> SenselJudge::verdict(std::size_t sensel) const {
   const SenselEvidence& each = sensels_[sensel];
   if (lacks_readings(each.read, frames_)) return SenselFault::not_a_number;
-  const bool idles_there = typical_.level > kIdleAtFullScale * full_scale_;
-  if (is_saturated(each.read) && !idles_there) return SenselFault::saturated;
+  if (is_saturated(each.read)) return SenselFault::saturated;
   if (each.is_constant()) return verdict_of_constant(sensel);
   const bool is_noisy = typical_.noise > 0 && each.noise > kNoisy * typical_.noise;
   return is_noisy ? std::optional(SenselFault::noisy) : std::nullopt;
@@ -124,11 +128,17 @@ std::optional<SenselFault> SenselJudge::verdict(std::size_t sensel) const {
 std::optional<SenselFault> SenselJudge::verdict_of_constant(std::size_t sensel) const {
   const float value = sensels_[sensel].read.lowest;
   if (absent_ && value == *absent_) return SenselFault::absent;
-  const bool most_vary = vary_share_ >= kMostVary;
-  const bool is_far = is_far_above(sensel) || is_far_below(sensel);
-  if (value == 0) {
-    return most_vary && is_far ? std::optional(SenselFault::absent) : std::nullopt;
+  // At an end of the range near which the others rest, noise is cut off.
+  const bool is_at_end = value >= highest_ || value <= lowest_;
+  if (is_at_end && std::abs(value - typical_.level) < kNearEnd * (highest_ - lowest_)) {
+    return std::nullopt;
   }
+  const bool most_vary = vary_share_ >= kMostVary;
+  if (value == 0) {
+    const bool is_odd = most_vary && typical_.low > 4 * typical_.noise + 1;
+    return is_odd ? std::optional(SenselFault::absent) : std::nullopt;
+  }
+  const bool is_far = is_far_above(sensel) || is_far_below(sensel);
   const bool shows_noise = typical_.noise > kVisibleNoise && frames_ >= kVisibleFrames;
   return is_far || (most_vary && shows_noise) ? std::optional(SenselFault::stuck) : std::nullopt;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -33,6 +34,7 @@ struct SenselEvidence {
 struct TypicalSensel {
   std::size_t count = 0;
   double level = 0;
+  double low = 0;     ///< 2nd percentile of the levels of those that vary
   double spread = 0;  ///< robust standard deviation of the levels, at least the noise
   double noise = 0;
 };
@@ -47,9 +49,8 @@ struct TypicalSensel {
 /// Verdicts by the readings of single sensels.
 class SenselJudge {
  public:
-  /// `full_scale` in counts, infinite if unknown. Sensels that `mask` excludes, where it is not
-  /// empty, are not typical.
-  SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames, double full_scale,
+  /// Sensels that `mask` excludes, where it is not empty, are not typical.
+  SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t frames,
               std::span<const std::uint8_t> mask);
 
   /// not_a_number, absent, saturated, stuck or noisy; unset: nothing is wrong with its readings.
@@ -67,9 +68,10 @@ class SenselJudge {
 
   std::vector<SenselEvidence> sensels_;
   std::uint32_t frames_;
-  double full_scale_;
   TypicalSensel typical_;
-  double vary_share_ = 0;  ///< share of the sensels that vary
+  double vary_share_ = 0;                                      ///< share of the sensels that vary
+  double lowest_ = std::numeric_limits<double>::infinity();    ///< of the sensels that vary
+  double highest_ = -std::numeric_limits<double>::infinity();  ///< of these
   std::optional<float> absent_;
 };
 

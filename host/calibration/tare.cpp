@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "base/number_text.h"
 #include "calibration/finding_list.h"
@@ -98,10 +97,7 @@ TareResult take_tare(const SkinCalibration& before, const FrameStatistics& unloa
   require_fitting(before, unloaded.skin(), unloaded.name());
   require_frames(unloaded, kLeastTareFrames);
   FindingList found(before.planes.mask, unloaded);
-  const double full_scale =
-      unloaded.skin().full_scale_counts.value_or(std::numeric_limits<double>::infinity());
-  const SenselJudge judge(evidence_without_load(unloaded), unloaded.frames(), full_scale,
-                          before.planes.mask);
+  const SenselJudge judge(evidence_without_load(unloaded), unloaded.frames(), before.planes.mask);
   if (judge.typical().count == 0) {
     throw Error(unloaded.name(), "no sensel has a valid tare",
                 "check the sensor, its full scale and its mask");

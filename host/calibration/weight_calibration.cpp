@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/quantile.h"
 #include "calibration/leak_sum.h"
 #include "calibration/steps.h"
 #include "calibration/weight_fit.h"
@@ -125,6 +126,38 @@ void require_selection(const WeightSelection& selection, const WeightResult& res
     throw Error(name, fmt::format("the weight stands at {}", counted(selection.places, "place")),
                 fmt::format("roll it over the array, or place it at {} at least", kFewestPlaces));
   }
+}
+
+/// Throws if sensels are loaded alike in nearly all frames, while the weight moves.
+void refuse_standing_body(const WeightContacts& all, const Calibration& planes,
+                          const std::string& name) {
+  constexpr double kNearlyAlways = 0.98;
+  constexpr double kAlike = 0.05;  // of the median reading, beside three deviations of the noise
+  constexpr std::size_t kFewestStanding = 3;
+  std::vector<std::vector<float>> loaded(all.skin.sensels());
+  for (std::size_t n = 0; n < all.sensels.size(); ++n) {
+    if (all.readings[n] > all.threshold) loaded[all.sensels[n]].push_back(all.readings[n]);
+  }
+  std::size_t standing = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    std::vector<float>& readings = loaded[i];
+    if (static_cast<double>(readings.size()) <
+        kNearlyAlways * static_cast<double>(all.contacts.size())) {
+      continue;
+    }
+    const double middle = median(readings);
+    const double low = quantile(readings, 0.05);
+    if (middle - low > kAlike * middle + 3 * planes.noise[i]) continue;
+    if (standing++ == 0) first = i;
+  }
+  if (standing < kFewestStanding) return;
+  throw Error(
+      name,
+      fmt::format("{} sensels, the first at row {}, column {}, carry one load in all frames "
+                  "while the weight moves: something else stands there",
+                  standing, first / all.skin.cols, first % all.skin.cols),
+      "take it off, or take the tare with it");
 }
 
 /// The typical reading under the weight.
@@ -252,6 +285,7 @@ WeightResult WeightFinder::result() const {
   const WeightSelection selection = select_frames(all, after.planes, weights_n);
   const std::vector<double> copies = copies_of(after.planes, skin_);
   require_selection(selection, result, name);
+  refuse_standing_body(all, after.planes, name);
   const std::vector<WeighedFrame>& frames = selection.frames;
 
   WeighedArray array{skin_.rows, skin_.cols, threshold_, {}, copies, after.planes.dead_zone};

@@ -10,6 +10,7 @@
 namespace pillarfield {
 namespace {
 
+constexpr double kNearlyAll = 0.95;
 constexpr double kHardlyAny = 0.01;
 
 }  // namespace
@@ -55,6 +56,8 @@ void ReadingCheck::look_at(const FrameView& readings) {
   const Counts counts = readings.type == SenselType::u8    ? count<std::uint8_t>(readings)
                         : readings.type == SenselType::u16 ? count<std::uint16_t>(readings)
                                                            : count<float>(readings);
+  sunken_frames_ +=
+      static_cast<double>(counts.below) > kNearlyAll * static_cast<double>(counts.good) ? 1 : 0;
   most_.above = std::max(most_.above, counts.above);
   most_.below = std::max(most_.below, counts.below);
   most_.highest = std::max(most_.highest, counts.highest);
@@ -72,6 +75,7 @@ ReadingCheck::Counts ReadingCheck::count(const FrameView& readings) const {
       const std::size_t sensel = std::size_t{row} * readings.cols + col;
       if (!is_good(plan_.calibration, sensel)) continue;
       const float change = static_cast<float>(line[col]) - (tare.empty() ? 0 : tare[sensel]);
+      ++counts.good;
       counts.above += change > threshold ? 1 : 0;
       counts.below += change < -threshold ? 1 : 0;
       counts.highest = change > counts.highest ? change : counts.highest;
@@ -92,6 +96,13 @@ std::vector<std::string> ReadingCheck::warnings() const {
                     "are zero, with the status "
                     "of missing sensels.",
                     blank_frames_, frames_));
+  }
+  if (sunken_frames_ > 0) {
+    sentences.push_back(fmt::format(
+        "In {} of {} frames nearly all sensels read less than their tare by more than the "
+        "threshold, as in lost frames of zeros: that no load shows in them is no release. "
+        "'pillarfield doctor' counts lost and repeated frames.",
+        sunken_frames_, frames_));
   }
   if (share >= kCovered) {
     sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));

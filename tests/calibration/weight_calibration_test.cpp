@@ -307,6 +307,18 @@ TEST(WeightCalibration, WhatCannotWorkIsRefused) {
     }
   });
   EXPECT_NE(varying.find("differ by"), std::string::npos) << varying;
+  const std::string second = refused([&](WeightFinder& finder) {
+    RollingBody rolling(pad, round_body(2.5), 0.2, 0.2);
+    Body standing = round_body(2);
+    standing.row = standing.col = 4;
+    const std::vector<double> beside = pad.forces(standing);
+    for (int i = 0; i < 600; ++i) {
+      std::vector<double> forces = pad.forces(rolling.next());
+      for (std::size_t n = 0; n < forces.size(); ++n) forces[n] += beside[n];
+      finder.add(pad.read(forces).view());
+    }
+  });
+  EXPECT_NE(second.find("something else stands there"), std::string::npos) << second;
   EXPECT_NE(message_of([&] {
               WeightFinder(pad.skin(), before).begin(0, "frames.h5");
             }).find("above zero"),

@@ -220,7 +220,7 @@ Diagnosis Doctor::result() {
   seen.constant = constant_sensels(seen.read);
   find_odd_frames(seen, watch, found);
   find_signals(seen, found);
-  find_odd_readings(seen);
+  find_odd_readings(seen, found);
   if (!found.is_no_force()) {
     find_layout(seen, found);
     find_shorts(seen, found);

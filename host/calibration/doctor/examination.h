@@ -86,7 +86,7 @@ void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis
 /// Noise, drift, polarity, idle readings; replaces the kept readings by signals; finds contacts.
 void find_signals(Examination& seen, Diagnosis& found);
 /// Verdicts by readings alone; sensels that have one are not good for the next steps.
-void find_odd_readings(Examination& seen);
+void find_odd_readings(Examination& seen, const Diagnosis& found);
 /// Whether groups of 2 x 2 sensels share their loads.
 void find_layout(const Examination& seen, Diagnosis& found);
 /// Two lines with the same signals, of different pillars.

@@ -16,24 +16,8 @@
 namespace pillarfield {
 namespace {
 
-/// Similarities of lines, [line, line], in 0..1.
-class LineSimilarities {
- public:
-  explicit LineSimilarities(std::size_t lines) : lines_(lines), values_(lines * lines) {}
-
-  [[nodiscard]] std::size_t lines() const { return lines_; }
-  [[nodiscard]] double operator()(std::size_t a, std::size_t b) const {
-    return values_[a * lines_ + b];
-  }
-  void set(std::size_t a, std::size_t b, double value) {
-    values_[a * lines_ + b] = value;
-    values_[b * lines_ + a] = value;
-  }
-
- private:
-  std::size_t lines_;
-  std::vector<double> values_;
-};
+/// Similarities of lines, [line][line], in 0..1; 0 with themselves.
+using LineSimilarities = std::vector<std::vector<double>>;
 
 constexpr std::size_t kLeastOrderFrames = 30;
 constexpr std::size_t kLeastLines = 4;
@@ -155,35 +139,40 @@ LineSimilarities similarities_of(const LineLoads& loads) {
   };
   std::vector<double> lengths(lines);
   for (std::size_t a = 0; a < lines; ++a) lengths[a] = std::sqrt(product(a, a));
-  LineSimilarities similar(lines);
+  LineSimilarities similar(lines, std::vector<double>(lines));
   for (std::size_t a = 0; a < lines; ++a) {
     for (std::size_t b = a + 1; b < lines; ++b) {
-      similar.set(a, b, product(a, b) / (lengths[a] * lengths[b]));
+      similar[a][b] = similar[b][a] = product(a, b) / (lengths[a] * lengths[b]);
     }
   }
   return similar;
 }
 
-/// The lines whose neighbours are less like them than others are.
+/// The lines whose neighbours are less like them than others are, in pairs that lie apart.
 std::vector<std::uint32_t> lines_out_of_place(const LineLoads& loads) {
   const LineSimilarities similar = similarities_of(loads);
   const std::size_t lines = loads.lines.size();
   std::vector<std::uint32_t> out;
-  std::vector<double> others;
   std::vector<double> closest;
+  bool lies_apart = false;
   for (std::size_t a = 0; a < lines; ++a) {
-    others.clear();
-    for (std::size_t b = 0; b < lines; ++b) {
-      if (b != a) others.push_back(similar(a, b));
+    std::vector<std::size_t> others(lines);
+    std::iota(others.begin(), others.end(), std::size_t{0});
+    std::ranges::sort(others, std::greater<>(), [&](std::size_t b) { return similar[a][b]; });
+    closest.push_back(similar[a][others[0]]);
+    const std::size_t beside = a > 0 && a + 1 < lines ? 2 : 1;
+    double excess = 0;
+    for (std::size_t n = 0; n < beside; ++n) excess += similar[a][others[n]];
+    if (a > 0) excess -= similar[a][a - 1];
+    if (a + 1 < lines) excess -= similar[a][a + 1];
+    if (excess <= kOutOfPlace) continue;
+    for (std::size_t n = 0; n < beside; ++n) {
+      const std::uint32_t other = loads.lines[others[n]];
+      lies_apart |= std::ranges::count(out, other) > 0 && other + 1 < loads.lines[a];
     }
-    std::ranges::sort(others, std::greater<>());
-    closest.push_back(others[0]);
-    const bool is_inner = a > 0 && a + 1 < lines;
-    const double beside = (a > 0 ? similar(a, a - 1) : 0) + (a + 1 < lines ? similar(a, a + 1) : 0);
-    const double most = others[0] + (is_inner ? others[1] : 0);
-    if (most - beside > kOutOfPlace) out.push_back(loads.lines[a]);
+    out.push_back(loads.lines[a]);
   }
-  if (median(closest) < kLeastSimilar) out.clear();
+  if (!lies_apart || median(closest) < kLeastSimilar) out.clear();
   return out;
 }
 

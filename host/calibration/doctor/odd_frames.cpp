@@ -187,7 +187,7 @@ void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis
                fmt::format("Missing: {} of {} have no reading, the first is frame {}",
                            grouped(count), all, first));
   }
-  if (const auto& [count, first] = watch.lost(); count > 0 && watch.uniform_are_lost()) {
+  if (const auto& [count, first] = watch.lost(); watch.uniform_are_lost()) {
     report_odd(found, ArrayFault::missing_frames, static_cast<double>(count),
                fmt::format("Missing: {} of {} read {} everywhere between others that do not, the "
                            "first is frame {}",

@@ -137,6 +137,9 @@ constexpr double kDeadLineShare = 0.15;
 /// that it must have loaded for the others to be dead.
 constexpr double kFewSensels = 4;
 constexpr double kAllSensels = 0.8;
+/// Signal of a weak touch in the usual one, and the largest noise of a silent sensel in deviations.
+constexpr double kWeakTouch = 0.2;
+constexpr double kSilentNoise = 4.5;
 
 /// The kind of finding of a verdict.
 ArrayFault finding_of(SenselFault fault) {
@@ -201,6 +204,16 @@ class NeighbourVerdicts {
     seen_.good[sensel] = 0;
   }
 
+  /// Whether a sensel shows nothing but noise, and would show a weak touch.
+  [[nodiscard]] bool is_silent(std::size_t sensel) const {
+    if (seen_.touched[sensel] > 0 || kWeakTouch * seen_.contact_counts < seen_.threshold(sensel)) {
+      return false;
+    }
+    return std::ranges::none_of(seen_.contacts, [&](std::uint32_t frame) {
+      return std::as_const(seen_.kept).frame(frame)[sensel] > kSilentNoise * noise(sensel);
+    });
+  }
+
   /// A finger that pressed nearly all sensels of a coarse array, each by itself, pressed the others
   /// too.
   void judge_untouched() {
@@ -224,8 +237,7 @@ class NeighbourVerdicts {
       const std::size_t row = i / seen_.cols;
       const std::size_t col = i % seen_.cols;
       if (seen_.good[i] == 0) continue;
-      if (seen_.touched[i] == 0 && may_be_dead(LineAxis::rows, row) &&
-          may_be_dead(LineAxis::columns, col)) {
+      if (is_silent(i) && may_be_dead(LineAxis::rows, row) && may_be_dead(LineAxis::columns, col)) {
         silent.push_back(i);
       }
       if (!is_touched(LineAxis::rows, row) || !is_touched(LineAxis::columns, col)) continue;
@@ -282,20 +294,23 @@ class NeighbourVerdicts {
     std::size_t dead = 0;
     std::size_t silent = 0;
     std::size_t sound = 0;
+    std::size_t present = 0;
     double most = 0;  ///< response
 
-    [[nodiscard]] bool is_dead(std::size_t length) const {
-      const double least = std::max(3.0, kDeadLineShare * static_cast<double>(length));
-      return (5 * silent >= 4 * length && static_cast<double>(faulty) >= least) ||
-             (20 * sound <= length && static_cast<double>(dead) >= least);
+    [[nodiscard]] bool is_dead() const {
+      if (most > kMostDeadResponse) return false;
+      const double least = std::max(3.0, kDeadLineShare * static_cast<double>(present));
+      return (5 * silent >= 4 * present && static_cast<double>(faulty) >= least) ||
+             (20 * sound <= present && static_cast<double>(dead) >= least);
     }
   };
 
   void count(std::size_t sensel, LineCount& line) const {
     const auto& verdict = seen_.verdicts[sensel];
-    const bool is_faulty = verdict && *verdict != SenselFault::saturated &&
-                           *verdict != SenselFault::noisy &&
-                           !(*verdict == SenselFault::absent && read(sensel).lowest != 0);
+    if (verdict == SenselFault::absent && read(sensel).lowest != 0) return;
+    ++line.present;
+    const bool is_faulty =
+        verdict && *verdict != SenselFault::saturated && *verdict != SenselFault::noisy;
     line.faulty += is_faulty ? 1U : 0U;
     line.dead += verdict == SenselFault::unresponsive ? 1U : 0U;
     line.silent += is_faulty || seen_.constant[sensel] != 0 ? 1U : 0U;
@@ -310,7 +325,7 @@ class NeighbourVerdicts {
       for (std::size_t along = 0; along < length; ++along) {
         count(seen_.sensel(axis, line, along), counted);
       }
-      if (!counted.is_dead(length)) continue;
+      if (!counted.is_dead()) continue;
       for (std::size_t along = 0; along < length; ++along) {
         const std::size_t i = seen_.sensel(axis, line, along);
         accuse(i);
@@ -352,12 +367,15 @@ class NeighbourVerdicts {
 
 }  // namespace
 
-void find_odd_readings(Examination& seen) {
+void find_odd_readings(Examination& seen, const Diagnosis& found) {
+  constexpr double kIdleAtFullScale = 0.9;
+  const bool idles_there = found.idle_counts > kIdleAtFullScale * seen.full_scale;
   std::vector<SenselEvidence> evidence;
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
     evidence.push_back({seen.read[i], seen.idle[i], seen.noise[i]});
+    if (idles_there) evidence.back().read.saturated = 0;
   }
-  const SenselJudge judge(std::move(evidence), seen.frames_with_readings, seen.full_scale, {});
+  const SenselJudge judge(std::move(evidence), seen.frames_with_readings, {});
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
     seen.verdicts.push_back(judge.verdict(i));
     seen.good[i] = seen.verdicts.back() ? 0 : 1;

@@ -166,7 +166,7 @@ bool are_loads_unlike(const Examination& seen, LineAxis axis) {
     }
     heaviest.insert(static_cast<std::size_t>(std::ranges::max_element(loads) - loads.begin()));
   }
-  return heaviest.size() >= kLeastHeaviest && 3 * heaviest.size() >= lines;
+  return heaviest.size() >= std::min(kLeastHeaviest, lines);
 }
 
 void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {

@@ -26,9 +26,7 @@ constexpr double kOddSpans = 0.01;      ///< share of the sensels
 const double kRounding = 1 / std::sqrt(12.0);
 
 /// A sensel's readings without load in each window of frames, as far as there are enough of them.
-struct RestWindows {
-  std::vector<std::optional<double>> middle;
-};
+using RestWindows = std::vector<std::optional<double>>;
 
 /// Mean of the readings no farther from `about` than noise is; it is finer than whole counts.
 double mean_near(const std::vector<float>& readings, double about, double noise) {
@@ -64,9 +62,9 @@ double noise_of_windows(const std::vector<float>& readings) {
 double slope_of(const RestWindows& windows, const std::vector<double>& without) {
   std::vector<double> slopes;
   for (std::size_t a = 0; a < without.size(); ++a) {
-    for (std::size_t b = a + 1; b < without.size() && windows.middle[a]; ++b) {
-      if (!windows.middle[b]) continue;
-      slopes.push_back((*windows.middle[b] - without[b] - *windows.middle[a] + without[a]) /
+    for (std::size_t b = a + 1; b < without.size() && windows[a]; ++b) {
+      if (!windows[b]) continue;
+      slopes.push_back((*windows[b] - without[b] - *windows[a] + without[a]) /
                        static_cast<double>(b - a));
     }
   }
@@ -171,15 +169,14 @@ class Baseline {
     const double at = std::clamp(place_of(frame), 0.0, static_cast<double>(windows_ - 1));
     const auto before = static_cast<std::size_t>(at);
     const double next = before + 1 < windows_ ? common_[before + 1] : common_[before];
-    return std::lerp(common_[before], next, at - static_cast<double>(before)) + -common_.front() +
+    return std::lerp(common_[before], next, at - static_cast<double>(before)) - common_.front() +
            slopes_[sensel] * (place_of(frame) - place_of(0));
   }
 
   /// Counts per kept frame.
   [[nodiscard]] std::optional<std::vector<float>> drifts() const {
     if (windows_ < kLeastDriftWindows) return std::nullopt;
-    RestWindows curve;
-    for (const double each : common_) curve.middle.emplace_back(each);
+    const RestWindows curve(common_.begin(), common_.end());
     const double slope = slope_of(curve, std::vector<double>(windows_));
     std::vector<float> drifts = slopes_;
     for (float& each : drifts) {
@@ -197,7 +194,7 @@ class Baseline {
   }
 
   [[nodiscard]] RestWindows rest_of(std::size_t sensel) const {
-    RestWindows rest = {.middle = std::vector<std::optional<double>>(windows_)};
+    RestWindows rest(windows_);
     if (!seen_.is_steady(sensel)) return rest;
     const std::size_t frames = seen_.kept.frames();
     const double most = seen_.lowest[sensel] + kAtRest * seen_.span;
@@ -212,7 +209,7 @@ class Baseline {
       }
       if (2 * part.size() < end - first || part.size() < 3) continue;
       const double middle = median(part);
-      rest.middle[w] = mean_near(part, middle, seen_.noise[sensel]);
+      rest[w] = mean_near(part, middle, seen_.noise[sensel]);
     }
     return rest;
   }
@@ -224,8 +221,7 @@ class Baseline {
     for (const std::size_t least : {2 * windows_ / 3, std::size_t{1}}) {
       used.clear();
       for (const RestWindows& each : rest) {
-        const auto count =
-            std::ranges::count_if(each.middle, [](const auto& m) { return m.has_value(); });
+        const auto count = std::ranges::count_if(each, [](const auto& m) { return m.has_value(); });
         if (static_cast<std::size_t>(count) >= least) used.push_back(&each);
       }
       if (used.size() >= std::max<std::size_t>(4, rest.size() / 10)) break;
@@ -236,7 +232,7 @@ class Baseline {
       for (std::size_t n = 0; n < used.size(); ++n) {
         values.clear();
         for (std::size_t w = 0; w < windows_; ++w) {
-          if (used[n]->middle[w]) values.push_back(*used[n]->middle[w] - common_[w]);
+          if ((*used[n])[w]) values.push_back(*(*used[n])[w] - common_[w]);
         }
         levels[n] = median(values);
       }
@@ -244,7 +240,7 @@ class Baseline {
       for (std::size_t w = 0; w < windows_; ++w) {
         values.clear();
         for (std::size_t n = 0; n < used.size(); ++n) {
-          if (used[n]->middle[w]) values.push_back(*used[n]->middle[w] - levels[n]);
+          if ((*used[n])[w]) values.push_back(*(*used[n])[w] - levels[n]);
         }
         if (!values.empty()) last = median(values);
         common_[w] = last;
@@ -303,9 +299,8 @@ std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline
 }
 
 /// Replaces the readings by signals.
-void take_signals(Examination& seen, float sign) {
+void take_signals(Examination& seen, const Baseline& baseline, float sign) {
   KeptFrames& kept = seen.kept;
-  const Baseline baseline(seen);
   const std::vector<std::uint8_t> at_rest = frames_at_rest(seen, baseline);
   SenselReadings readings;
   std::vector<float> rest;
@@ -393,8 +388,9 @@ void find_signals(Examination& seen, Diagnosis& found) {
   find_noise_and_ranges(seen, found);
   found.polarity = find_polarity(seen);
   if (found.polarity == Polarity::falls) turn_over(seen);
-  report_drift(seen, Baseline(seen), found);
-  take_signals(seen, found.polarity == Polarity::falls ? -1 : 1);
+  const Baseline baseline(seen);
+  report_drift(seen, baseline, found);
+  take_signals(seen, baseline, found.polarity == Polarity::falls ? -1 : 1);
   found.idle_counts = figure_of(seen, seen.idle).median;
   found.idle_frames = found.frames;
   find_contacts(seen, found);

@@ -34,6 +34,7 @@ class ReadingCheck final : public ForceSink {
 
  private:
   struct Counts {
+    std::uint64_t good = 0;   ///< sensels that are not masked
     std::uint64_t above = 0;  ///< sensels beyond the threshold over their tare
     std::uint64_t below = 0;  ///< and under it
     float highest = 0;        ///< reading over its tare, counts
@@ -47,8 +48,9 @@ class ReadingCheck final : public ForceSink {
   const SolverPlan& plan_;
   std::uint64_t present_ = 0;  ///< pillars of a frame that have sensels
   std::uint64_t frames_ = 0;
-  std::uint64_t in_contact_ = 0;    ///< pillars of all frames
-  std::uint64_t blank_frames_ = 0;  ///< frames without a reading
+  std::uint64_t in_contact_ = 0;     ///< pillars of all frames
+  std::uint64_t blank_frames_ = 0;   ///< frames without a reading
+  std::uint64_t sunken_frames_ = 0;  ///< nearly all sensels read less than their tare
   std::uint64_t sensels_seen_ = 0;
   Counts most_;
 };
