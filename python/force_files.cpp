@@ -30,7 +30,7 @@ Skin skin_of(const ForceFileInfo& info) {
   const std::uint32_t side = skin.has_pillars() ? 2 : 1;
   skin.rows = side * info.rows;
   skin.cols = side * info.cols;
-  skin.sensel_pitch_mm = info.element_pitch_mm / side;
+  skin.sensel_pitch_mm = (1.0 / side) * info.element_pitch_mm;
   skin.surface = info.surface;
   return skin;
 }

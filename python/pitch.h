@@ -2,6 +2,9 @@
 
 #include <pybind11/pybind11.h>
 
+#include <tuple>
+#include <utility>
+
 #include "pillarfield/pitch.h"
 
 /// A Pitch is a number in Python, or a tuple: from row to row, from column to column.
@@ -11,16 +14,11 @@ struct pybind11::detail::type_caster<pillarfield::Pitch> {
 
   bool load(handle source, bool convert) {
     make_caster<double> one;
-    if (one.load(source, convert)) {
-      value = cast_op<double>(one);
-      return true;
-    }
-    if (!isinstance<sequence>(source) || len(source) != 2) return false;
-    const auto numbers = reinterpret_borrow<sequence>(source);
-    make_caster<double> row_mm;
-    make_caster<double> col_mm;
-    if (!row_mm.load(numbers[0], convert) || !col_mm.load(numbers[1], convert)) return false;
-    value = {cast_op<double>(row_mm), cast_op<double>(col_mm)};
+    make_caster<std::pair<double, double>> two;
+    const bool is_one = one.load(source, convert);
+    if (!is_one && !two.load(source, convert)) return false;
+    if (is_one) value = cast_op<double>(one);
+    if (!is_one) std::tie(value.row_mm, value.col_mm) = cast_op<std::pair<double, double>>(two);
     return true;
   }
 

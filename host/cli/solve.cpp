@@ -19,7 +19,6 @@
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
 #include "io/file_kind.h"
-#include "io/series_files.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -236,36 +235,15 @@ bool is_folder(const std::string& output) {
   return output.ends_with('/') || std::filesystem::is_directory(output, ignored);
 }
 
-/// The output of an input: `output`, or a file in this folder, with the input's name.
+/// A file in this folder with the name of an input. Throws Error if another input has that name, or
+/// `output` is not a folder.
 std::string output_of(const std::filesystem::path& input, const std::string& output,
-                      const char* ending) {
-  if (!is_folder(output)) return output;
-  std::filesystem::create_directories(output);
-  return (std::filesystem::path(output) / input.stem()).string() + ending;
-}
-
-/// A solve of each input into the folders that the options name.
-std::vector<SolveOptions> solves_of(const SolveOptions& options,
-                                    const std::vector<std::filesystem::path>& files) {
-  for (const std::string& output : {options.output, options.contacts_file}) {
-    if (output.empty() || is_folder(output)) continue;
-    throw Error(output, "is one file, and the other output a folder, with a file of each input",
-                "name two folders, or two files");
-  }
-  std::vector<SolveOptions> solves;
-  std::set<std::filesystem::path> stems;
-  for (const std::filesystem::path& file : files) {
-    if (!stems.insert(file.stem()).second) {
-      throw Error(file.string(), "has the name of another input, and so has its result",
-                  "solve them into different folders");
-    }
-    SolveOptions each = options;
-    each.inputs = {file.string()};
-    each.output = output_of(file, options.output, ".h5");
-    each.contacts_file = output_of(file, options.contacts_file, ".csv");
-    solves.push_back(std::move(each));
-  }
-  return solves;
+                      const char* ending, std::set<std::string>& outputs) {
+  if (output.empty()) return {};
+  const std::string name = (std::filesystem::path(output) / input.stem()).string() + ending;
+  if (is_folder(output) && outputs.insert(name).second) return name;
+  throw Error(output, fmt::format("holds one result, and {} is not the only input", input.string()),
+              "name folders, and inputs of different names");
 }
 
 void solve_series(SolveOptions options, const std::vector<std::filesystem::path>& files) {
@@ -317,7 +295,17 @@ void solve(const SolveOptions& options) {
   if (!is_folder(options.output) && !is_folder(options.contacts_file)) {
     return solve_series(options, files);
   }
-  for (const SolveOptions& each : solves_of(options, files)) solve_series(each, {each.inputs[0]});
+  std::set<std::string> outputs;
+  std::vector<SolveOptions> solves(files.size(), options);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    solves[i].inputs = {files[i].string()};
+    solves[i].output = output_of(files[i], options.output, ".h5", outputs);
+    solves[i].contacts_file = output_of(files[i], options.contacts_file, ".csv", outputs);
+  }
+  for (const std::string& folder : {options.output, options.contacts_file}) {
+    if (!folder.empty()) std::filesystem::create_directories(folder);
+  }
+  for (const SolveOptions& each : solves) solve_series(each, {each.inputs.front()});
 }
 
 }  // namespace pillarfield::cli

@@ -194,7 +194,7 @@ ContactTracker::State::State(const Pitch& element_pitch_mm, const ContactOptions
       options(checked(contact_options)),
       moments(options.threads),
       friction_estimator(estimator()) {
-  if (!is_positive(pitch_mm)) {
+  if (!pitch_mm.is_positive()) {
     throw Error(kPlace, fmt::format("a pitch of {} mm", text_of(pitch_mm)),
                 "it must be above zero");
   }

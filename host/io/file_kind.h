@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/input_file.h"
 
@@ -13,6 +14,12 @@ namespace pillarfield {
 
 /// Whether the extension is that of HDF5.
 [[nodiscard]] bool is_hdf5_name(const std::filesystem::path& path);
+
+/// The files of a series: those given, and those of folders, in natural order of their names, in
+/// which frame_2 comes before frame_10. Hidden files, folders within folders and metadata.yaml of a
+/// ROS 2 bag are left out. Throws Error if a folder holds no files, or several kinds.
+[[nodiscard]] std::vector<std::filesystem::path> series_files(
+    const std::vector<std::filesystem::path>& paths);
 
 struct SourceFormat;  // io/frame_source.h
 

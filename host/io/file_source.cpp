@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "calibration/wire_correction.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tare.h"
+#include "skin/raw_reading.h"
 
 namespace pillarfield {
 
@@ -95,6 +98,39 @@ void FileSource::take_readings(NumberType type, const std::byte* numbers, std::u
               fmt::format("frame {}, row {}, column {} holds an {} beyond ±16777216", index,
                           *inexact / skin_.cols, *inexact % skin_.cols, name_of(type)),
               "store readings as float32");
+}
+
+std::vector<SenselEvidence> FileSource::looked_at(std::uint64_t looks) {
+  std::vector<SenselEvidence> sensels(skin_.sensels());
+  FrameBuffer frame(type_, skin_.rows, skin_.cols);
+  const bool mirrors = std::exchange(mirrors_, false);
+  for (std::uint64_t look = 0; look < looks; ++look) {
+    read(look * frames_ / looks, frame);
+    for (std::size_t i = 0; i < sensels.size(); ++i) {
+      const auto row = i / skin_.cols;
+      sensels[i].read.add(raw_reading(frame.view(), row, i - row * skin_.cols),
+                          std::numeric_limits<float>::infinity());
+    }
+  }
+  mirrors_ = mirrors;
+  return sensels;
+}
+
+void FileSource::note_absent() {
+  constexpr std::uint64_t kLeastAbsentLooks = 10;
+  constexpr std::uint64_t kMostLooks = 64;
+  const std::uint64_t looks = std::min(frames_, kMostLooks);
+  if (looks < kLeastAbsentLooks || !absent_value(looked_at(looks))) return;
+  const std::vector<SenselEvidence> sensels = looked_at(frames_);
+  const std::optional<float> value = absent_value(sensels);
+  if (!value) return;
+  calibration_.mask.assign(sensels.size(), kGood);
+  for (std::size_t i = 0; i < sensels.size(); ++i) {
+    if (sensels[i].is_constant() && sensels[i].read.lowest == *value)
+      calibration_.mask[i] = kAbsent;
+  }
+  warnings_.push_back(fmt::format("{} of {} cells always read {} and have no sensel.",
+                                  count_absent(calibration_), sensels.size(), *value));
 }
 
 void FileSource::measure_tare(const ReadOptions& options) {

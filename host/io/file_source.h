@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/sensel_judge.h"
 #include "io/plain/number_array.h"
 #include "io/stored_skin.h"
 #include "pillarfield/recording.h"
@@ -78,6 +79,9 @@ class FileSource : public FrameSource {
   void take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
                      FrameBuffer& frame) const;
 
+  /// Marks the cells whose reading stands for "no sensel".
+  void note_absent();
+
   /// Adds the size_warnings(), and one of a file without frames.
   void warn_of_size();
 
@@ -93,6 +97,9 @@ class FileSource : public FrameSource {
   bool mirrors_ = false;  ///< falling readings
 
  private:
+  /// What sensels read in so many of the frames, evenly spaced.
+  [[nodiscard]] std::vector<SenselEvidence> looked_at(std::uint64_t looks);
+
   std::optional<double> rate_hz_;
 };
 

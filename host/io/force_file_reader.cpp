@@ -313,7 +313,7 @@ void OpenForces::read_info() {
                                    info.element_pitch_mm.col_mm));
     return;
   }
-  if (!is_positive(*pitch_mm)) {
+  if (!pitch_mm->is_positive()) {
     throw Error(file.path.string(), fmt::format("{} is {}", pitch, text_of(*pitch_mm)),
                 "it must be above zero");
   }

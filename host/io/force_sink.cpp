@@ -52,7 +52,7 @@ void check(const ForceFileInfo& info, const std::string& where) {
                 fmt::format("a field of {} x {} {}", info.rows, info.cols, name_of(info.layout)),
                 fmt::format("rows and columns must lie in [1, {}]", most));
   }
-  if (!is_positive(info.element_pitch_mm)) {
+  if (!info.element_pitch_mm.is_positive()) {
     throw Error(where, fmt::format("element_pitch_mm is {}", text_of(info.element_pitch_mm)),
                 "it must be above zero");
   }

@@ -9,10 +9,7 @@
 #include <vector>
 
 #include "io/file_kind.h"
-#include "io/foreign_file.h"
-#include "io/frame_series.h"
 #include "io/hdf5/readers.h"
-#include "io/series_files.h"
 #include "pillarfield/error.h"
 #include "pillarfield/frame_stream.h"
 
@@ -26,8 +23,6 @@ SourceFormat mat_format();
 SourceFormat mcap_format();
 SourceFormat table_format();
 SourceFormat sections_format();
-
-namespace {
 
 std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
                                         const ReadOptions& options) {
@@ -48,8 +43,6 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
   for (const SourceFormat& format : source_formats()) known += std::string(" nor a ") + format.name;
   throw Error(path.string(), "is neither " + known, "docs/formats.md describes them");
 }
-
-}  // namespace
 
 std::span<const SourceFormat> source_formats() {
   static const std::array formats = {tekscan_format(), npy_format(),  npz_format(),
@@ -87,13 +80,10 @@ std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
 std::unique_ptr<FrameSource> open_frames(const std::vector<std::filesystem::path>& paths,
                                          const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  for (const std::filesystem::path& path : paths) {
-    if (std::filesystem::is_directory(path)) refuse_foreign(path, "");
-  }
+  for (const std::filesystem::path& path : paths) refuse_foreign(path, "");
   std::vector<std::filesystem::path> files = series_files(paths);
-  std::unique_ptr<FileSource> source = files.size() == 1
-                                           ? open_source(files.front(), options)
-                                           : frame_series(std::move(files), options, open_source);
+  std::unique_ptr<FileSource> source = files.size() == 1 ? open_source(files.front(), options)
+                                                         : frame_series(std::move(files), options);
   if (options.tare_frames > 0) source->measure_tare(options);
   return source;
 }

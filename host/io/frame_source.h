@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/file_source.h"
 
@@ -23,6 +25,24 @@ struct SourceFormat {
 
 /// The format of a file by its first 4096 bytes; null if unknown.
 [[nodiscard]] const SourceFormat* source_format(std::string_view head);
+
+[[nodiscard]] std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
+                                                      const ReadOptions& options);
+
+/// Files of frames as one source. Throws Error if one differs from the first in size, layout,
+/// constants or calibration.
+[[nodiscard]] std::unique_ptr<FileSource> frame_series(std::vector<std::filesystem::path> files,
+                                                       const ReadOptions& options);
+
+/// Throws Error if a file or folder has a format that is known by its first bytes `head`, or by its
+/// files, and is not read; its mend is a command that makes an .npy of it.
+void refuse_foreign(const std::filesystem::path& path, std::string_view head);
+/// The same for an archive of ZIP without arrays of NumPy.
+[[noreturn]] void refuse_foreign_archive(const std::filesystem::path& path, bool is_workbook);
+
+/// "run python3 -c "..."", with names in quotes in `code`: {0} the file, {1} the .npy, {2} the
+/// file's folder, {3} a pattern of the files in it that end alike, {4} the file without its ending.
+[[nodiscard]] std::string python_line(std::string_view code, const std::filesystem::path& path);
 
 /// Throws Error if the options name an array, for a file that has only one.
 void refuse_dataset(const std::filesystem::path& path, const ReadOptions& options);

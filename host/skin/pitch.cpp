@@ -25,15 +25,8 @@ std::optional<Pitch> parse_pitch(std::string_view text) {
   return pitch;
 }
 
-bool is_positive(const Pitch& pitch) {
-  return std::isfinite(pitch.row_mm) && pitch.row_mm > 0 && std::isfinite(pitch.col_mm) &&
-         pitch.col_mm > 0;
-}
-
 bool is_valid(const Pitch& pitch) {
-  constexpr double kLeastMm = 1e-3;
-  constexpr double kMostMm = 1e3;
-  const auto fits = [](double mm) { return mm >= kLeastMm && mm <= kMostMm; };
+  const auto fits = [](double mm) { return mm >= 1e-3 && mm <= 1e3; };
   return fits(pitch.row_mm) && fits(pitch.col_mm);
 }
 

@@ -340,7 +340,7 @@ class PlainData(CommandTest):
                          sorted(f"{i + 7}.{ending}" for i in range(5) for ending in ("csv", "h5")))
         with h5py.File(out / "10.h5") as file:
             np.testing.assert_array_equal(file["force/normal"], self.expected[0][3:4, ..., 2])
-        self.assert_fails("solve", folder, "-o", out, "--contacts", self.path("c.csv"), names=["c.csv", "folder"])
+        self.assert_fails("solve", folder, "-o", out, "--contacts", self.path("c.csv"), names=["c.csv", "name folders"])
         self.assert_fails("solve", folder, self.recording, "-o", self.path("f.h5"), "--rate", 1,
                           names=["recording.h5", "7.npy", "-o a folder"])
 

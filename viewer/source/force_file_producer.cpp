@@ -32,7 +32,7 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   info.skin.layout = file.layout;
   info.skin.rows = side * file.rows;
   info.skin.cols = side * file.cols;
-  info.skin.sensel_pitch_mm = file.element_pitch_mm / side;
+  info.skin.sensel_pitch_mm = (1.0 / side) * file.element_pitch_mm;
   info.skin.surface = file.surface;
   info.contacts.layout = file.layout;
   info.contacts.surface = file.surface;

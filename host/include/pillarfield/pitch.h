@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,11 +20,12 @@ struct Pitch {
 
   [[nodiscard]] constexpr bool is_square() const { return row_mm == col_mm; }
   [[nodiscard]] constexpr double area_mm2() const { return row_mm * col_mm; }
+  /// Whether both are finite and above zero.
+  [[nodiscard]] constexpr bool is_positive() const {
+    return row_mm > 0 && col_mm > 0 && area_mm2() < std::numeric_limits<double>::infinity();
+  }
   friend constexpr Pitch operator*(double factor, const Pitch& pitch) {
     return {factor * pitch.row_mm, factor * pitch.col_mm};
-  }
-  friend constexpr Pitch operator/(const Pitch& pitch, double divisor) {
-    return {pitch.row_mm / divisor, pitch.col_mm / divisor};
   }
   friend constexpr bool operator==(const Pitch&, const Pitch&) = default;
 };
@@ -33,9 +35,6 @@ struct Pitch {
 
 /// The pitch of such a text; empty for another one, or for a distance beyond 0.001 to 1000 mm.
 [[nodiscard]] std::optional<Pitch> parse_pitch(std::string_view text);
-
-/// Whether both distances are finite and above zero.
-[[nodiscard]] bool is_positive(const Pitch& pitch);
 
 /// Whether both distances lie within 0.001 to 1000 mm.
 [[nodiscard]] bool is_valid(const Pitch& pitch);

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "io/foreign_file.h"
 #include "io/frame_source.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/dataset.h"

@@ -7,7 +7,6 @@
 
 #include "base/input_file.h"
 #include "base/npy.h"
-#include "io/foreign_file.h"
 #include "io/frame_source.h"
 #include "io/plain/array_names.h"
 #include "io/plain/inflater.h"

@@ -3,22 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <optional>
 #include <utility>
 
-#include "calibration/sensel_judge.h"
 #include "io/hdf5/stored_frames.h"
 #include "io/layout_note.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
-#include "skin/raw_reading.h"
 
 namespace pillarfield {
 namespace {
-
-/// Frames from which a constant reading is no chance.
-constexpr std::uint64_t kLeastAbsentLooks = 10;
 
 class ArraySource final : public FileSource {
  public:
@@ -35,8 +28,6 @@ class ArraySource final : public FileSource {
   void take_as_frame();
   void take_lines(const FrameSize& size);
   void check_size(const ReadOptions& options) const;
-  [[nodiscard]] std::vector<SenselEvidence> looked_at(std::uint64_t looks);
-  void note_absent();
 
   std::unique_ptr<NumberArray> array_;
   std::vector<double> times_s_;     // empty: see assumed_time()
@@ -136,40 +127,6 @@ void ArraySource::check_size(const ReadOptions& options) const {
                             hdf5::kMaxProbedValues),
                 "read larger ones from a trusted file, with --trust-input");
   }
-}
-
-/// What sensels read in so many of the frames, evenly spaced.
-std::vector<SenselEvidence> ArraySource::looked_at(std::uint64_t looks) {
-  std::vector<SenselEvidence> sensels(skin_.sensels());
-  FrameBuffer frame(type_, skin_.rows, skin_.cols);
-  const bool mirrors = std::exchange(mirrors_, false);
-  for (std::uint64_t look = 0; look < looks; ++look) {
-    read(look * frames_ / looks, frame);
-    for (std::size_t i = 0; i < sensels.size(); ++i) {
-      const auto row = i / skin_.cols;
-      sensels[i].read.add(raw_reading(frame.view(), row, i - row * skin_.cols),
-                          std::numeric_limits<float>::infinity());
-    }
-  }
-  mirrors_ = mirrors;
-  return sensels;
-}
-
-/// Marks the cells whose reading stands for "no sensel".
-void ArraySource::note_absent() {
-  constexpr std::uint64_t kMostLooks = 64;
-  const std::uint64_t looks = std::min(frames_, kMostLooks);
-  if (looks < kLeastAbsentLooks || !absent_value(looked_at(looks))) return;
-  const std::vector<SenselEvidence> sensels = looked_at(frames_);
-  const std::optional<float> value = absent_value(sensels);
-  if (!value) return;
-  calibration_.mask.assign(sensels.size(), kGood);
-  for (std::size_t i = 0; i < sensels.size(); ++i) {
-    if (sensels[i].is_constant() && sensels[i].read.lowest == *value)
-      calibration_.mask[i] = kAbsent;
-  }
-  warnings_.push_back(fmt::format("{} of {} cells always read {} and have no sensel.",
-                                  count_absent(calibration_), sensels.size(), *value));
 }
 
 double ArraySource::time(std::uint64_t index) {

@@ -25,7 +25,7 @@ Skin skin_of(const RingLayout& ring) {
   const std::uint32_t side = skin.has_pillars() ? 2 : 1;
   skin.rows = side * ring.rows;
   skin.cols = side * ring.cols;
-  skin.sensel_pitch_mm = ring.pitch_mm / side;
+  skin.sensel_pitch_mm = (1.0 / side) * ring.pitch_mm;
   return skin;
 }
 

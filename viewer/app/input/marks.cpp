@@ -121,7 +121,7 @@ class Marker {
  private:
   [[nodiscard]] std::optional<SeenPoint> middle_of(const PillarIndex& pillar) const {
     const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
-    const Pitch half_mm = place_.source->skin.element_pitch_mm() / 2;
+    const Pitch half_mm = 0.5 * place_.source->skin.element_pitch_mm();
     return ground_.seen({corner.x + half_mm.col_mm, corner.y - half_mm.row_mm});
   }
 
