@@ -57,7 +57,8 @@ std::span<const LiveSourceKind> live_source_kinds() {
 
 bool is_live_source(std::string_view source) {
   return kind_of_source(source) != nullptr ||
-         (!suggested_source(source).empty() && !std::filesystem::exists(source));
+         (!source.starts_with('.') && !source.starts_with('/') &&
+          !suggested_source(source).empty() && !std::filesystem::exists(source));
 }
 
 std::unique_ptr<FrameStream> open_live_source(const std::string& source,

@@ -90,7 +90,7 @@ bool FirstPackets::add(const Packet& packet, const StoredSkin& stated) {
   if (content != PILLARFIELD_ROWS) stated_ = stated;
   if (content == PILLARFIELD_CONSTANTS) return false;
   packets_.emplace_back(packet);
-  bytes_ += sizeof packet.header + packet.bytes.size();
+  bytes_ += packet.bytes.size();
   return bytes_ >= shape->bytes();
 }
 
