@@ -254,7 +254,7 @@ class Network(StreamTest):
 
         sender = threading.Thread(target=send)
         calibration = self.folder / "skin.h5"
-        np.save(self.folder / "idle.npy", np.zeros((20, 12, 16), np.uint8))
+        np.save(self.folder / "idle.npy", np.random.default_rng(1).integers(0, 3, (20, 12, 16), np.uint8))
         run("calibrate", "tare", self.folder / "idle.npy", "-o", calibration)
         process = self.started(f"udp:127.0.0.1:{address[1]}", "--calibration", calibration, "--json",
                                "--health-interval", 0.1)
@@ -293,7 +293,7 @@ class Network(StreamTest):
         for option in (("--dataset", "a"), ("--times", "a"), ("--shape", "4x6"), ("--columns", "1-24"),
                        ("--axes", "rows,columns")):
             for command in ("stream", "doctor"):
-                self.assert_fails(command, "udp:127.0.0.1:0", *option, names=(option[0], "leave it out"))
+                self.assert_fails(command, "udp:127.0.0.1:0", "-q", *option, names=(option[0], "leave it out"))
 
     def test_web_pages_must_be_allowed(self):
         process = self.started(self.scene, "--repeat", "--to", "foxglove:0", "--json",
