@@ -150,8 +150,8 @@ TEST(ContactJson, IsAnObjectOfFramesByLine) {
   EXPECT_EQ(lines[0],
             "{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":\"a \\\"quoted\\\"\\\\"
             "\\u000a name.h5\",\"pillar_pitch_mm\":1.25,\"minimum_pillars\":3,"
-            "\"given_friction\":0.5,\"reach_mm\":7,\"frames\":[");
-  EXPECT_TRUE(has_all(lines[1], {"{\"frame\":0,\"time_s\":0,\"patch\":{\"pillars\":",
+            "\"given_friction\":0.5,\"reach_mm\":7.0,\"frames\":[");
+  EXPECT_TRUE(has_all(lines[1], {"{\"frame\":0,\"time_s\":0.0,\"patch\":{\"pillars\":",
                                  "\"friction\":null", "\"contacts\":[],\"ended\":[]},"}));
   EXPECT_TRUE(has_all(
       lines[3], {"\"contacts\":[{\"id\":21,\"parent\":null,\"number\":0,",

@@ -2,6 +2,8 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pillarfield/recording.h"
@@ -236,8 +238,14 @@ TEST(RecordingDamage, OfATimeIsReportedWithItsFrame) {
       H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times);
       H5Dclose(dataset);
     });
-    EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }),
-                        {"/frames/time: frame 2 has the time", wrong_s < 1 ? "0.5" : ""}));
+    if (std::isnan(wrong_s)) {
+      EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }), {"/frames/time", "frame 2"}));
+    } else {
+      const auto warnings = open_frames(path)->warnings();
+      EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& warning) {
+        return bool{has_all(warning, {"first at frame 2", "order of the file"})};
+      }));
+    }
     std::filesystem::remove(path);
   }
 }
@@ -314,7 +322,7 @@ TEST(FileKinds, OfOthersAreRefused) {
   EXPECT_TRUE(has_all(error_for("text"), {"neither an HDF5 recording nor a Tekscan"}));
   EXPECT_TRUE(has_all(error_for("binary"), {"neither an HDF5 recording nor a Tekscan"}));
   EXPECT_TRUE(has_all(error_for("signature.h5"), {"cannot be opened as HDF5"}));
-  EXPECT_TRUE(has_all(error_for("folder"), {"is a directory"}));
+  EXPECT_TRUE(has_all(error_for("folder"), {"is a folder without files of frames"}));
   EXPECT_TRUE(has_all(error_for("pipe"), {"not a regular file"}));
   EXPECT_TRUE(has_all(error_of([] { (void)open_frames("/dev/null"); }), {"not a regular file"}));
 }
