@@ -118,17 +118,18 @@ class Work(CommandTest):
         for words in ("RMS", "95 %", "theta", "loaded", "Resultant force"):
             self.assertIn(words, text)
 
-    def test_a_skin_without_tare_is_warned_of(self):
+    def test_contact_everywhere_is_warned_of(self):
         run("simulate", SCENES / "new_skin_pressed.toml", "-o", self.recording, "--uncalibrated",
             "--frames", 2)
         with h5py.File(self.recording, "r+") as file:
             del file["truth"]  # recordings with truth are not warned of
-        for tare, warnings in ((None, 1), (0, 0)):
-            if tare is not None:
+        for has_tare, cause in ((False, " and there is no tare;"), (True, ": a load covers the array, or its tare has")):
+            if has_tare:
                 with h5py.File(self.recording, "r+") as file:
                     file["calibration/tare"] = numpy.zeros(file["frames/raw"].shape[1:], "f4")
             messages = run("solve", self.recording, "-o", self.forces, "-q").stderr
-            self.assertEqual(messages.count("100.0 % of all pillars are in contact"), warnings)
+            self.assertEqual(messages.count("% of all pillars are in contact"), 1)
+            self.assertIn(f"100.0 % of all pillars are in contact{cause}", messages)
 
     def test_the_resultant_is_compared(self):
         run("simulate", self.scene, "-o", self.recording)

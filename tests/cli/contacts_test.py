@@ -252,7 +252,7 @@ class Contacts(CommandTest):
         self.assert_fails("solve", self.folder / "absent.h5", "-o", self.forces, "--contacts",
                           "c.txt", names=["c.txt"])
         self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
-                          "--contact-reach", "1e9", names=["the command line"])
+                          "--contact-reach", "1e9", status=2, names=["--contact-reach", "'1e9'"])
         self.assert_folder_holds(*before)
 
     def test_interrupt_leaves_no_half_table(self):

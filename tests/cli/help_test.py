@@ -114,7 +114,7 @@ class WrongCommandLines(CommandTest):
         load = ("calibrate", "load", *step, "--load-n")
         for fault, *arguments in (
                 ("no command", ), ("no command", "calibrate"), ("INPUT", "solve"),
-                ("--output", "solve", "a"), ("one argument too many", *solve, "c"),
+                ("--output", "solve", "a"), ("one argument too many", "simulate", "a", "-o", "b", "c"),
                 ("--seed", "simulate", "--seed", "x"),
                 ("much", *solve, "--threshold", "much"),
                 ("--minimum-pillars requires --contacts", *solve, "--minimum-pillars", 4),
@@ -208,7 +208,7 @@ class Numbers(CommandTest):
             text = run(*command, "--help").stdout
             options = re.findall(r"^  (--[\w-]+) ([A-Z][\w,.]*)", text, re.MULTILINE)
             for option in [name for name, kind in options
-                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE", "NAME", "SINK",
+                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "LIST", "SCENE", "NAME", "SINK",
                                             "SOCKET")]:
                 value = ("nan", "-inf", "1e999", "x")[tried % 4]
                 with self.subTest(command=command, option=option, value=value):

@@ -418,7 +418,7 @@ class Warnings(unittest.TestCase):
             self.assertEqual(len(pf.Recording([str(folder)], rate_hz=5)), 3)
         for forces in found:
             np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
-            np.testing.assert_allclose(forces.pressure_kpa, frames * 100 / (7.62 * 5.08), rtol=1e-6)
+            np.testing.assert_allclose(forces.pressure_kpa, frames * 100.0 / (7.62 * 5.08), rtol=1e-6)
             self.assertAlmostEqual(forces[0].contacts.total.area_mm2, 96 * 7.62 * 5.08, places=3)
         with self.assertRaisesRegex(pf.Error, "pillars need the same"):
             pf.Skin(8, 12, sensel_pitch_mm=(7.62, 5.08))
