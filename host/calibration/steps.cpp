@@ -58,7 +58,7 @@ void StepReport::measure(const char* fact, double value, const char* label,
 
 void StepReport::add(const SkinCalibration& calibration,
                      const std::vector<SenselFinding>& findings) {
-  facts["masked"] = count_masked(calibration.planes);
+  facts["masked"] = count_masked(calibration.planes) + count_absent(calibration.planes);
   auto& list = facts["findings"] = nlohmann::ordered_json::array();
   for (const SenselFinding& finding : findings) {
     list.push_back({{"row", finding.row},

@@ -102,9 +102,15 @@ class Chain(Calibrate):
         tared, tare = self.tared()
         self.assertAlmostEqual(tare["tare_counts"], 12, delta=0.2)
         self.assertAlmostEqual(tare["noise_counts"], 1.04, delta=0.03)
-        self.assertTrue(all(finding["fault"] == "stuck" and finding["masked"]
+        # A dead sensel reads 0 where all others rest clear of it, as one that is absent.
+        self.assertTrue(all(finding["fault"] == "absent" and finding["masked"]
                             for finding in tare["findings"]))
         self.assertEqual(tare["masked"], len(tare["findings"]))
+        known = self.folder / "known.h5"
+        run("simulate", self.folder / "unloaded.toml", "-o", known, "--frames", 1)
+        with h5py.File(known) as file:
+            self.assertEqual([(finding["row"], finding["col"]) for finding in tare["findings"]],
+                             list(zip(*numpy.where(file["calibration/mask"][:] == 0))))
 
         low, high = self.pressed(0.2), self.pressed(0.7)
         equal = self.folder / "equal.h5"

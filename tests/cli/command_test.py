@@ -123,7 +123,7 @@ class Work(CommandTest):
             "--frames", 2)
         with h5py.File(self.recording, "r+") as file:
             del file["truth"]  # recordings with truth are not warned of
-        for has_tare, cause in ((False, " and there is no tare;"), (True, ": a load covers the array, or its tare has")):
+        for has_tare, cause in ((False, " and there is no tare;"), (True, ": a load covers the array")):
             if has_tare:
                 with h5py.File(self.recording, "r+") as file:
                     file["calibration/tare"] = numpy.zeros(file["frames/raw"].shape[1:], "f4")

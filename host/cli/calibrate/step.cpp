@@ -67,7 +67,8 @@ StepResult result_of(const StepCommand& command) {
 void print_findings(const StepResult& result) {
   const auto& findings = result.report.facts["findings"];
   const SkinCalibration& calibration = result.calibration;
-  fmt::print("Masked: {} of {} sensels\n", grouped(count_masked(calibration.planes)),
+  fmt::print("Masked: {} of {} sensels\n",
+             grouped(result.report.facts["masked"].get<std::size_t>()),
              grouped(std::size_t{calibration.rows} * calibration.cols));
   const std::size_t shown = std::min(findings.size(), kMostFindings);
   for (std::size_t i = 0; i < shown; ++i) {
