@@ -58,12 +58,13 @@ TEST(FileList, TheKeyboardFindsAFile) {
   press(list, GLFW_KEY_BACKSPACE);
   EXPECT_EQ(list.folder(), files.root());
   EXPECT_EQ(list.entries()[list.marked()].name, "today");
-  list.take(TextEvent{'t'});
-  EXPECT_EQ(list.entries()[list.marked()].name, "touch.h5");
-  list.take(TextEvent{'T'});
-  EXPECT_EQ(list.entries()[list.marked()].name, "today");
+  for (const auto& [letter, name] :
+       {std::pair('t', "table.txt"), std::pair('T', "touch.h5"), std::pair('t', "today")}) {
+    list.take(TextEvent{static_cast<std::uint32_t>(letter)});
+    EXPECT_EQ(list.entries()[list.marked()].name, name);
+  }
   press(list, GLFW_KEY_PAGE_DOWN);
-  EXPECT_EQ(list.marked(), 5U);
+  EXPECT_EQ(list.marked(), 6U);
   press(list, GLFW_KEY_HOME);
   press(list, GLFW_KEY_UP);
   EXPECT_EQ(list.marked(), 0U);

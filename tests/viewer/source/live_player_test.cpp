@@ -251,7 +251,10 @@ TEST(LivePlayer, ATareIsTakenFromUntouchedReadingsOnly) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     return !live.player->status().taring;
   });
-  EXPECT_EQ(live.player->status().message, "tare taken");
+  // Without noise, four standard deviations of the rounding to whole counts are the threshold.
+  EXPECT_EQ(live.player->status().message,
+            "tare taken: readings above 1.15 counts are usable, and a touch of less than 3 counts "
+            "(0.03 N) on a sensel would not have been seen");
   EXPECT_EQ(live.player->status().messages, 1U);
 }
 

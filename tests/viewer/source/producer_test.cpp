@@ -148,8 +148,9 @@ TEST(SceneProducer, TheBaselineIsFixedAndThePaperHasNoUncertainty) {
               "position_mm = [0, 0]\nload_n = 5\n");
   const auto producer = open_producer(path, {});
   EXPECT_FALSE(producer->info().has_uncertainty);
-  ASSERT_EQ(producer->info().warnings.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().warnings[0], {"baseline is fixed"}));
+  EXPECT_TRUE(producer->info().warnings.empty());
+  ASSERT_EQ(producer->info().notes.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().notes[0], {"baseline is fixed"}));
   EXPECT_TRUE(has_all(producer->info().solver, {"paper on "}));
   const ForceField first = copy_of(producer->produce(2).forces);
   static_cast<void>(producer->produce(1));
