@@ -10,6 +10,8 @@ from typing import Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
+from .calibrate import Step
+
 _Path = Union[str, os.PathLike[str]]
 _Floats = npt.NDArray[np.float32]
 _Place = tuple[float, float]
