@@ -11,8 +11,9 @@ from typing import Any
 from . import _core
 from ._error import ArgumentError
 
-_KINDS = {"int": (numbers.Integral, "a whole number"), "float": (numbers.Real, "a number"),
-          "str": (str, "text"), "bool": (bool, "True or False")}
+_KINDS: dict[str, tuple[Any, str]] = {
+    "int": (numbers.Integral, "a whole number"), "float": (numbers.Real, "a number"),
+    "str": (str, "text"), "bool": (bool, "True or False")}
 
 
 def _complaint(text: str, given: tuple[Any, ...], named: dict[str, Any]) -> tuple[str, str]:

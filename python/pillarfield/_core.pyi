@@ -5,12 +5,10 @@ Names that only the package uses are not described.
 
 import os
 from collections.abc import Sequence
-from typing import Any, Optional, Union
+from typing import Any, Optional, Protocol, Union
 
 import numpy as np
 import numpy.typing as npt
-
-from .calibrate import Step
 
 _Path = Union[str, os.PathLike[str]]
 _Floats = npt.NDArray[np.float32]
@@ -45,6 +43,10 @@ class Calibration:
     @staticmethod
     def load(path: _Path, *, trust: bool = ...) -> Calibration: ...
     def save(self, path: _Path, *, overwrite: bool = ...) -> None: ...
+
+class _Step(Protocol):
+    @property
+    def calibration(self) -> Calibration: ...
 
 class _Quantities:
     pillars: int
@@ -175,7 +177,7 @@ class Processor:
                  device: str) -> None: ...
     def close(self) -> None: ...
     def receive_planes(self) -> dict[str, Any]: ...
-    def set_tare(self, tare: Union[npt.ArrayLike, Calibration, Step]) -> None: ...
+    def set_tare(self, tare: Union[npt.ArrayLike, Calibration, _Step]) -> None: ...
     def submit_readings(self, readings: npt.NDArray[Any], time_s: float,
                         missing: Sequence[tuple[int, int, int, int]]) -> None: ...
     def try_receive_planes(self) -> Optional[dict[str, Any]]: ...

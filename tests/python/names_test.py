@@ -195,11 +195,15 @@ class Values(unittest.TestCase):
 
     def test_findings_of_faults(self):
         frames = np.random.default_rng(2).integers(40, 60, (200, 8, 12)).astype("u1")
+        skin = pf.Skin(8, 12, layout="pillars")
+        tare = pf.calibrate.tare(frames // 10, skin=skin).calibration
         frames[:, 3, 5] = 50
-        step = pf.calibrate.faults([frames], pf.calibrate.tare(frames // 10, skin=pf.Skin(8, 12)).calibration)
+        step = pf.calibrate.faults([frames], tare)
         found = {(each.row, each.col): each for each in step.facts["findings"]}
         self.assertEqual((found[3, 5].mean_counts, found[3, 5].masked), (50, True))
         self.assertEqual(found[3, 5].fault, "stuck")
+        unloaded = pf.calibrate.tare(frames // 10, skin=skin).facts["findings"]
+        self.assertIn((3, 5, "stuck"), [(each.row, each.col, each.fault) for each in unloaded])
 
 
 if __name__ == "__main__":
