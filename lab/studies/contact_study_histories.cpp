@@ -131,7 +131,7 @@ Indentation indentation_of(const History& history, const std::filesystem::path& 
       break;
     case Indenter::key:  // 28 mm long: contact area of a circle of 6.4 mm radius
       indenter.shape = IndenterShape::height_map;
-      indenter.height_map = scenes / "key.png";
+      indenter.height_map = scenes / "key.npy";
       indenter.height_map_size_mm = {28 * a / 6.4, 12 * a / 6.4};
       indenter.height_map_depth_mm = 1.5 * a / 6.4;
       made.load_n = 20 * kModulusMpa * std::pow(a / 6.4, 2);

@@ -56,7 +56,7 @@ struct History {
 [[nodiscard]] const std::vector<History>& histories();
 
 /// Records 8 to 12 frames of 8-bit readings: peak 150 counts, noise 0.5, threshold 2. `scenes` is
-/// the folder of key.png. Takes seconds for the largest. Throws Error.
+/// the folder of key.npy. Takes seconds for the largest. Throws Error.
 [[nodiscard]] Recording record(const History& history, const std::filesystem::path& scenes);
 
 }  // namespace pillarfield::contact_study
