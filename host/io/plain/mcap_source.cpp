@@ -212,11 +212,10 @@ std::unique_ptr<FileSource> open_mcap(const std::filesystem::path& path,
   McapReader file(path);
   ReadOptions known = options;
   known.axes = {ArrayAxis::frames, ArrayAxis::rows, ArrayAxis::columns};
-  return array_source(
-      path, "MCAP of stream",
+  auto frames =
       array_in_memory(path.string(), file.type, {file.times_s.size(), file.shape[0], file.shape[1]},
-                      std::move(file.pixels)),
-      std::move(file.times_s), known);
+                      std::move(file.pixels));
+  return array_source(path, "MCAP of stream", std::move(frames), std::move(file.times_s), known);
 }
 
 }  // namespace
