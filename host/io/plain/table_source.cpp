@@ -505,6 +505,9 @@ bool looks_like_table(std::string_view head) {
            letter == '\r';
   };
   if (!std::ranges::all_of(head, is_text)) return false;
+  // The numbers of JSON and XML are no cells.
+  if (head.starts_with("[[") || head.starts_with('{')) return false;
+  if (head.starts_with('<') && head.find("</") != std::string_view::npos) return false;
   std::size_t names = 0;  // of the line before
   for (int tried = 0; tried < 2 && !head.empty();) {
     const std::size_t end = std::min(head.find('\n'), head.size());
