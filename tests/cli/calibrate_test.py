@@ -106,7 +106,7 @@ class Chain(Calibrate):
         self.assertTrue(all(finding["fault"] == "absent" and finding["masked"]
                             for finding in tare["findings"]))
         self.assertEqual(tare["masked"], len(tare["findings"]))
-        known = self.folder / "known.h5"
+        known = self.folder / "known_sensels.h5"
         run("simulate", self.folder / "unloaded.toml", "-o", known, "--frames", 1)
         with h5py.File(known) as file:
             self.assertEqual([(finding["row"], finding["col"]) for finding in tare["findings"]],
