@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/io/sample_files.h"
 
 namespace pillarfield::viewer {
