@@ -141,7 +141,7 @@ class Ring {
     flying_.clear();
   }
 
-  [[nodiscard]] const SolverPlan& plan() const { return plan_; }
+  [[nodiscard]] SolverPlan plan() const { return plan_; }  // A copy: set_tare() changes it.
 
  private:
   struct Flying {
