@@ -42,7 +42,7 @@ struct Target {
   void (*read)(const std::filesystem::path& path, const ReadOptions& options);
 };
 
-inline constexpr std::array<Target, 8> kTargets = {{
+inline constexpr std::array<Target, 7> kTargets = {{
     {"recording", read_frames},
     {"forces", read_forces},
     {"calibration", read_calibration},
