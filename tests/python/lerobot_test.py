@@ -46,6 +46,13 @@ class Pattern(Sender):
         return READINGS
 
 
+class Noisy(Pattern):
+    """Every second frame reads one count more."""
+
+    def readings(self):
+        return READINGS + np.uint8(self.number % 2)
+
+
 def setUpModule():
     """Installs the plugin with pip, where there is pip, and imports it as LeRobot does."""
     shutil.rmtree(WORK, ignore_errors=True)
@@ -104,9 +111,9 @@ class Columns(unittest.TestCase):
 
 
 class Images(unittest.TestCase):
-    def see(self, **options):
+    def see(self, sender=Pattern, **options):
         port = free_port()
-        with Pattern(port), camera_of(f"udp:127.0.0.1:{port}", **options) as camera:
+        with sender(port), camera_of(f"udp:127.0.0.1:{port}", **options) as camera:
             image = camera.async_read(60_000)
             self.assertEqual((camera.height, camera.width), image.shape[:2])
         self.assertEqual(image.dtype, np.uint8)
@@ -131,7 +138,7 @@ class Images(unittest.TestCase):
         self.assertGreater(np.ptp(image[:, 0, 0]), 0)
 
     def test_tare(self):
-        self.assertLess(self.see(tare_frames=20).max(), 2)
+        self.assertLess(self.see(Noisy, tare_frames=20).max(), 2)
 
     def test_a_calibration_gives_layout_and_scale(self):
         path = str(WORK / "skin.h5")
