@@ -195,6 +195,7 @@ class SourceTest(WindowTest):
     def test_the_list_of_files_opens_one_by_the_keyboard(self):
         (self.folder / "inner").mkdir()
         shutil.copy(SCENES / "spin.toml", self.folder / "inner")
+        shutil.copy(SCENES / "demo.toml", self.folder / "stretch.toml")
         window = self.open("--paused")
         before = [self.shoot_page("files_start")]
         for (name, key) in (("opened", "ctrl+o"), ("down", "Down"), ("letter", "s"), ("up", "Up"),
