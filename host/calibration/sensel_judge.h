@@ -56,7 +56,7 @@ class SenselJudge {
   /// not_a_number, absent, saturated, stuck or noisy; unset: nothing is wrong with its readings.
   [[nodiscard]] std::optional<SenselFault> verdict(std::size_t sensel) const;
 
-  /// Whether a reading without load is far from the typical one.
+  /// True if a reading without load is far from the typical one.
   [[nodiscard]] bool is_far_above(std::size_t sensel) const;
   [[nodiscard]] bool is_far_below(std::size_t sensel) const;
 
@@ -75,13 +75,13 @@ class SenselJudge {
   std::optional<float> absent_;
 };
 
-/// Whether most of the frames have no reading.
+/// True if most of the frames have no reading.
 [[nodiscard]] bool lacks_readings(const SenselStatistics& read, std::uint32_t frames);
 
-/// Whether most of the readings are at full scale.
+/// True if most of the readings are at full scale.
 [[nodiscard]] bool is_saturated(const SenselStatistics& read);
 
-/// Whether the range of readings is that of noise alone.
+/// True if the range of readings is that of noise alone.
 [[nodiscard]] bool is_still(const SenselStatistics& read, double noise, double still_factor);
 
 /// Response of a sensel where others predict one.
@@ -96,7 +96,7 @@ struct SenselResponse {
     squares += expected * expected;
   }
   [[nodiscard]] bool is_tested(double noise) const;
-  /// Whether the response is below `most`, for sure.
+  /// True if the response is below `most`, for sure.
   [[nodiscard]] bool is_below(double most, double noise) const;
   [[nodiscard]] double ratio() const { return products / squares; }
   [[nodiscard]] double deviation(double noise) const;

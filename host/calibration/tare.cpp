@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kTouchedPillars = 2;
 constexpr int kTestedSensels = 3;
 
-/// Whether the sensel reads as if it were touched, or as if most others were and it were not. A
+/// True if the sensel reads as if it were touched, or as if most others were and it were not. A
 /// constant low reading is that of a dead sensel.
 bool is_as_if_touched(const SenselJudge& judge, std::size_t i) {
   const SenselEvidence& sensel = judge.sensels()[i];

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What part of the frames show may mislead.
+/// Some of the frames alone may mislead.
 void refuse_interrupted(const DoctorOptions& options) {
   if (!is_interrupted()) return;
   throw Error(options.source, "the doctor was interrupted before it saw all frames",
@@ -120,7 +120,7 @@ std::string reading_arguments(const ReadOptions& read) {
   return text;
 }
 
-/// What to type next: an idle file gives a tare, others forces; nothing where there is no force.
+/// The command to type next: an idle file gives a tare, others forces; "" without any force.
 std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
   if (found.is_no_force()) return "";
   const std::string source = quoted(options.source);

@@ -181,7 +181,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
   if (!options.output.empty()) fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// What a solve needs.
+/// Inputs of a solve.
 struct Job {
   const SolveOptions& options;
   FrameSource& source;
@@ -229,7 +229,7 @@ std::vector<PlannedOutput> outputs_of(const SolveOptions& options,
   return outputs;
 }
 
-/// Whether an output is a folder, for a file of each input.
+/// True if an output is a folder, for a file of each input.
 bool is_folder(const std::string& output) {
   std::error_code ignored;
   return output.ends_with('/') || std::filesystem::is_directory(output, ignored);

@@ -50,7 +50,7 @@ class FileSource : public FrameSource {
   [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
   void read_truth(std::uint64_t index, ForceField& truth) override;
 
-  /// Whether the file has times of its frames.
+  /// True if the file has times of its frames.
   [[nodiscard]] bool states_times() const { return !assumes_times_; }
 
   /// ReadOptions::tare_frames. Throws Error if the file has fewer, or as take_tare() does.

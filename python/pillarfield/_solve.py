@@ -98,7 +98,7 @@ def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 
                   warm_up: Optional[int] = None, contacts: bool = False,
                   calibration: Union[_core.Calibration, Step, Path, None] = None, device: str = "",
                   overwrite: bool = False, **options: Any) -> ForceFile:
-    """Solves frames of a file into a file of forces, of which one frame at a time is in memory.
+    """Solves frames of a file into a file of forces, with one frame at a time in memory.
 
     frames: path of a file of frames, or a Recording of it
     output: path of the result, .h5

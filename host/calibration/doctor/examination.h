@@ -57,7 +57,7 @@ struct Examination {
   }
   /// Least signal of a loaded sensel, counts.
   [[nodiscard]] double threshold(std::size_t sensel) const;
-  /// Whether a sensel varies, with a noise like that of the others.
+  /// True if a sensel varies, with a noise like that of the others.
   [[nodiscard]] bool is_steady(std::size_t sensel) const;
 };
 

@@ -36,11 +36,11 @@ class FrameWatch {
   /// The value of the uniform frames, counts.
   [[nodiscard]] float uniform_value() const { return value_; }
 
-  /// Whether lost frames explain the uniform ones.
+  /// True if lost frames explain the uniform ones.
   [[nodiscard]] bool uniform_are_lost() const {
     return lost_.frames > 0 && 5 * lost_.frames >= 4 * uniform_.frames;
   }
-  /// Whether the other frames change so much that equal ones are no chance.
+  /// True if the other frames change so much that equal ones are no chance.
   [[nodiscard]] bool repeats_are_odd() const;
   [[nodiscard]] bool is_frozen() const { return frames_ > 1 && all_equal_; }
 

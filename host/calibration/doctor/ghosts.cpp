@@ -48,7 +48,7 @@ class GhostSearch {
     return seen_.good[i] != 0 ? std::as_const(seen_.kept).frame(frame)[i] : 0;
   }
 
-  /// Whether a sensel is loaded more than all around it.
+  /// True if a sensel is loaded more than all around it.
   [[nodiscard]] bool is_peak(std::uint32_t frame, std::uint32_t row, std::uint32_t col) const {
     const float here = signal(frame, row, col);
     for (std::uint32_t r = row == 0 ? 0 : row - 1; r < std::min(row + 2, seen_.rows); ++r) {
@@ -92,7 +92,7 @@ class GhostSearch {
       return each > kPressedShare * seen_.contact_counts;
     });
   }
-  /// Whether the fourth sensel reads, and less than the corners.
+  /// True if the fourth sensel reads, and less than the corners.
   [[nodiscard]] bool shows(std::uint32_t frame, const RectangleCells& at) const {
     const float ghost = signal(frame, at[0], at[1]);
     return ghost > kGhostShare * seen_.contact_counts &&

@@ -118,7 +118,7 @@ double relative_change(const Examination& seen, bool swap) {
 
 using SeenNumbers = std::bitset<65536>;
 
-/// Whether numbers without a bit, or with it, are dense up to the gaps that the others leave.
+/// True if numbers without a bit, or with it, are dense up to the gaps that the others leave.
 bool shows_stuck_bit(const SeenNumbers& numbers, std::uint32_t mask, bool is_set) {
   const std::uint32_t edge = std::max(1U, mask / 4);
   const auto is_dense = [&](std::uint32_t first) {

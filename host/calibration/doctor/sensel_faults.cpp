@@ -204,7 +204,7 @@ class NeighbourVerdicts {
     seen_.good[sensel] = 0;
   }
 
-  /// Whether a sensel shows nothing but noise, and would show a weak touch.
+  /// True if a sensel shows nothing but noise, and would show a weak touch.
   [[nodiscard]] bool is_silent(std::size_t sensel) const {
     if (seen_.touched[sensel] > 0 || kWeakTouch * seen_.contact_counts < seen_.threshold(sensel)) {
       return false;

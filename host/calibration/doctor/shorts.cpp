@@ -152,7 +152,7 @@ bool share_pillars(const Diagnosis& found, std::uint32_t a, std::uint32_t b) {
   return may_have_pillars(found) && a % 2 == 0 && b == a + 1;
 }
 
-/// Whether loads differ so much that two lines do not resemble each other by chance: many lines
+/// True if loads differ so much that two lines do not resemble each other by chance: many lines
 /// carry the largest load at some time.
 bool are_loads_unlike(const Examination& seen, LineAxis axis) {
   const std::size_t lines = seen.lines(axis);

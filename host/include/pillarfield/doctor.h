@@ -125,7 +125,7 @@ struct Diagnosis {
   std::optional<double> column_crosstalk_percent = {};
   std::vector<ArrayFinding> findings = {};
   std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel; unset: may be sound
-  /// Whether the readings show no force, whatever is done: they are all equal, scaled frame by
+  /// True if the readings show no force, whatever is done: they are all equal, scaled frame by
   /// frame, cut to two values, or their bytes are swapped.
   [[nodiscard]] bool is_no_force() const;
 

@@ -33,7 +33,7 @@ class LiveTare {
   void start(std::chrono::nanoseconds duration, bool preloaded = false,
              std::vector<float> before = {});
 
-  /// Whether start() was called and add() has not returned a plan since.
+  /// True if start() was called and add() has not returned a plan since.
   [[nodiscard]] bool is_running() const { return statistics_.has_value(); }
 
   /// Adds a frame of the skin's size and type that arrived at `arrived`. Uses at most 50 of them,

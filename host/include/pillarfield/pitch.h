@@ -20,7 +20,7 @@ struct Pitch {
 
   [[nodiscard]] constexpr bool is_square() const { return row_mm == col_mm; }
   [[nodiscard]] constexpr double area_mm2() const { return row_mm * col_mm; }
-  /// Whether both are finite and above zero.
+  /// True if both are finite and above zero.
   [[nodiscard]] constexpr bool is_positive() const {
     return row_mm > 0 && col_mm > 0 && area_mm2() < std::numeric_limits<double>::infinity();
   }
@@ -36,7 +36,7 @@ struct Pitch {
 /// The pitch of such a text; empty for another one, or for a distance beyond 0.001 to 1000 mm.
 [[nodiscard]] std::optional<Pitch> parse_pitch(std::string_view text);
 
-/// Whether both distances lie within 0.001 to 1000 mm.
+/// True if both distances lie within 0.001 to 1000 mm.
 [[nodiscard]] bool is_valid(const Pitch& pitch);
 
 }  // namespace pillarfield

@@ -93,7 +93,7 @@ bool is_number(const std::string& cell) {
   return !cell.empty() && read_cell(cell, ' ', value);
 }
 
-/// Whether numbers count up by one.
+/// True if numbers count up by one.
 bool count_up(const std::vector<double>& numbers) {
   for (std::size_t i = 1; i < numbers.size(); ++i) {
     if (numbers[i] != numbers[0] + static_cast<double>(i)) return false;
@@ -405,7 +405,7 @@ std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
   return source;
 }
 
-/// Whether a text has a line of words first and then one of numbers, or states a unit of pressure.
+/// True if a text has a line of words first and then one of numbers, or states a unit of pressure.
 bool looks_like_sections(std::string_view head) {
   if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
   const auto is_text = [](char letter) {

@@ -21,7 +21,7 @@ struct Statement {
   std::uint64_t line = 0;
 
   [[nodiscard]] bool has_any(std::initializer_list<std::string_view> some) const;
-  /// Whether it has words, and no others.
+  /// True if it has words, and no others.
   [[nodiscard]] bool has_only(std::initializer_list<std::string_view> some) const;
 };
 

@@ -74,7 +74,7 @@ bool is_whole(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kDigits) == std::string_view::npos;
 }
 
-/// Whether cells are 0, 1, 2, ..., as pandas names columns.
+/// True if cells are 0, 1, 2, ..., as pandas names columns.
 bool count_columns(std::span<const std::string> cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i] != std::to_string(i)) return false;
@@ -169,7 +169,7 @@ std::optional<FrameSize> size_by_numbers(std::span<const std::string> header,
                    static_cast<std::uint32_t>(cols)};
 }
 
-/// Whether a name fits a pattern with '*' for any letters and '?' for one.
+/// True if a name fits a pattern with '*' for any letters and '?' for one.
 bool fits_pattern(std::string_view name, std::string_view pattern) {
   if (pattern.empty()) return name.empty();
   if (pattern[0] != '*')

@@ -29,7 +29,7 @@ struct LongColumns {
   std::optional<std::size_t> frame;
 };
 
-/// Whether the cells of the first line name columns: without a number among them, or with numbers
+/// True if the cells of the first line name columns: without a number among them, or with numbers
 /// after the name of a time or row number or after an empty cell, as pandas writes them.
 [[nodiscard]] bool is_header(std::span<const std::string> cells, char separator);
 
@@ -46,7 +46,7 @@ struct LongColumns {
 
 [[nodiscard]] bool has_digit(std::string_view name);
 
-/// Whether a column has the name of a time.
+/// True if a column has the name of a time.
 [[nodiscard]] bool names_time(std::string_view name);
 
 /// The columns of a long table: one named row, one named column and one other reading; unset if

@@ -28,7 +28,7 @@
 namespace pillarfield {
 namespace {
 
-/// Whether a line has several cells, all of them numbers, times or missing, for recognising a
+/// True if a line has several cells, all of them numbers, times or missing, for recognising a
 /// table.
 bool resembles_numbers(std::string_view line) {
   std::vector<std::string> cells;
@@ -51,7 +51,7 @@ bool are_column_numbers(const std::vector<std::string>& cells) {
   return true;
 }
 
-/// Whether a line is a comment, or Excel's word on the separator.
+/// True if a line is a comment, or Excel's word on the separator.
 bool is_comment(std::string_view line) {
   return line.starts_with('#') || lower_case(line.substr(0, 4)) == "sep=";
 }
@@ -179,7 +179,7 @@ class TableParser {
     append();
   }
 
-  /// Whether a line of words or of another table follows, as after the frames of an export.
+  /// True if a line of words or of another table follows, as after the frames of an export.
   [[nodiscard]] bool ends_table() const {
     double value = 0;
     return cells_.size() < line_cells_ ||

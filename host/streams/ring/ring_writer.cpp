@@ -145,7 +145,7 @@ bool RingWriter::open() {
   return false;
 }
 
-/// Whether the segment holds a ring, or one that its writer did not finish.
+/// True if the segment holds a ring, or one that its writer did not finish.
 bool RingWriter::holds_ring(std::uint64_t bytes) const {
   PillarfieldRing found = {};
   if (pread(segment_.get(), &found, sizeof found, 0) != sizeof found) return false;

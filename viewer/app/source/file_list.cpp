@@ -30,7 +30,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// Whether a file of text holds frames, as CMakeLists.txt does not; true for other files.
+/// True if a file of text holds frames, as CMakeLists.txt does not; true for other files.
 bool has_frames(const fs::path& file) {
   constexpr std::array<std::string_view, 3> kOfText{".asc", ".dat", ".txt"};
   if (std::ranges::find(kOfText, extension_of(file)) == kOfText.end()) return true;
