@@ -256,6 +256,10 @@ void solve_series(SolveOptions options, const std::vector<std::filesystem::path>
   check_outputs(inputs, outputs_of(options, table), options.replace);
   const std::unique_ptr<FrameSource> source =
       open_frames_with_warnings(options.inputs, frame_options(options.plan), options.quiet);
+  if (options.frames && options.frames->end > source->frames()) {
+    throw Error(options.input, "has " + counted(source->frames(), "frame"),
+                fmt::format("give --frames within 1:{}", source->frames()));
+  }
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device).for_plan(plan);

@@ -75,9 +75,10 @@ class Work(CommandTest):
         numpy.testing.assert_array_equal(normal(*drift, "--frames", "3:6"), normal(*drift)[2:])
         cold = normal(*drift, "--frames", "3:6", "--warm-up", 0)
         self.assertTrue((cold != normal(*drift)[2:]).any())
-        for frames, status in (("0:3", 2), ("5:3", 2), ("3", 2), ("3:7", 1)):
-            self.assertIn("frames", run("solve", self.recording, "-o", self.forces, "--frames", frames,
-                                        expect=status).stderr)
+        solve = ("solve", self.recording, "-o", self.forces, "--frames")
+        for frames in ("0:3", "5:3", "3"):
+            self.assertIn("FIRST:LAST, counted from 1", run(*solve, frames, expect=2).stderr)
+        self.assertIn("has 6 frames; give --frames within 1:6", run(*solve, "3:7", expect=1).stderr)
 
     def test_estimators_and_uncertainty(self):
         self.scene.write_text(BALL.replace("threshold_counts = 2", "threshold_counts = 3"))
