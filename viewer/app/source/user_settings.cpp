@@ -123,8 +123,10 @@ ScenesAtHand scenes_at_hand() {
     std::ranges::sort(scenes, {}, [](const std::filesystem::path& scene) {
       return std::pair(scene.stem() != "demo", scene);
     });
-    const auto touches = std::ranges::stable_partition(scenes, std::not_fn(is_for_calibration));
-    return {{scenes.begin(), touches.begin()}, {touches.begin(), touches.end()}};
+    // Not of std::ranges: clang++ 14 refuses its subrange.
+    const auto calibrating =
+        std::stable_partition(scenes.begin(), scenes.end(), std::not_fn(is_for_calibration));
+    return {{scenes.begin(), calibrating}, {calibrating, scenes.end()}};
   }
   return {};
 }
