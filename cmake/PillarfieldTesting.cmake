@@ -23,10 +23,10 @@ set(PILLARFIELD_TEST_PREFIX "")
 set(PILLARFIELD_LEAKS_SOUGHT "")
 if(PILLARFIELD_SANITIZE)
   # A small quarantine: forking copies its page tables.
-  set(asan_options "detect_stack_use_after_return=1:strict_string_checks=1:quarantine_size_mb=16")
+  set(asan_options "detect_stack_use_after_return=1:strict_string_checks=1:quarantine_size_mb=16:exitcode=99")
   list(APPEND PILLARFIELD_TEST_ENVIRONMENT
     "ASAN_OPTIONS=${asan_options}:detect_leaks=0"
-    "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1")
+    "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1:exitcode=99")
   set(PILLARFIELD_LEAKS_SOUGHT "ASAN_OPTIONS=${asan_options}:detect_leaks=1")
   set(PILLARFIELD_TEST_PREFIX "asan.")
 else()

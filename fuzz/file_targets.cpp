@@ -107,7 +107,7 @@ void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadO
 }
 
 void read_forces(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
-  (void)is_force_file(path, options);
+  (void)is_force_file(path);
   const ForceFileReader reader(path, options);
   const ForceFileInfo& info = reader.info();
   if (std::uint64_t{info.rows} * info.cols > kMaxRead) return;
@@ -122,7 +122,7 @@ void read_forces(const std::filesystem::path& path, [[maybe_unused]] const ReadO
 
 void read_calibration(const std::filesystem::path& path,
                       [[maybe_unused]] const ReadOptions& options) {
-  (void)is_calibration_file(path, options);
+  (void)is_calibration_file(path);
   const SkinCalibration calibration = read_calibration_file(path, options);
   SolverPlan plan;
   plan.skin.rows = calibration.rows;

@@ -1,6 +1,6 @@
 // Entry point of libFuzzer: one program per target, whose function is PILLARFIELD_FUZZ_READ.
-// Readers need a path, so the bytes are written to a file. Readers trust it, since a child process
-// per file would be too slow; crashes in libhdf5 end the fuzzer's process.
+// Readers need a path, so the bytes are written to a file. Readers trust it, so
+// that crashes in libhdf5 reach the fuzzer.
 
 #include <unistd.h>
 

@@ -46,6 +46,8 @@ constexpr rlim_t kMaxBytes = 1 << 30;
 constexpr int kRead = 10;
 constexpr int kRefused = 11;
 constexpr int kOtherException = 12;
+/// Of a process that the HDF5 library crashes (hdf5/crash_guard.h).
+constexpr int kCrashOfHdf5 = 1;
 
 void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
   const rlimit both = {most, most};
@@ -100,6 +102,8 @@ Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::stri
       return {!is_seed, false, is_seed ? "read" : "read, and should be refused"};
     case kRefused:
       return {is_seed, true, "refused: " + message};
+    case kCrashOfHdf5:
+      return {is_seed, true, "refused: HDF5 crashes or loops"};
     case kOtherException:
       return {true, false, "ends in an exception other than Error: " + message};
     default:

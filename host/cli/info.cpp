@@ -26,9 +26,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// facts_of() probes a file once, before it is opened several times.
-const ReadOptions kProbed = {.trust = true};
-
 /// Returns a value as text: the members of a list, and of an object with their names.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -167,8 +164,8 @@ Json facts_of_step(const CalibrationStep& step) {
           {"date_utc", step.date_utc}, {"program_version", step.program_version}};
 }
 
-Json facts_of_calibration(const std::string& file) {
-  const SkinCalibration calibration = read_calibration_file(file, kProbed);
+Json facts_of_calibration(const std::string& file, const ReadOptions& read) {
+  const SkinCalibration calibration = read_calibration_file(file, read);
   Json facts = {{"format", "calibration"},
                 {"sensel_rows", calibration.rows},
                 {"sensel_cols", calibration.cols},
@@ -220,10 +217,8 @@ Json facts_of(const std::string& file, const InfoOptions& given) {
   const ReadOptions& options = given.read;
   if (file.ends_with(".toml")) return facts_of_scene(file);
   if (!options.dataset.empty()) return facts_of_frames(file, options);
-  if (!options.trust) probe_file(file);
-  if (is_calibration_file(file, kProbed)) return facts_of_calibration(file);
-  return is_force_file(file, kProbed) ? facts_of_forces(file, given)
-                                      : facts_of_frames(file, options);
+  if (is_calibration_file(file)) return facts_of_calibration(file, options);
+  return is_force_file(file) ? facts_of_forces(file, given) : facts_of_frames(file, options);
 }
 
 void print_device_error() {

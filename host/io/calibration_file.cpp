@@ -127,10 +127,10 @@ std::vector<CalibrationStep> read_history(const hdf5::File& file) {
 
 }  // namespace
 
-bool is_calibration_file(const std::filesystem::path& path, const ReadOptions& options) {
+bool is_calibration_file(const std::filesystem::path& path) {
   const hdf5::QuietErrors quiet;
   try {
-    const hdf5::File file = open_probed(path, options);
+    const hdf5::File file = hdf5::open_to_read(InputFile(path), false);
     return hdf5::read_text(file, file.id.get(), "format") == calibration_format::kName;
   } catch (const Error&) {
     return false;
@@ -140,7 +140,7 @@ bool is_calibration_file(const std::filesystem::path& path, const ReadOptions& o
 SkinCalibration read_calibration_file(const std::filesystem::path& path,
                                       const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  return read_calibration(open_probed(path, options));
+  return read_calibration(hdf5::open_to_read(InputFile(path), options.trust));
 }
 
 SkinCalibration read_calibration(const hdf5::File& file) {

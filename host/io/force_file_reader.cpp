@@ -291,8 +291,6 @@ void OpenForces::read_size(const std::vector<hsize_t>& shape) {
   }
   info.rows = static_cast<std::uint32_t>(shape[0]);
   info.cols = static_cast<std::uint32_t>(shape[1]);
-  hdf5::require_probe_limit(file, force_format::kStatus,
-                            static_cast<double>(info.rows) * static_cast<double>(info.cols));
 }
 
 void OpenForces::read_info() {
@@ -349,11 +347,9 @@ struct ForceFileReader::State : OpenForces {
   using OpenForces::OpenForces;
 };
 
-void try_forces(hdf5::File file) { (void)OpenForces(std::move(file)); }
-
 ForceFileReader::ForceFileReader(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  state_ = std::make_unique<State>(open_probed(path, options));
+  state_ = std::make_unique<State>(hdf5::open_to_read(InputFile(path), options.trust));
 }
 
 ForceFileReader::~ForceFileReader() = default;
@@ -399,10 +395,10 @@ FrameContacts ForceFileReader::read_contacts(std::uint64_t index) const {
   return contacts;
 }
 
-bool is_force_file(const std::filesystem::path& path, const ReadOptions& options) {
+bool is_force_file(const std::filesystem::path& path) {
   const hdf5::QuietErrors quiet;
   try {
-    const hdf5::File file = open_probed(path, options);
+    const hdf5::File file = hdf5::open_to_read(InputFile(path), false);
     return hdf5::read_text(file, file.id.get(), "format") == force_format::kName;
   } catch (const Error&) {
     return false;

@@ -29,8 +29,7 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
   const InputFile file(path);
   const DetectedFormat detected = detect_format(file);
   if (detected.kind == FileKind::hdf5) {
-    if (!options.trust) probe_frames(file, options);
-    return read_hdf5_frames(hdf5::open_to_read(file), options);
+    return read_hdf5_frames(hdf5::open_to_read(file, options.trust), options);
   }
   if (detected.frames != nullptr) return detected.frames->open(path, options);
   if (path.extension() == ".toml") {

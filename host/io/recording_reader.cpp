@@ -90,7 +90,6 @@ void Recording::open_times() {
 
 void Recording::check_times(const ReadOptions& options) {
   if (!time_) return assume_times(options, "has no /frames/time");
-  if (file_.probing) return;
   constexpr std::uint64_t kBlock = 1U << 16U;
   TimeOrder order(place(recording_format::kTime));
   std::vector<double> times_s;
@@ -104,7 +103,7 @@ void Recording::check_times(const ReadOptions& options) {
 
 /// Float readings say so themselves.
 void Recording::warn_of_missing() {
-  if (file_.probing || type_ == SenselType::f32) return;
+  if (type_ == SenselType::f32) return;
   if (!hdf5::exists(file_, recording_format::kMissing)) return;
   const hdf5::StoredFrames missing(file_, recording_format::kMissing, 0);
   constexpr std::uint64_t kBlock = 1U << 16U;

@@ -24,7 +24,7 @@ class Recording(_core.FrameSource):
     float32 counts.
 
     path: a file, a folder or a list of files: several are one source in order of their names
-    trust: the file comes from your own programs, so it is not examined first
+    trust: the file is your own, so its frames may have any size
     dataset, times: names of the arrays of frames and times in an HDF5 file, .npz archive or .mat file
     frame_size: (R, C) of frames that lie in one line of a table or array
     columns: those of a table that are readings, by name or number from 1 on: 'pressure_*', '2-97'
@@ -89,9 +89,8 @@ class Recording(_core.FrameSource):
 class ForceFile(_core.ForceReader):
     """A file of forces, read when it is indexed.
 
-    file[10] is the ForceField of a frame, file[1000:2000:10] that of several. trust: the file comes
-    from your own programs, so it is not examined first. Raises Error if it is of another format, or
-    damaged.
+    file[10] is the ForceField of a frame, file[1000:2000:10] that of several. trust: the file is
+    your own, so its frames may have any size. Raises Error if it is of another format, or damaged.
     """
 
     def __getitem__(self, frames: Union[int, slice]) -> ForceField:
@@ -114,7 +113,7 @@ class ForceFile(_core.ForceReader):
 def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _core.Calibration]:
     """Opens a file by its content: a Recording, a ForceFile or a Calibration.
 
-    trust: it comes from your own programs, so it is not examined first.
+    trust: it is your own, so its frames may have any size.
     """
     kind = "frames" if os.path.isdir(path) else _core.kind_of(path)
     if kind == "calibration":

@@ -1,8 +1,7 @@
-// Recordings with HDF5 filters, valid and damaged.
+// Recordings with HDF5 filters, sound and damaged.
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
-#include <zlib.h>
 
 #include <functional>
 #include <numeric>
@@ -140,7 +139,7 @@ TEST(FilteredReadings, AreThoseThatWereWritten) {
   }
 }
 
-/// The chunk exceeds the cache of inflated frames, which therefore holds a part of it.
+/// The chunk has 84 MB.
 TEST(FilteredReadings, OfAChunkOfManyFramesAreReadInAnyOrder) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
@@ -148,73 +147,17 @@ TEST(FilteredReadings, OfAChunkOfManyFramesAreReadInAnyOrder) {
   expect_frames(path, {10, 0, 5});
 }
 
-/// Writes a stored chunk directly, as if all filters but `skipped` had been applied.
-void put_chunk(hid_t raw, const std::vector<Bytef>& bytes, std::uint32_t skipped = 0) {
-  const hsize_t start[] = {0, 0, 0};
-  EXPECT_GE(H5Dwrite_chunk(raw, H5P_DEFAULT, skipped, start, bytes.size(), bytes.data()), 0);
-}
-
-std::vector<Bytef> deflated(std::size_t bytes) {
-  const std::vector<Bytef> plain(bytes, 1);
-  uLongf size = compressBound(plain.size());
-  std::vector<Bytef> packed(size);
-  EXPECT_EQ(compress(packed.data(), &size, plain.data(), plain.size()), Z_OK);
-  packed.resize(size);
-  return packed;
-}
-
-constexpr std::size_t kChunkBytes = kFrames * kFrameValues * 2;
-
-struct DamagedChunk {
-  const char* name;
-  std::vector<Bytef> bytes;
-  std::uint32_t skipped;
-  std::vector<std::string> message;
-};
-
-TEST(FilteredReadings, OfAnotherLengthAreRefused) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "r.h5";
-  std::vector<Bytef> broken = deflated(kChunkBytes);
-  broken[broken.size() / 2] ^= 0x55;
-  std::vector<Bytef> cut = deflated(kChunkBytes);
-  cut.resize(cut.size() - 5);
-  const DamagedChunk chunks[] = {
-      {"short", deflated(16), 0, {"inflates to 16 bytes instead of 1540"}},
-      {"one byte short", deflated(kChunkBytes - 1), 0, {"inflates to 1539 bytes", "1540"}},
-      {"long", deflated(kChunkBytes + 1), 0, {"inflates to more bytes", "1540"}},
-      {"broken", broken, 0, {"chunk of /frames/raw", "damaged"}},
-      {"cut", cut, 0, {"chunk of /frames/raw", "damaged"}},
-      {"no zlib", std::vector<Bytef>(100, 0xff), 0, {"cannot be inflated"}},
-      {"skipped and short", std::vector<Bytef>(100, 1), 3, {"holds 100 bytes", "1540"}},
-      {"absurdly long", std::vector<Bytef>(9000, 1), 0, {"has 9000 bytes instead of 1540"}},
-  };
-  for (const DamagedChunk& chunk : chunks) {
-    SCOPED_TRACE(chunk.name);
-    write_recording(path, {kFrames, kRows, kCols}, H5T_STD_U16LE, kFilters[2],
-                    [&](hid_t raw) { put_chunk(raw, chunk.bytes, chunk.skipped); });
-    const std::string error = error_of([&] { expect_frames(path, {0}); });
-    EXPECT_TRUE(has_all(error, {path.string()}));
-    EXPECT_TRUE(has_all(error, chunk.message));
-  }
-  // An unfiltered chunk has the right length.
-  write_recording(path, {kFrames, kRows, kCols}, H5T_STD_U16LE, kFilters[2], [](hid_t raw) {
-    const std::vector<std::uint16_t> readings = sample_readings();
-    std::vector<Bytef> bytes(kChunkBytes);
-    std::memcpy(bytes.data(), readings.data(), bytes.size());
-    put_chunk(raw, bytes, 3);
-  });
-  expect_frames(path, {0, 10});
-}
-
+/// HDF5 itself checks sizes and checksums of chunks.
 TEST(FilteredReadings, ThatDoNotFitTheirChecksumAreRefused) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_recording(path, {kFrames, kRows, kCols}, H5T_STD_U16LE, kFilters[1], [](hid_t raw) {
-    std::vector<Bytef> bytes(kChunkBytes + 4, 9);
-    put_chunk(raw, bytes);
+    const std::vector<unsigned char> bytes(kFrames * kFrameValues * 2 + 4, 9);
+    const hsize_t start[] = {0, 0, 0};
+    EXPECT_GE(H5Dwrite_chunk(raw, H5P_DEFAULT, 0, start, bytes.size(), bytes.data()), 0);
   });
-  EXPECT_TRUE(has_all(error_of([&] { expect_frames(path, {0}); }), {"checksum"}));
+  EXPECT_TRUE(has_all(error_of([&] { expect_frames(path, {0}); }),
+                      {"frame 0 of /frames/raw cannot be read", "damaged"}));
 }
 
 TEST(FilteredReadings, ThatWereNeverWrittenAreRefused) {
@@ -227,17 +170,12 @@ TEST(FilteredReadings, ThatWereNeverWrittenAreRefused) {
   }
 }
 
-TEST(FilteredReadings, OfHugeChunksOrOtherFiltersAreRefused) {
+TEST(FilteredReadings, OfHugeChunksAreRefused) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_recording(path, {1'000'000, kRows, kCols}, H5T_STD_U16LE, kFilters[0], write_all);
   EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }),
                       {"/frames/raw", "1000000 x 7 x 10", "128 MiB", "smaller chunks"}));
-  write_recording(
-      path, {2, kRows, kCols}, H5T_STD_U16LE,
-      [](hid_t layout) { H5Pset_scaleoffset(layout, H5Z_SO_INT, 0); }, write_all);
-  EXPECT_TRUE(
-      has_all(error_of([&] { (void)open_frames(path); }), {"/frames/raw", "scaleoffset", "gzip"}));
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ class Interchange(unittest.TestCase):
                         self.assertEqual(lines[0][3], typed.dtype.newbyteorder("=").name)
 
     def test_we_name_a_compression_that_we_lack(self):
-        with self.assertRaisesRegex(AssertionError, "'lzf'.* which is not supported; store it with"):
+        with self.assertRaisesRegex(AssertionError, "'lzf'.* which HDF5 lacks here; store it with"):
             self.new_recording(numpy.zeros((1, 20, 20), "u1"), layout={"compression": "lzf"})
 
     def test_we_read_every_kind_of_string(self):

@@ -166,8 +166,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                       std::back_inserter(info.warnings));
   }
   info.frames = source->frames();
-  ReadOptions read = options.read;
-  read.trust = true;  // It was probed.
+  const ReadOptions read = options.read;
   const bool has_truth = source->has_truth();
   auto producer = std::make_unique<SolvedProducer>(
       info, recorded_frames(path, std::move(source), read), plan, std::move(processor));
@@ -215,10 +214,11 @@ std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
                                              const std::function<void(double)>& progress) {
   if (path.extension() == ".toml") return open_scene(path, options, progress);
   if (!options.read.dataset.empty()) return open_recording(path, options);
-  if (!options.read.trust) probe_file(path);
-  if (is_force_file(path, {.trust = true})) {
-    auto producer = std::make_unique<ForceFileProducer>(path);
-    producer->open_again = [path] { return std::make_unique<ForceFileProducer>(path); };
+  if (is_force_file(path)) {
+    auto producer = std::make_unique<ForceFileProducer>(path, options.read);
+    producer->open_again = [path, read = options.read] {
+      return std::make_unique<ForceFileProducer>(path, read);
+    };
     return producer;
   }
   return open_recording(path, options);

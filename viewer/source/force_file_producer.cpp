@@ -12,9 +12,6 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// open_producer() probes every file that is not trusted.
-const ReadOptions kProbed = {.trust = true};
-
 std::string solver_of(const ForceFileInfo& info) {
   if (info.estimator.empty()) return "not known";
   return solver_words(info.layout, info.estimator, info.device);
@@ -56,9 +53,10 @@ float nan_unless(bool holds, double value) {
 
 }  // namespace
 
-ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
+ForceFileProducer::ForceFileProducer(const std::filesystem::path& path, const ReadOptions& options)
     : file_(path),
-      reader_(std::in_place, path, kProbed),
+      read_(options),
+      reader_(std::in_place, path, read_),
       info_(info_of(path, *reader_)),
       blocks_(kMostShown, [this] {
         return std::make_unique<PlaneBlock>(info_.skin.layout, info_.skin.element_rows(),
@@ -107,7 +105,7 @@ std::optional<CurvePoint> ForceFileProducer::stored_total(std::uint64_t index) {
 }
 
 void ForceFileProducer::open(const std::filesystem::path& path) {
-  ForceFileReader reader(path, kProbed);
+  ForceFileReader reader(path, read_);
   const ForceFileInfo& found = reader.info();
   if (found.layout != info_.skin.layout || found.rows != info_.skin.element_rows() ||
       found.cols != info_.skin.element_cols() || found.uncertainty != info_.has_uncertainty ||

@@ -14,9 +14,8 @@ namespace pillarfield::viewer {
 /// Reads fields from a file; computes magnitude and angles from the forces.
 class ForceFileProducer final : public FieldProducer {
  public:
-  /// The file is trusted or has passed probe_file(). Throws Error where it cannot be read or has no
-  /// frames.
-  explicit ForceFileProducer(const std::filesystem::path& path);
+  /// Throws Error where the file cannot be read or has no frames.
+  ForceFileProducer(const std::filesystem::path& path, const ReadOptions& options);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
   [[nodiscard]] ShownField produce(std::uint64_t index) override;
@@ -28,6 +27,7 @@ class ForceFileProducer final : public FieldProducer {
   void open(const std::filesystem::path& path);
 
   GrowingFile file_;
+  ReadOptions read_;
   std::optional<ForceFileReader> reader_;  ///< none where reopening failed
   SourceInfo info_;
   ForceField forces_;  ///< read last

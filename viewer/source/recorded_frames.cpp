@@ -30,7 +30,6 @@ class RecordedFrames final : public FrameProvider {
         buffers_(FieldProducer::kMostShown, [this] {
           return std::make_unique<FrameBuffer>(sensel_type_, skin_.rows, skin_.cols);
         }) {
-    options_.trust = true;     // probed before
     options_.tare_frames = 0;  // The tare stays that of the first opening.
   }
 

@@ -9,8 +9,7 @@
 namespace pillarfield {
 
 /// Whether this is an HDF5 file of a calibration; false if it cannot be read.
-[[nodiscard]] bool is_calibration_file(const std::filesystem::path& path,
-                                       const ReadOptions& options = {});
+[[nodiscard]] bool is_calibration_file(const std::filesystem::path& path);
 
 /// Reads a file of the format "pillarfield-calibration" version 1 (docs/formats.md). Throws Error
 /// if it is of another format, is damaged, or holds values out of range.

@@ -67,8 +67,7 @@ void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& inf
 [[nodiscard]] PlannedOutput planned_force_file(const std::filesystem::path& path);
 
 /// Whether this is an HDF5 file of force fields; false if it cannot be read.
-[[nodiscard]] bool is_force_file(const std::filesystem::path& path,
-                                 const ReadOptions& options = {});
+[[nodiscard]] bool is_force_file(const std::filesystem::path& path);
 
 /// Reads files of the format "pillarfield-forces" (docs/formats.md), including those of a killed
 /// writer.

@@ -19,8 +19,8 @@ struct FrameSize {
 
 /// Options of opening a file for reading. All but `trust` concern frames: open_frames() uses them.
 struct ReadOptions {
-  /// The file comes from a trusted source, such as your own programs. Other HDF5 files pass
-  /// probe_file() first, and other frames have at most 8,388,608 sensels.
+  /// The file comes from a trusted source, such as your own programs. Frames of other files have at
+  /// most 8,388,608 sensels.
   bool trust = false;
 
   /// Array of frames in an HDF5 file, an .npz archive or a .mat file. Empty: the readings of a
@@ -62,16 +62,6 @@ struct ReadOptions {
   /// threshold in place of those in the file; at least kLeastTareFrames. 0: none.
   std::uint64_t tare_frames = 0;
 };
-
-/// Reads an HDF5 file in a child process, limited to 2 s of processor time and 1 GB of memory, to
-/// protect this process from damaged or hostile files. Throws Error if the child crashes, exceeds
-/// its limits, finds damage, or finds a frame of more than 8,388,608 sensels. Files of other
-/// formats pass, since only this library reads them; so do files that this process has open through
-/// HDF5.
-///
-/// Cost: some milliseconds (docs/formats.md). The child runs no signal or exit handlers and prints
-/// nothing. A file that passes may be opened with ReadOptions::trust.
-void probe_file(const std::filesystem::path& path);
 
 /// The version of the HDF5 library, as "1.10.8".
 [[nodiscard]] std::string hdf5_version();

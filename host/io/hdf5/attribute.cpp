@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/handle.h"
 #include "pillarfield/error.h"
 
@@ -120,6 +121,7 @@ void rewrite_attribute(const File& file, hid_t object, const char* name, double 
 }
 
 std::optional<double> read_number(const File& file, hid_t object, const char* name) {
+  const CrashGuard guard(file.path, file.trusted);
   const auto attribute = open_single(file, object, name);
   if (!attribute) return std::nullopt;
   require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
@@ -129,6 +131,7 @@ std::optional<double> read_number(const File& file, hid_t object, const char* na
 }
 
 std::optional<std::vector<double>> read_numbers(const File& file, hid_t object, const char* name) {
+  const CrashGuard guard(file.path, file.trusted);
   const auto attribute = open(file, object, name);
   if (!attribute) return std::nullopt;
   require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
@@ -144,6 +147,7 @@ std::optional<std::vector<double>> read_numbers(const File& file, hid_t object, 
 }
 
 std::optional<std::string> read_text(const File& file, hid_t object, const char* name) {
+  const CrashGuard guard(file.path, file.trusted);
   const auto attribute = open_single(file, object, name);
   if (!attribute) return std::nullopt;
   if (H5Tget_class(attribute->type.get()) != H5T_STRING) {

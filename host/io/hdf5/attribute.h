@@ -23,8 +23,7 @@ void write_attribute(const File& file, hid_t object, const char* name,
                      const std::vector<double>& values);
 
 /// Reads an attribute of any standard integer, float or string type; unset if absent. Throws Error
-/// if it is not a single number or string. Call probe_file() first: a damaged string of variable
-/// length can crash HDF5.
+/// if it is not a single number or string.
 [[nodiscard]] std::optional<double> read_number(const File& file, hid_t object, const char* name);
 [[nodiscard]] std::optional<std::string> read_text(const File& file, hid_t object,
                                                    const char* name);

@@ -4,11 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 #include <system_error>
-#include <utility>
 
 #include "pillarfield/error.h"
 
@@ -41,6 +40,23 @@ std::vector<hsize_t> chunk_of(const File& file, const Handle& layout, const std:
   throw Error(file.path.string(), fmt::format("the chunks of {} have no size", name), kDamaged);
 }
 
+void require_filters(const File& file, const Handle& layout, const std::string& name) {
+  const int count = H5Pget_nfilters(layout.get());
+  require(count, file.path, fmt::format("the filters of {} cannot be read", name), kDamaged);
+  for (unsigned index = 0; index < static_cast<unsigned>(count); ++index) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    char filter_name[64] = "";
+    const H5Z_filter_t filter = H5Pget_filter2(layout.get(), index, &flags, &values, nullptr,
+                                               sizeof filter_name, filter_name, nullptr);
+    if (H5Zfilter_avail(filter) > 0) continue;
+    throw Error(file.path.string(),
+                fmt::format("{} is stored with '{:.60}', HDF5 filter {}, which HDF5 lacks here",
+                            name, filter_name, filter),
+                "store it with gzip, or uncompressed");
+  }
+}
+
 /// Number of chunks that the values fill.
 double chunks_of(const Storage& storage) {
   double chunks = 1;
@@ -54,7 +70,7 @@ double chunks_of(const Storage& storage) {
 /// Least size of the file, bytes. Deflate compresses by a factor of at most 1032.
 double least_bytes(const Storage& storage) {
   const double bytes = product(storage.extent) * static_cast<double>(storage.value_bytes);
-  return storage.filters.empty() ? bytes : std::max(bytes / 1032, chunks_of(storage));
+  return storage.is_filtered ? std::max(bytes / 1032, chunks_of(storage)) : bytes;
 }
 
 /// Number of stored chunks; HDF5 walks the whole chunk index.
@@ -83,8 +99,7 @@ std::uint64_t end_of_last_value(const File& file, const Handle& dataset, const s
                                      &bytes),
           file.path, fmt::format("{} cannot be read", name), kDamaged);
   if (address == HADDR_UNDEF) return 0;
-  const bool filtered = !storage.filters.empty();
-  return address + (filtered ? bytes : (last_in_chunk + 1) * storage.value_bytes);
+  return address + (storage.is_filtered ? bytes : (last_in_chunk + 1) * storage.value_bytes);
 }
 
 std::uint64_t bytes_of(const File& file) {
@@ -97,6 +112,14 @@ std::uint64_t bytes_of(const File& file) {
 }  // namespace
 
 bool Storage::holds_values() const { return std::ranges::find(extent, 0U) == extent.end(); }
+
+std::size_t Storage::layer_bytes() const {
+  double bytes = chunk_bytes();
+  for (std::size_t d = 1; d < extent.size(); ++d) {
+    bytes *= std::ceil(static_cast<double>(extent[d]) / static_cast<double>(chunk[d]));
+  }
+  return static_cast<std::size_t>(std::min(bytes, static_cast<double>(kMaxChunkBytes)));
+}
 
 double Storage::chunk_bytes() const { return product(chunk) * static_cast<double>(value_bytes); }
 
@@ -113,16 +136,19 @@ Storage storage_of(const File& file, const Handle& dataset, const std::string& n
   storage.value_bytes = H5Tget_size(type.get());
   storage.extent = extent_of(file, dataset, name);
   storage.chunk = chunk_of(file, layout, name, storage.extent.size());
-  storage.filters = {file.path, name, layout, storage.value_bytes};
+  storage.is_filtered = H5Pget_nfilters(layout.get()) != 0;
+  require_filters(file, layout, name);
+  if (storage.is_filtered && storage.chunk_bytes() > static_cast<double>(kMaxChunkBytes)) {
+    throw Error(file.path.string(),
+                fmt::format("{} is compressed in chunks of {} values, more than {} MiB each", name,
+                            fmt::join(storage.chunk, " x "), kMaxChunkBytes >> 20),
+                "store it in smaller chunks");
+  }
   H5D_fill_time_t fill_time = H5D_FILL_TIME_NEVER;
   H5Pget_fill_time(layout.get(), &fill_time);
   storage.is_filled =
-      !storage.chunk.empty() && storage.filters.empty() && fill_time != H5D_FILL_TIME_NEVER;
-  unsigned options = 0;
-  if (!storage.filters.empty()) H5Pget_chunk_opts(layout.get(), &options);
-  if (options == 0) return storage;
-  throw Error(file.path.string(), fmt::format("the last chunks of {} are stored unfiltered", name),
-              "store all chunks with the same filters");
+      !storage.chunk.empty() && !storage.is_filtered && fill_time != H5D_FILL_TIME_NEVER;
+  return storage;
 }
 
 void require_stored(const File& file, const Handle& dataset, const std::string& name,
@@ -148,122 +174,6 @@ void require_stored(const File& file, const Handle& dataset, const std::string& 
               fmt::format("{} claims {} values in {} chunks, but only {} are stored", name,
                           fmt::join(storage.extent, " x "), chunks_of(storage), stored),
               "the file is damaged, or the dataset is longer than its data; shorten it");
-}
-
-namespace {
-
-constexpr std::size_t kInflatedBytes = std::size_t{32} << 20;
-
-/// Largest deflated size: incompressible data grow by 5 bytes per 16 KiB, plus a header.
-constexpr std::size_t longest_stored(std::size_t bytes) { return bytes + bytes / 1000 + 1024; }
-
-}  // namespace
-
-FilteredChunks::FilteredChunks(std::filesystem::path file, std::string name, const Storage& storage)
-    : file_(std::move(file)),
-      name_(std::move(name)),
-      rank_(storage.extent.size()),
-      filters_(storage.filters),
-      value_bytes_(storage.value_bytes) {
-  if (storage.chunk_bytes() > static_cast<double>(kMaxChunkBytes)) {
-    throw Error(file_.string(),
-                fmt::format("{} is compressed in chunks of {} values, more than {} MiB each", name_,
-                            fmt::join(storage.chunk, " x "), kMaxChunkBytes >> 20),
-                "store it in smaller chunks");
-  }
-  if (rank_ > extent_.size()) {
-    throw Error(file_.string(), fmt::format("{} has {} dimensions", name_, rank_),
-                "docs/formats.md gives its shape");
-  }
-  std::ranges::copy(storage.extent, extent_.begin());
-  std::ranges::copy(storage.chunk, chunk_.begin());
-  frame_bytes_ = extent_[1] * extent_[2] * value_bytes_;
-  chunk_bytes_ = chunk_[0] * chunk_[1] * chunk_[2] * value_bytes_;
-}
-
-void FilteredChunks::copy(const Handle& dataset, std::uint64_t first, std::uint64_t count,
-                          std::byte* frames) {
-  while (count > 0) {
-    if (first < first_ || first >= end_) inflate_frames(dataset, first);
-    const std::uint64_t here = std::min(count, end_ - first);
-    std::memcpy(frames, frames_.data() + (first - first_) * frame_bytes_, here * frame_bytes_);
-    frames += here * frame_bytes_;
-    first += here;
-    count -= here;
-  }
-}
-
-void FilteredChunks::touch(const Handle& dataset) const {
-  Place last{};
-  for (std::size_t d = 0; d < last.size(); ++d) last[d] = (extent_[d] - 1) / chunk_[d] * chunk_[d];
-  std::uint32_t skipped = 0;
-  (void)stored_chunk(dataset, {}, skipped);
-  (void)stored_chunk(dataset, last, skipped);
-}
-
-/// Inflates all frames of the chunks that hold frame `wanted`, or those from `wanted` on that fit
-/// into the cache.
-void FilteredChunks::inflate_frames(const Handle& dataset, std::uint64_t wanted) {
-  const hsize_t chunk_first = wanted / chunk_[0] * chunk_[0];
-  const hsize_t chunk_end = chunk_first + std::min(chunk_[0], extent_[0] - chunk_first);
-  const std::uint64_t most = std::max<std::uint64_t>(1, kInflatedBytes / frame_bytes_);
-  end_ = 0;  // empty if this throws
-  first_ = chunk_end - chunk_first <= most ? chunk_first : wanted;
-  const std::uint64_t end = std::min<hsize_t>(chunk_end, first_ + most);
-  frames_.resize((end - first_) * frame_bytes_);
-  end_ = end;
-  try {
-    for (hsize_t row = 0; row < extent_[1]; row += chunk_[1]) {
-      for (hsize_t col = 0; col < extent_[2]; col += chunk_[2]) {
-        const Place start = {chunk_first, row, col};
-        std::uint32_t skipped = 0;
-        std::vector<std::byte> stored = stored_chunk(dataset, start, skipped);
-        copy_chunk(filters_.undo(std::move(stored), skipped, chunk_bytes_), start);
-      }
-    }
-  } catch (...) {
-    end_ = 0;
-    throw;
-  }
-}
-
-/// Copies the part of a chunk that lies in the dataset and in the cached frames.
-void FilteredChunks::copy_chunk(const std::vector<std::byte>& chunk, const Place& start) {
-  const hsize_t end_frame = std::min<hsize_t>(end_, start[0] + chunk_[0]);
-  const hsize_t rows = std::min(chunk_[1], extent_[1] - start[1]);
-  const hsize_t cols = std::min(chunk_[2], extent_[2] - start[2]);
-  for (hsize_t frame = std::max<hsize_t>(first_, start[0]); frame < end_frame; ++frame) {
-    for (hsize_t row = 0; row < rows; ++row) {
-      const hsize_t from = ((frame - start[0]) * chunk_[1] + row) * chunk_[2];
-      const hsize_t to = ((frame - first_) * extent_[1] + start[1] + row) * extent_[2] + start[2];
-      std::memcpy(frames_.data() + to * value_bytes_, chunk.data() + from * value_bytes_,
-                  cols * value_bytes_);
-    }
-  }
-}
-
-std::vector<std::byte> FilteredChunks::stored_chunk(const Handle& dataset, const Place& start,
-                                                    std::uint32_t& skipped) const {
-  const std::string failure =
-      fmt::format("the chunk of {} at frame {} cannot be read", name_, start[0]);
-  hsize_t bytes = 0;
-  require(H5Dget_chunk_storage_size(dataset.get(), start.data(), &bytes), file_, failure, kDamaged);
-  if (bytes == 0) {
-    throw Error(file_.string(), fmt::format("{} was never written at frame {}", name_, start[0]),
-                kDamaged);
-  }
-  const std::size_t most = longest_stored(chunk_bytes_);
-  if (bytes > most) {
-    throw Error(file_.string(),
-                fmt::format("a chunk of {} has {} bytes instead of {}", name_, bytes, chunk_bytes_),
-                kDamaged);
-  }
-  // HDF5 reads the size again: a writer may have replaced the chunk by a longer one meanwhile.
-  std::vector<std::byte> stored(most);
-  require(H5Dread_chunk(dataset.get(), H5P_DEFAULT, start.data(), &skipped, stored.data()), file_,
-          failure, kDamaged);
-  stored.resize(bytes);
-  return stored;
 }
 
 }  // namespace pillarfield::hdf5

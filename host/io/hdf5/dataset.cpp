@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/handle.h"
 #include "pillarfield/error.h"
@@ -101,6 +102,7 @@ std::unique_ptr<NumberArray> open_dataset(const std::shared_ptr<const File>& ope
 }
 
 std::vector<std::string> list_datasets(const File& file) {
+  const CrashGuard guard(file.path, file.trusted);
   std::vector<std::string> names;
   H5Lvisit(
       file.id.get(), H5_INDEX_NAME, H5_ITER_NATIVE,

@@ -10,6 +10,7 @@
 
 #include "io/file_kind.h"
 #include "io/hdf5/attribute.h"
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/stored_frames.h"
 #include "pillarfield/error.h"
 
@@ -91,7 +92,7 @@ void require_whole(const File& file) {
 
 }  // namespace
 
-File open_to_read(const InputFile& input, bool probing) {
+File open_to_read(const InputFile& input, bool trusted) {
   const std::filesystem::path& path = input.path();
   if (detect_format(input).kind != FileKind::hdf5) {
     throw Error(path.string(), "is not an HDF5 file", kLayout);
@@ -102,8 +103,9 @@ File open_to_read(const InputFile& input, bool probing) {
                 "wait for the writer, or write it again");
   }
   File file;
+  const CrashGuard guard(path, trusted);
   file.path = path;
-  file.probing = probing;
+  file.trusted = trusted;
   file.unclosed = state == WriterState::swmr;
   const unsigned mode = H5F_ACC_RDONLY | (file.unclosed ? H5F_ACC_SWMR_READ : 0u);
   const Handle access = patient_access(input, file.unclosed);
@@ -219,6 +221,7 @@ bool leads_within_file(const File& file, const std::string& path, const Handle& 
 }  // namespace
 
 bool exists(const File& file, std::string_view path) {
+  const CrashGuard guard(file.path, file.trusted);
   const Handle access = access_within_file(file);
   // HDF5 checks one link at a time.
   for (std::size_t end = 1; end != std::string_view::npos;) {
@@ -240,6 +243,7 @@ Handle open_object(const File& file, const char* path) {
     throw Error(file.path.string(), fmt::format("has no {}", path),
                 "docs/formats.md lists the required objects");
   }
+  const CrashGuard guard(file.path, file.trusted);
   const Handle access = access_within_file(file);
   return own(H5Oopen(file.id.get(), path, access.get()), file.path,
              fmt::format("{} cannot be opened", path), kDamaged);

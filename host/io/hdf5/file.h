@@ -18,7 +18,7 @@ struct File {
   Handle id;
   std::shared_ptr<WriteStatus> write_status;  ///< set for created files
   bool unclosed = false;                      ///< its writer was killed or is still writing
-  bool probing = false;                       ///< see open_to_read
+  bool trusted = false;                       ///< see open_to_read
   Handle flushed_bytes;                       ///< set after start_appending(): see flush()
   Handle flushed_frames;                      ///< likewise
   /// Frames that the writer of an unclosed file has flushed. Datasets may be longer: HDF5 would
@@ -27,9 +27,8 @@ struct File {
 };
 
 /// Opens a file for reading, as a SWMR reader if its writer has not closed it; `input` may be
-/// closed afterwards. With `probing`, for the child process of probe_file(), datasets refuse frames
-/// above kMaxProbedValues and read their first and last values on opening.
-[[nodiscard]] File open_to_read(const InputFile& input, bool probing = false);
+/// closed afterwards. Unless it is `trusted`, datasets refuse frames above kMostUntrustedValues.
+[[nodiscard]] File open_to_read(const InputFile& input, bool trusted);
 
 /// Returns the root attribute `version`. Throws Error unless it is 1 to `newest`, and `format` as
 /// given.

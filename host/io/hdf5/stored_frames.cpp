@@ -3,15 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/handle.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {
 namespace {
+
+/// HDF5's default.
+constexpr std::size_t kLeastCacheBytes = std::size_t{1} << 20;
 
 /// The number type of a dataset; NumPy stores booleans as an enumeration of int8.
 Handle number_type(const std::filesystem::path& path, const std::string& name,
@@ -28,17 +31,19 @@ Handle number_type(const std::filesystem::path& path, const std::string& name,
 
 }  // namespace
 
-void require_probe_limit(const File& file, const std::string& name, double values) {
-  if (!file.probing || values <= static_cast<double>(kMaxProbedValues)) return;
+void require_frame_limit(const File& file, const std::string& name, double values) {
+  if (file.trusted || values <= static_cast<double>(kMostUntrustedValues)) return;
   throw Error(file.path.string(),
               fmt::format("{} has {} values in a frame or plane, more than {}", name, values,
-                          kMaxProbedValues),
+                          kMostUntrustedValues),
               "read larger ones from a trusted file, with --trust-input");
 }
 
 StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_t frame_rank,
                            bool may_lack_chunks)
-    : path_(file.path), name_(name), dataset_(open_object(file, name.c_str())) {
+    : path_(file.path), name_(name), is_trusted_(file.trusted) {
+  const CrashGuard guard(path_, is_trusted_);
+  dataset_ = open_object(file, name.c_str());
   if (H5Iget_type(dataset_.get()) != H5I_DATASET) {
     throw Error(path_.string(), fmt::format("{} is not a dataset", name),
                 "docs/formats.md lists the required objects");
@@ -50,26 +55,23 @@ StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_
                 fmt::format("it needs {}; see docs/formats.md", frame_rank + 1));
   }
   require_stored(file, dataset_, name_, storage_, may_lack_chunks);
-  if (!storage_.filters.empty()) {
-    chunks_ = std::make_unique<FilteredChunks>(path_, name_, storage_);
-  }
-  if (!file.probing) return;
   double values = 1;
   for (const hsize_t size : shape()) values *= static_cast<double>(size);
-  require_probe_limit(file, name_, values);
-  touch();
+  require_frame_limit(file, name_, values);
+  if (storage_.is_filtered) keep_inflated_chunks(file);
 }
 
-/// Reads everything in HDF5 that reading frames will need.
-void StoredFrames::touch() const {
-  if (!storage_.holds_values()) return;
-  if (chunks_) return chunks_->touch(dataset_);
-  double value = 0;
-  std::vector<hsize_t> at(storage_.extent.size(), 0);
-  const std::vector<hsize_t> one(at.size(), 1);
-  read_selection(at, one, H5T_NATIVE_DOUBLE, &value);
-  for (std::size_t d = 0; d < at.size(); ++d) at[d] = storage_.extent[d] - 1;
-  read_selection(at, one, H5T_NATIVE_DOUBLE, &value);
+/// Opens the dataset again with a cache for the chunks that a frame lies in, so that chunks of many
+/// frames are not inflated for each of them.
+void StoredFrames::keep_inflated_chunks(const File& file) {
+  const std::string failure = fmt::format("{} cannot be opened", name_);
+  const Handle access = own(H5Pcreate(H5P_DATASET_ACCESS), path_, failure);
+  require(H5Pset_chunk_cache(access.get(), H5D_CHUNK_CACHE_NSLOTS_DEFAULT,
+                             std::max(kLeastCacheBytes, storage_.layer_bytes()),
+                             H5D_CHUNK_CACHE_W0_DEFAULT),
+          path_, failure);
+  dataset_ = {};
+  dataset_ = own(H5Dopen2(file.id.get(), name_.c_str(), access.get()), path_, failure, kDamaged);
 }
 
 void StoredFrames::get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type,
@@ -79,34 +81,18 @@ void StoredFrames::get_all(std::uint64_t first, std::uint64_t count, hid_t memor
   std::vector<hsize_t> size = storage_.extent;
   start[0] = first;
   size[0] = count;
-  if (!chunks_) return read_selection(start, size, memory_type, frames);
-  if (H5Tequal(type_.get(), memory_type) > 0) {
-    return chunks_->copy(dataset_, first, count, static_cast<std::byte*>(frames));
-  }
-  std::size_t values = 1;
-  for (const hsize_t each : size) values *= each;
-  const std::size_t bytes = values * H5Tget_size(memory_type);
-  std::vector<std::byte> converted(std::max(bytes, values * storage_.value_bytes));
-  chunks_->copy(dataset_, first, count, converted.data());
-  require(H5Tconvert(type_.get(), memory_type, values, converted.data(), nullptr, H5P_DEFAULT),
-          path_, fmt::format("{} cannot be converted", name_), kDamaged);
-  std::memcpy(frames, converted.data(), bytes);
-}
-
-void StoredFrames::read_selection(const std::vector<hsize_t>& start,
-                                  const std::vector<hsize_t>& count, hid_t memory_type,
-                                  void* values) const {
-  const std::string failure = start[0] == 0 && count[0] == storage_.extent[0]
+  const CrashGuard guard(path_, is_trusted_);
+  const std::string failure = first == 0 && count == storage_.extent[0]
                                   ? fmt::format("{} cannot be read", name_)
-                                  : fmt::format("frame {} of {} cannot be read", start[0], name_);
+                                  : fmt::format("frame {} of {} cannot be read", first, name_);
   const int rank = static_cast<int>(start.size());
   const Handle source =
       own(H5Screate_simple(rank, storage_.extent.data(), nullptr), path_, failure);
-  require(H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+  require(H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, size.data(),
                               nullptr),
           path_, failure);
-  const Handle target = own(H5Screate_simple(rank, count.data(), nullptr), path_, failure);
-  require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, values),
+  const Handle target = own(H5Screate_simple(rank, size.data(), nullptr), path_, failure);
+  require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, frames),
           path_, failure, kDamaged);
 }
 
@@ -118,7 +104,7 @@ std::vector<float> read_plane(const File& file, const char* name, std::size_t ro
                 fmt::format("{} is {} x {} values", name, stored.frames(), stored.shape()[0]),
                 fmt::format("it needs one per sensel, {} x {}", rows, cols));
   }
-  require_probe_limit(file, name, static_cast<double>(rows) * static_cast<double>(cols));
+  require_frame_limit(file, name, static_cast<double>(rows) * static_cast<double>(cols));
   std::vector<float> values(rows * cols);
   stored.get_all(0, rows, H5T_NATIVE_FLOAT, values.data());
   return values;

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,10 +12,10 @@ namespace pillarfield::hdf5 {
 
 /// Largest number of values of a frame or plane in an untrusted file. All planes and results of
 /// such a skin stay below 1 GB together.
-inline constexpr std::size_t kMaxProbedValues = std::size_t{1} << 23;
+inline constexpr std::size_t kMostUntrustedValues = std::size_t{1} << 23;
 
-/// Throws Error if a probed file has more `values` in a frame or plane.
-void require_probe_limit(const File& file, const std::string& name, double values);
+/// Throws Error if an untrusted file has more `values` in a frame or plane.
+void require_frame_limit(const File& file, const std::string& name, double values);
 
 /// A dataset [frames, ...] of numbers for reading, with its length at the time of opening.
 class StoredFrames {
@@ -24,8 +23,8 @@ class StoredFrames {
   StoredFrames() = default;
 
   /// Throws Error if the dataset does not have `frame_rank` dimensions beside the frames, does not
-  /// hold plain numbers, or claims more than its file stores. For a probed file it checks
-  /// kMaxProbedValues and reads the first and last value. `may_lack_chunks` as in require_stored().
+  /// hold plain numbers, claims more than its file stores, or has too large frames for an
+  /// untrusted file. `may_lack_chunks` as in require_stored().
   StoredFrames(const File& file, const std::string& name, std::size_t frame_rank,
                bool may_lack_chunks = false);
 
@@ -51,17 +50,15 @@ class StoredFrames {
   void get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type, void* frames) const;
 
  private:
-  void touch() const;
-  void read_selection(const std::vector<hsize_t>& start, const std::vector<hsize_t>& count,
-                      hid_t memory_type, void* values) const;
+  void keep_inflated_chunks(const File& file);
 
   std::filesystem::path path_;
   std::string name_;
+  bool is_trusted_ = false;
   Handle dataset_;
   Handle type_;  ///< of the values; for an enumeration, of its integers
   bool is_enumeration_ = false;
   Storage storage_;
-  std::unique_ptr<FilteredChunks> chunks_;  ///< set for filtered datasets
 };
 
 /// Reads a dataset [rows, cols] of any number type.

@@ -30,7 +30,7 @@ struct FoundContent {
 
 FoundContent hdf5_content(const InputFile& input) {
   const hdf5::QuietErrors quiet;
-  const hdf5::File file = hdf5::open_to_read(input);
+  const hdf5::File file = hdf5::open_to_read(input, false);
   const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
   if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
   if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};

@@ -121,10 +121,10 @@ void ArraySource::check_size(const ReadOptions& options) const {
                             text_of_shape(array_->shape()), kMaxSensels),
                 "frames need the shape (frames, rows, columns)");
   }
-  if (!options.trust && skin_.sensels() > hdf5::kMaxProbedValues) {
+  if (!options.trust && skin_.sensels() > hdf5::kMostUntrustedValues) {
     throw Error(array_->place(),
                 fmt::format("has frames of {} sensels, more than {}", skin_.sensels(),
-                            hdf5::kMaxProbedValues),
+                            hdf5::kMostUntrustedValues),
                 "read larger ones from a trusted file, with --trust-input");
   }
 }
