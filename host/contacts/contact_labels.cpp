@@ -27,9 +27,10 @@ std::uint64_t word_at(const std::uint8_t* bytes) {
 
 /// Bit n is set if pillar n of eight is loaded.
 unsigned loaded_of(std::uint64_t word) {
-  // A usable bit carries into bit 4 of its byte; the product gathers these eight in the top byte.
-  const std::uint64_t usable = word & (kEachByte * status::kUsable);
-  const std::uint64_t carried = ((usable + kEachByte * status::kUsable) >> 4) & kEachByte;
+  // A set bit carries into bit 6 of its byte; the product gathers these eight in the top byte.
+  constexpr std::uint64_t kSix = 63;
+  const std::uint64_t pressed = word & (kEachByte * status::kLoaded);
+  const std::uint64_t carried = ((pressed + kEachByte * kSix) >> 6) & kEachByte;
   return static_cast<unsigned>((carried * 0x0102040810204080u) >> 56);
 }
 
@@ -45,11 +46,10 @@ std::uint64_t eight_from(std::span<const std::uint8_t> row, std::size_t col) {
   return word;
 }
 
-/// Pillars that a contact may bridge, since their load is unknown: missing or at full scale,
-/// without a usable sensel.
-constexpr unsigned kUnknownLoad = status::kInconsistent | status::kSaturated;
+/// Pillars that a contact may bridge, since their load is unknown: those of missing sensels.
+constexpr unsigned kUnknownLoad = status::kInconsistent;
 bool may_be_loaded(std::uint8_t status) {
-  return (status & kUnknownLoad) != 0 && (status & status::kUsable) == 0;
+  return (status & kUnknownLoad) != 0 && (status & status::kLoaded) == 0;
 }
 
 /// The widest gap that a contact bridges: two dead lines side by side.

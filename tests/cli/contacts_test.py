@@ -96,6 +96,24 @@ class Contacts(CommandTest):
             self.assertAlmostEqual(float(row["friction"]), 0.6, delta=0.02)
             self.assertAlmostEqual(float(row["centre_of_pressure_y_mm"]), 20, delta=0.2)
 
+    def test_saturated_sensels_count(self):
+        """The sums of contacts are those of the field."""
+        frames = np.zeros((3, 16, 16), "u1")
+        frames[:, 4:9, 4:9], frames[:, 5:8, 3] = 255, 120
+        np.save(self.folder / "full.npy", frames)
+        for layout in ("sensels", "pillars"):
+            with self.subTest(layout=layout):
+                run("solve", self.folder / "full.npy", "--layout", layout, "--rate", 100, "--pitch-mm", 5,
+                    "--counts-per-newton", 10, "--full-scale", 255, "--threshold", 5, "-o", self.forces,
+                    "--contacts", self.csv, "--overwrite", "-q")
+                with h5py.File(self.forces) as file:
+                    normal = file["force/normal"][:]
+                rows = self.rows()
+                total = sum(float(row["normal_n"]) for row in rows if row["row"] == "patch")
+                self.assertAlmostEqual(total / normal.sum(), 1, 6)
+                each = sum(float(row["normal_n"]) for row in rows if row["row"] == "contact")
+                self.assertAlmostEqual(each / normal.sum(), 1, 6)
+
     def test_formats_agree(self):
         self.solve("--contacts", self.csv)
         self.solve("--contacts", self.json)

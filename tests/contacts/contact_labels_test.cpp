@@ -43,7 +43,7 @@ struct Mask {
 
   [[nodiscard]] bool loaded(std::int64_t row, std::int64_t col) const {
     if (row < 0 || col < 0 || row >= rows || col >= cols) return false;
-    return (status[static_cast<std::size_t>(row * cols + col)] & status::kUsable) != 0;
+    return (status[static_cast<std::size_t>(row * cols + col)] & status::kLoaded) != 0;
   }
 
   std::uint32_t rows;
@@ -179,14 +179,14 @@ TEST(ContactLabels, IsThatOfAFloodOnManySmallMasks) {
   }
 }
 
-TEST(ContactLabels, EveryStatusByteCountsByItsUsableBits) {
-  for (unsigned status = 0; status < 256; ++status) {
+TEST(ContactLabels, EveryStatusByteCountsByItsUsableAndSaturatedBits) {
+  for (unsigned byte = 0; byte < 256; ++byte) {
     for (std::uint32_t col = 0; col < 19; ++col) {
       std::vector<std::uint8_t> bytes(19, status::kAmbiguous | status::kFromNeighbours);
-      bytes[col] = static_cast<std::uint8_t>(status);
+      bytes[col] = static_cast<std::uint8_t>(byte);
       ContactLabels labels;
       labels.find(bytes, 1, 19);
-      ASSERT_EQ(labels.contacts(), (status & 15u) != 0 ? 1 : 0) << status;
+      ASSERT_EQ(labels.contacts(), (byte & status::kLoaded) != 0 ? 1 : 0) << byte;
       for (const ContactRun& run : labels.runs()) ASSERT_EQ(run.first, col);
     }
   }
@@ -313,7 +313,8 @@ TEST(ContactLabels, MissingPillarsDoNotPartAContact) {
       {{"#x.", ".x.", ".x.", ".x#"}, 2},  // two fingers beside a dead column
       {{"#x", ".x", "#x"}, 2},            // on one side of it
       {{"xxxxxxxx", "#xxxxxx#", "xxxxxxxx"}, 2},
-      {{"##ss##"}, 1},
+      {{"##ss##"}, 1},  // saturated ones are loaded
+      {{"ss", ".."}, 1},
       {{"#.x.#"}, 2},
       {{"x#", "#x"}, 1},
       {{"xx", "xx"}, 0},

@@ -17,6 +17,9 @@ inline constexpr std::uint8_t kInconsistent = 64;  ///< a sensel is missing (an 
                                                    ///< pillar in contact), or readings contradict
 inline constexpr std::uint8_t kFromNeighbours = 128;  ///< resolved by the friction of its contact
 
+/// A pillar with one of these is loaded: its contact counts it.
+inline constexpr std::uint8_t kLoaded = kUsable | kSaturated;
+
 }  // namespace pillarfield::status
 
 namespace pillarfield {

@@ -174,7 +174,7 @@ void put_cells(std::span<const Value> plane, std::uint32_t cols, std::uint32_t c
 void find_touched(std::span<const std::uint8_t> status, std::vector<std::uint32_t>& touched) {
   touched.clear();
   for (std::size_t pillar = 0; pillar < status.size(); ++pillar) {
-    if ((status[pillar] & status::kUsable) != 0) {
+    if ((status[pillar] & status::kLoaded) != 0) {
       touched.push_back(static_cast<std::uint32_t>(pillar));
     }
   }
