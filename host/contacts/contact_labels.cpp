@@ -25,13 +25,15 @@ std::uint64_t word_at(const std::uint8_t* bytes) {
   return word;
 }
 
-/// Bit n is set if pillar n of eight is loaded.
-unsigned loaded_of(std::uint64_t word) {
-  // A set bit carries into bit 6 of its byte; the product gathers these eight in the top byte.
+/// 1 in each byte of a loaded pillar: a set bit carries into bit 6.
+std::uint64_t loaded_bytes(std::uint64_t word) {
   constexpr std::uint64_t kSix = 63;
-  const std::uint64_t pressed = word & (kEachByte * status::kLoaded);
-  const std::uint64_t carried = ((pressed + kEachByte * kSix) >> 6) & kEachByte;
-  return static_cast<unsigned>((carried * 0x0102040810204080u) >> 56);
+  return (((word & (kEachByte * status::kLoaded)) + kEachByte * kSix) >> 6) & kEachByte;
+}
+
+/// Bit n is that of byte n, which is 0 or 1.
+unsigned bits_of(std::uint64_t bytes) {
+  return static_cast<unsigned>((bytes * 0x0102040810204080u) >> 56);
 }
 
 /// The status of eight pillars from column `col`; zero past the row's end.
@@ -52,27 +54,37 @@ bool may_be_loaded(std::uint8_t status) {
   return (status & kUnknownLoad) != 0 && (status & status::kLoaded) == 0;
 }
 
+/// Bit n is set if pillar n of eight may be loaded.
+unsigned may_be_loaded_of(std::uint64_t word) {
+  return bits_of((word >> std::countr_zero(kUnknownLoad)) & kEachByte & ~loaded_bytes(word));
+}
+
 /// The widest gap that a contact bridges: two dead lines side by side.
 constexpr std::uint32_t kWidestGap = 2;
 
-/// Status bytes that one is_idle() test covers.
+/// Status bytes that are tested at a time.
 constexpr std::size_t kStride = 4 * kWordBytes;
 
-bool is_idle(const std::uint8_t* bytes) {
+/// All bits of kStride status bytes.
+std::uint64_t bits_in(const std::uint8_t* bytes) {
   // Not a loop: that would not be unrolled.
-  const std::uint64_t any = word_at(bytes) | word_at(bytes + kWordBytes) |
-                            word_at(bytes + 2 * kWordBytes) | word_at(bytes + 3 * kWordBytes);
-  return any == 0;
+  return word_at(bytes) | word_at(bytes + kWordBytes) | word_at(bytes + 2 * kWordBytes) |
+         word_at(bytes + 3 * kWordBytes);
 }
 
-/// A column at or after `col` before which all status bytes are zero: the row's end, or a whole
-/// number of words from `col`.
-std::size_t skip_idle_bytes(std::span<const std::uint8_t> row, std::size_t col) {
+/// A column at or after `col` before which no pillar is loaded: the row's end, or a whole number of
+/// words from `col`. Adds the bits that it meets.
+std::size_t skip_unloaded(std::span<const std::uint8_t> row, std::size_t col, std::uint64_t& met) {
+  const auto is_unloaded = [&](std::size_t at) {
+    const std::uint64_t bits = bits_in(row.data() + at);
+    met |= bits;
+    return (bits & kEachByte * status::kLoaded) == 0;
+  };
   for (; col + kStride <= row.size(); col += kStride) {
-    if (!is_idle(row.data() + col)) return col;
+    if (!is_unloaded(col)) return col;
   }
   // Fewer than kStride bytes are left: test the last kStride bytes of the row.
-  if (row.size() >= kStride && is_idle(row.data() + row.size() - kStride)) return row.size();
+  if (row.size() >= kStride && is_unloaded(row.size() - kStride)) return row.size();
   return col;
 }
 
@@ -113,11 +125,11 @@ void append_runs(std::span<const std::uint8_t> row, const ContactRun& active,
                  std::vector<ContactRun>& runs, std::uint64_t& met) {
   const auto loaded = row.first(active.end);
   for_each_run(
-      active.first, loaded.size(), [&](std::size_t col) { return skip_idle_bytes(loaded, col); },
+      active.first, loaded.size(), [&](std::size_t col) { return skip_unloaded(loaded, col, met); },
       [&](std::size_t col) {
         const std::uint64_t word = eight_from(loaded, col);
         met |= word;
-        return loaded_of(word);
+        return bits_of(loaded_bytes(word));
       },
       [&](std::size_t first, std::size_t end) { runs.push_back(run_of(active.row, first, end)); });
 }
@@ -130,7 +142,7 @@ unsigned active_at(std::span<const std::uint8_t> marks, std::size_t at) {
   } else {
     std::memcpy(&word, marks.data() + at, marks.size() - at);
   }
-  return static_cast<unsigned>((~word & kEachByte) * 0x0102040810204080u >> 56);
+  return bits_of(~word & kEachByte);
 }
 
 /// Appends the column ranges of a row of `cols` pillars whose blocks are not idle.
@@ -199,38 +211,57 @@ void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t 
   }
 }
 
-/// Joins a run with those that lie behind a gap to its right or below it.
-void join_across_gaps(std::span<const std::uint8_t> status, std::uint32_t cols,
-                      std::span<const ContactRun> runs, std::uint32_t run,
-                      std::vector<std::uint32_t>& parents) {
-  // Joins with the run at a place, if there is one; rows and columns below 0 are 2^32 - 1.
-  const auto join_at = [&](std::uint32_t row, std::uint32_t col) {
-    const auto after = std::ranges::upper_bound(
-        runs, std::pair(row, col), {},
-        [](const ContactRun& each) { return std::pair(each.row, each.first); });
-    if (after == runs.begin() || after[-1].row != row || after[-1].end <= col) return;
-    join(parents, run, static_cast<std::uint32_t>(after - runs.begin() - 1));
-  };
-  // From the first place of a gap, whose length is at most kWidestGap.
-  const auto join_behind = [&](std::uint32_t row, std::uint32_t col, bool is_below) {
-    for (std::uint32_t length = 0; length <= kWidestGap; ++length) {
-      const std::size_t place = std::size_t{row} * cols + col;
-      if (col >= cols || place >= status.size()) return;
-      if (!may_be_loaded(status[place])) {
-        for (std::uint32_t side = 0; length > 0 && side <= 2 * length + 2; ++side) {
-          const std::uint32_t aside = side - length - 1;
-          is_below ? join_at(row, col + aside) : join_at(row + aside, col);
-        }
-        return;
+/// Joins runs with those that lie behind a gap to their right or below them.
+class GapJoiner {
+ public:
+  GapJoiner(std::span<const std::uint8_t> status, std::uint32_t cols,
+            std::span<const ContactRun> runs, std::vector<std::uint32_t>& parents)
+      : status_(status), cols_(cols), runs_(runs), parents_(parents) {}
+
+  void join(std::uint32_t run) const {
+    const auto& [row, first, end, contact] = runs_[run];
+    join_behind(run, row, end, false);
+    const std::size_t below = (std::size_t{row} + 1) * cols_;
+    if (below >= status_.size()) return;
+    const auto under = status_.subspan(below, end);
+    for (std::size_t col = first; col < end; col += kWordBytes) {
+      for (unsigned gaps = may_be_loaded_of(eight_from(under, col)); gaps != 0; gaps &= gaps - 1) {
+        const auto gap = static_cast<std::uint32_t>(std::countr_zero(gaps));
+        join_behind(run, row + 1, static_cast<std::uint32_t>(col) + gap, true);
       }
-      is_below ? ++row : ++col;
     }
-  };
-  join_behind(runs[run].row, runs[run].end, false);
-  for (std::uint32_t col = runs[run].first; col < runs[run].end; ++col) {
-    join_behind(runs[run].row + 1, col, true);
   }
-}
+
+ private:
+  /// Joins the run with that at a place, if any; rows and columns below 0 are 2^32 - 1.
+  void join_at(std::uint32_t run, std::uint32_t row, std::uint32_t col) const {
+    const auto after = std::ranges::upper_bound(
+        runs_, std::pair(row, col), {},
+        [](const ContactRun& each) { return std::pair(each.row, each.first); });
+    if (after == runs_.begin() || after[-1].row != row || after[-1].end <= col) return;
+    pillarfield::join(parents_, run, static_cast<std::uint32_t>(after - runs_.begin() - 1));
+  }
+
+  /// From the first place of a gap, whose length is at most kWidestGap.
+  void join_behind(std::uint32_t run, std::uint32_t row, std::uint32_t col, bool is_below) const {
+    std::uint32_t length = 0;
+    const auto is_gap = [&] {
+      const std::size_t place = std::size_t{row} * cols_ + col;
+      return col < cols_ && place < status_.size() && may_be_loaded(status_[place]);
+    };
+    for (; length <= kWidestGap && is_gap(); ++length) is_below ? ++row : ++col;
+    if (length == 0 || length > kWidestGap || col >= cols_) return;
+    for (std::uint32_t side = 0; side <= 2 * length + 2; ++side) {
+      const std::uint32_t aside = side - length - 1;
+      is_below ? join_at(run, row, col + aside) : join_at(run, row + aside, col);
+    }
+  }
+
+  std::span<const std::uint8_t> status_;
+  std::uint32_t cols_;
+  std::span<const ContactRun> runs_;
+  std::vector<std::uint32_t>& parents_;
+};
 
 }  // namespace
 
@@ -282,9 +313,8 @@ void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_
     next_row = row + 1;
   }
   if ((met & kEachByte * kUnknownLoad) == 0) return;
-  for (std::uint32_t run = 0; run < found_.size(); ++run) {
-    join_across_gaps(status, cols, found_, run, parents_);
-  }
+  const GapJoiner gaps(status, cols, found_, parents_);
+  for (std::uint32_t run = 0; run < found_.size(); ++run) gaps.join(run);
 }
 
 /// Labels contacts by their first runs, in order. A contact's first run precedes its others.

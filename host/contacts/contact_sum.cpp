@@ -12,34 +12,73 @@
 namespace pillarfield {
 namespace {
 
-/// Four neighbouring pillars, one per lane. GNU vectors, since compilers vectorise the equivalent
+/// Eight neighbouring pillars, one per lane. GNU vectors, since compilers vectorise the equivalent
 /// loops poorly. Passed by reference: the calling convention of returns depends on the processor.
-using Bytes [[gnu::vector_size(4)]] = std::uint8_t;
-using Floats [[gnu::vector_size(16)]] = float;
-using Ints [[gnu::vector_size(16)]] = std::int32_t;
+using Bytes [[gnu::vector_size(8)]] = std::uint8_t;
+using Floats [[gnu::vector_size(32)]] = float;
+using Ints [[gnu::vector_size(32)]] = std::int32_t;
 using Doubles [[gnu::vector_size(32)]] = double;
-using Longs [[gnu::vector_size(32)]] = std::int64_t;
-constexpr std::uint32_t kLanes = 4;
+using HalfFloats [[gnu::vector_size(16)]] = float;
+constexpr std::uint32_t kLanes = 8;
+
+/// Doubles of eight lanes: GCC handles no longer vectors well.
+struct EightDoubles {
+  Doubles low{};
+  Doubles high{};
+};
 
 /// Status bits of a force that the pillar's own readings do not determine although three or four
 /// sensels are usable.
 constexpr int kUndetermined = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
 
-/// Loads four forces; NaN, infinity and lanes not `present` become zero.
-PF_WIDE_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
+PF_WIDE_INLINE void select(const Floats& values, const Ints& mask, Floats& selected) {
+  selected = __builtin_bit_cast(Floats, __builtin_bit_cast(Ints, values) & mask);
+}
+
+/// Loads eight forces; NaN, infinity and lanes not `present` become zero.
+PF_WIDE_INLINE void read(const float* from, const Ints& present, Floats& values) {
   std::memcpy(&values, from, sizeof values);
-  const Ints finite = values - values == 0;  // NOLINT(misc-redundant-expression): false for NaN
-  values = __builtin_bit_cast(Floats, __builtin_bit_cast(Ints, values) & finite & present);
-  forces = Doubles{values[0], values[1], values[2], values[3]};
+  // NOLINTNEXTLINE(misc-redundant-expression): false for NaN
+  select(values, (values - values == 0) & present, values);
 }
 
 PF_WIDE_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& status) {
   Bytes bytes;
   std::memcpy(&bytes, from, sizeof bytes);
-  status = Ints{bytes[0], bytes[1], bytes[2], bytes[3]} & present;
+  status = Ints{bytes[0], bytes[1], bytes[2], bytes[3], bytes[4], bytes[5], bytes[6], bytes[7]} &
+           present;
 }
 
-/// Addresses of four pillars in each plane.
+PF_WIDE_INLINE void convert(const Floats& values, EightDoubles& doubles) {
+  std::array<HalfFloats, 2> halves;
+  std::memcpy(halves.data(), &values, sizeof values);
+  doubles.low = __builtin_convertvector(halves[0], Doubles);
+  doubles.high = __builtin_convertvector(halves[1], Doubles);
+}
+
+PF_WIDE_INLINE void add(const EightDoubles& values, EightDoubles& sum) {
+  sum.low += values.low;
+  sum.high += values.high;
+}
+
+PF_WIDE_INLINE void add(const Floats& values, EightDoubles& sum) {
+  EightDoubles doubles;
+  convert(values, doubles);
+  add(doubles, sum);
+}
+
+PF_WIDE_INLINE void add_product(const EightDoubles& values, const EightDoubles& factors,
+                                EightDoubles& sum) {
+  sum.low += values.low * factors.low;
+  sum.high += values.high * factors.high;
+}
+
+PF_WIDE_INLINE void add_product(const EightDoubles& values, double factor, EightDoubles& sum) {
+  sum.low += values.low * factor;
+  sum.high += values.high * factor;
+}
+
+/// Addresses of eight pillars in each plane.
 struct Place {
   const float* shear_x;
   const float* shear_y;
@@ -47,7 +86,7 @@ struct Place {
   const std::uint8_t* status;
 };
 
-/// A padded copy of the last, fewer than four, pillars of a field.
+/// A padded copy of the last, fewer than eight, pillars of a field.
 struct LastPillars {
   std::array<float, std::size_t{3} * kLanes> forces{};
   std::array<std::uint8_t, kLanes> status{};
@@ -64,54 +103,71 @@ struct LastPillars {
   }
 };
 
-PF_WIDE_INLINE void select(const Doubles& values, const Longs& mask, Doubles& selected) {
-  selected = __builtin_bit_cast(Doubles, __builtin_bit_cast(Longs, values) & mask);
+double total_of(const EightDoubles& lanes) {
+  const Doubles sums = lanes.low + lanes.high;
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-template <class Vector>
-auto total_of(const Vector& lanes) {
-  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+std::int64_t total_of(const Ints& lanes) {
+  std::int64_t sum = 0;
+  for (std::uint32_t i = 0; i < kLanes; ++i) sum += lanes[i];
+  return sum;
 }
 
-/// Partial sums: lane i holds every fourth pillar of a run, from the i-th.
+/// Normal forces by slip, of a run: as floats, since only their ratios are used.
+struct SlipSums {
+  Floats pressing{};
+  Floats determined{};
+  Floats slipping{};
+  Floats reaching{};
+  Floats sticking{};
+
+  PF_WIDE_INLINE void add(const Floats& x, const Floats& y, const Floats& n, const Ints& status,
+                          const SlipTest& test) {
+    const Ints inactive = ~status & status::kUsable;
+    const Ints known = ((inactive & (inactive - 1)) | (status & kUndetermined)) == 0;
+    const Floats least = static_cast<float>(test.ratio) * n;
+    const Floats surely = static_cast<float>(test.ratio) * (n - static_cast<float>(test.noise_n));
+    const Floats square = x * x + y * y;
+    Floats presses;
+    Floats certain;
+    Floats selected;
+    select(n, n > 0, presses);
+    select(presses, known, certain);
+    pressing += presses;
+    determined += certain;
+    select(certain, square >= least * least, selected);
+    slipping += selected;
+    select(presses, square >= least * least, selected);
+    reaching += selected;
+    select(certain, (surely > 0) & (square < surely * surely), selected);
+    sticking += selected;
+  }
+};
+
+/// Partial sums: lane i holds every eighth pillar of a run, from the i-th.
 struct Lanes {
-  Doubles shear_x{};
-  Doubles shear_y{};
-  Doubles normal{};
-  Doubles normal_x{};
-  Doubles normal_y{};
-  Doubles shear_y_x{};
-  Doubles shear_x_y{};
-  Doubles pressing{};
-  Doubles determined{};
-  Doubles slipping{};
-  Doubles reaching{};
-  Doubles sticking{};
+  EightDoubles shear_x;
+  EightDoubles shear_y;
+  EightDoubles normal;
+  EightDoubles normal_x;
+  EightDoubles normal_y;
+  EightDoubles shear_y_x;
+  EightDoubles shear_x_y;
+  EightDoubles pressing;
+  EightDoubles determined;
+  EightDoubles slipping;
+  EightDoubles reaching;
+  EightDoubles sticking;
   Ints ambiguous{};
   Ints resolved{};
 
-  PF_WIDE_INLINE void add_slip(const Doubles& x, const Doubles& y, const Doubles& n,
-                               const Ints& status, const SlipTest& test) {
-    const Ints inactive = ~status & status::kUsable;
-    const Ints known = ((inactive & (inactive - 1)) | (status & kUndetermined)) == 0;
-    const Doubles least = test.ratio * n;
-    const Doubles surely = test.ratio * (n - test.noise_n);
-    const Doubles square = x * x + y * y;
-    Doubles presses;
-    Doubles certain;
-    Doubles slips;
-    Doubles reaches;
-    Doubles sticks;
-    select(n, n > 0, presses);
-    select(presses, Longs{known[0], known[1], known[2], known[3]}, certain);
-    select(certain, square >= least * least, slips);
-    select(presses, square >= least * least, reaches);
-    select(certain, (surely > 0) & (square < surely * surely), sticks);
-    pressing += presses;
-    determined += certain;
-    slipping += slips;
-    reaching += reaches;
-    sticking += sticks;
+  PF_WIDE_INLINE void add(const SlipSums& run) {
+    pillarfield::add(run.pressing, pressing);
+    pillarfield::add(run.determined, determined);
+    pillarfield::add(run.slipping, slipping);
+    pillarfield::add(run.reaching, reaching);
+    pillarfield::add(run.sticking, sticking);
   }
 
   void add_to(ContactSum& sum) const {
@@ -158,48 +214,58 @@ std::int64_t place_x(const ForceFieldView& forces, std::uint32_t col) {
 PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, double y,
                              const std::optional<SlipTest>& test, Lanes& lanes) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
-  Floats peaks = {kNone, kNone, kNone, kNone};
+  Floats peaks = Floats{} + kNone;
   static constexpr std::array<float, kLanes> kNoShear{};
+  constexpr Ints kPlaces = {0, 1, 2, 3, 4, 5, 6, 7};
   const bool has_shear = !forces.shear_x.empty();
   LastPillars last;
-  Doubles sum_x{};
-  Doubles sum_y{};
-  Doubles sum_n{};
-  Doubles x = static_cast<double>(place_x(forces, run.first)) + Doubles{0, 2, 4, 6};
-  for (std::uint32_t col = run.first; col < run.end; col += kLanes, x += 2 * kLanes) {
+  SlipSums slip;
+  EightDoubles sum_x;
+  EightDoubles sum_y;
+  EightDoubles sum_n;
+  const auto first = static_cast<double>(place_x(forces, run.first));
+  EightDoubles x = {first + Doubles{0, 2, 4, 6}, first + Doubles{8, 10, 12, 14}};
+  for (std::uint32_t col = run.first; col < run.end; col += kLanes) {
     const std::size_t at = std::size_t{run.row} * forces.cols + col;
-    const Ints present = Ints{0, 1, 2, 3} < static_cast<std::int32_t>(run.end - col);
+    const Ints present = kPlaces < static_cast<std::int32_t>(run.end - col);
     Place from = {kNoShear.data(), kNoShear.data(), forces.normal.data() + at,
                   forces.status.data() + at};
     if (has_shear)
       from = {forces.shear_x.data() + at, forces.shear_y.data() + at, from.normal, from.status};
     if (at + kLanes > forces.status.size()) from = last.copy(forces, at);
-    Floats values;
-    Doubles shear_x;
-    Doubles shear_y;
-    Doubles normal;
+    Floats shear_x;
+    Floats shear_y;
+    Floats normal;
     Ints status;
-    read(from.shear_x, present, values, shear_x);
-    read(from.shear_y, present, values, shear_y);
-    read(from.normal, present, values, normal);
+    read(from.shear_x, present, shear_x);
+    read(from.shear_y, present, shear_y);
+    read(from.normal, present, normal);
     read(from.status, present, status);
-    peaks = (present & (values > peaks)) ? values : peaks;
-    sum_x += shear_x;
-    sum_y += shear_y;
-    sum_n += normal;
-    lanes.normal_x += normal * x;
-    lanes.shear_y_x += shear_y * x;
+    peaks = (present & (normal > peaks)) ? normal : peaks;
+    EightDoubles doubles;
+    convert(normal, doubles);
+    add(doubles, sum_n);
+    add_product(doubles, x, lanes.normal_x);
+    convert(shear_y, doubles);
+    add(doubles, sum_y);
+    add_product(doubles, x, lanes.shear_y_x);
+    add(shear_x, sum_x);
+    x.low += 2 * kLanes;
+    x.high += 2 * kLanes;
     // A true lane is -1.
     lanes.ambiguous -= (status & (status::kAmbiguous | status::kFromNeighbours)) != 0;
     lanes.resolved -= (status & status::kFromNeighbours) != 0;
-    if (test) lanes.add_slip(shear_x, shear_y, normal, status, *test);
+    if (test) slip.add(shear_x, shear_y, normal, status, *test);
   }
-  lanes.shear_x += sum_x;
-  lanes.shear_y += sum_y;
-  lanes.normal += sum_n;
-  lanes.normal_y += sum_n * y;
-  lanes.shear_x_y += sum_x * y;
-  return std::max(std::max(peaks[0], peaks[1]), std::max(peaks[2], peaks[3]));
+  add(sum_x, lanes.shear_x);
+  add(sum_y, lanes.shear_y);
+  add(sum_n, lanes.normal);
+  add_product(sum_n, y, lanes.normal_y);
+  add_product(sum_x, y, lanes.shear_x_y);
+  lanes.add(slip);
+  float peak = kNone;
+  for (std::uint32_t i = 0; i < kLanes; ++i) peak = std::max(peak, peaks[i]);
+  return peak;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "contacts/parallel_contact_moments.h"
 
 #include <algorithm>
+#include <atomic>
 #include <thread>
 
 namespace pillarfield {
@@ -43,17 +44,26 @@ void ParallelContactMoments::split(const ContactLabels& labels) {
   if (batches_.back() < parts_.size()) batches_.push_back(parts_.size());
 }
 
-template <class Work>
-void ParallelContactMoments::for_each_batch(const Work& work) {
-  const std::size_t batches = batches_.size() - 1;
-  if (threads_ == 1 || batches < 2) {
-    work(0, parts_.size(), 0);
-    return;
+/// Calls `test_of` for the contacts that begin in a batch.
+void ParallelContactMoments::test(std::size_t batch, std::size_t member,
+                                  const SlipTestOf& test_of) {
+  for (std::size_t i = batches_[batch]; i < batches_[batch + 1]; ++i) {
+    const std::uint32_t contact = parts_[i].contact;
+    if (i > 0 && parts_[i - 1].contact == contact) continue;  // Done at its first part.
+    tests_[contact] = test_of(contact, member);
+    std::atomic_ref(is_tested_[contact]).store(true, std::memory_order_release);
   }
-  if (!pool_) pool_ = std::make_unique<ThreadPool>(threads_);
-  pool_->run(batches, [&](std::size_t batch, std::size_t member) {
-    work(batches_[batch], batches_[batch + 1], member);
-  });
+}
+
+/// Sums the parts of a batch. Their tests are done, or other threads do them.
+void ParallelContactMoments::sum(std::size_t batch, const ForceFieldView& forces) {
+  for (std::size_t i = batches_[batch]; i < batches_[batch + 1]; ++i) {
+    Part& part = parts_[i];
+    while (!std::atomic_ref(is_tested_[part.contact]).load(std::memory_order_acquire)) {
+      std::this_thread::yield();
+    }
+    part.sum = sum_of(forces, part.runs, tests_[part.contact]);
+  }
 }
 
 const std::vector<ContactSum>& ParallelContactMoments::measure(const ForceFieldView& forces,
@@ -61,18 +71,18 @@ const std::vector<ContactSum>& ParallelContactMoments::measure(const ForceFieldV
                                                                const SlipTestOf& test_of) {
   split(labels);
   tests_.assign(labels.contacts(), {});
-  for_each_batch([&](std::size_t first, std::size_t end, std::size_t member) {
-    for (std::size_t i = first; i < end; ++i) {
-      const std::uint32_t contact = parts_[i].contact;
-      if (i > 0 && parts_[i - 1].contact == contact) continue;  // Done at its first part.
-      tests_[contact] = test_of(contact, member);
-    }
-  });
-  for_each_batch([&](std::size_t first, std::size_t end, std::size_t) {
-    for (std::size_t i = first; i < end; ++i) {
-      parts_[i].sum = sum_of(forces, parts_[i].runs, tests_[parts_[i].contact]);
-    }
-  });
+  is_tested_.assign(labels.contacts(), false);
+  const std::size_t batches = batches_.size() - 1;
+  // All tests come before the sums, so that a thread that waits for one waits for another thread.
+  const auto work = [&](std::size_t piece, std::size_t member) {
+    piece < batches ? test(piece, member, test_of) : sum(piece - batches, forces);
+  };
+  if (threads_ == 1 || batches < 2) {
+    for (std::size_t piece = 0; piece < 2 * batches; ++piece) work(piece, 0);
+  } else {
+    if (!pool_) pool_ = std::make_unique<ThreadPool>(threads_);
+    pool_->run(2 * batches, work);
+  }
   sums_.assign(labels.contacts(), {});
   for (const Part& part : parts_) sums_[part.contact].add(part.sum);
   return sums_;

@@ -42,9 +42,8 @@ class ParallelContactMoments {
   };
 
   void split(const ContactLabels& labels);
-  /// Calls `work(first, end, member)` for batches of consecutive parts, until all are done.
-  template <class Work>
-  void for_each_batch(const Work& work);
+  void test(std::size_t batch, std::size_t member, const SlipTestOf& test_of);
+  void sum(std::size_t batch, const ForceFieldView& forces);
 
   std::size_t threads_;
   std::unique_ptr<ThreadPool> pool_;  ///< null before the first frame of several batches
@@ -52,6 +51,7 @@ class ParallelContactMoments {
   std::vector<std::size_t> batches_;  ///< first part of each batch, and one past the last
   std::vector<ContactSum> sums_;
   std::vector<std::optional<SlipTest>> tests_;
+  std::vector<char> is_tested_;  ///< of each contact
 };
 
 }  // namespace pillarfield

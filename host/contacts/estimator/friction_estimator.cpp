@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/log_exp.h"
+
 namespace pillarfield {
 namespace {
 
@@ -32,7 +34,7 @@ double friction_scatter(const std::vector<ObservedRatio>& ratios, double frictio
   const std::size_t step = (ratios.size() + kMostPillars - 1) / kMostPillars;
   std::array<double, kMostPillars> apart{};
   for (std::size_t i = 0; i * step < ratios.size(); ++i) {
-    apart[i] = std::log(ratios[i * step].ratio / friction);
+    apart[i] = fast_log(ratios[i * step].ratio / friction);
   }
   double scatter = parameters.most_scatter * parameters.most_scatter;
   double slipping = 0.5;
@@ -45,7 +47,7 @@ double friction_scatter(const std::vector<ObservedRatio>& ratios, double frictio
       const double variance = scatter + deviation * deviation - own;
       const double square = apart[i] * apart[i];
       if (square > 16 * variance) continue;
-      const double slips = slipping * std::exp(-0.5 * square / variance) /
+      const double slips = slipping * fast_exp(-0.5 * square / variance) /
                            std::sqrt(2 * std::numbers::pi * variance);
       const double sticks = apart[i] < 0 ? (1 - slipping) * (1 + apart[i]) : 0;
       const double weight = slips / (slips + std::max(sticks, parameters.outliers));
@@ -57,6 +59,19 @@ double friction_scatter(const std::vector<ObservedRatio>& ratios, double frictio
     slipping = (slip_pillars + 0.5) / pillars;
   }
   return std::sqrt(scatter);
+}
+
+/// Frictions of equal probability.
+std::array<float, ContactModel::kNodes> nodes_of(const FrictionPosterior& posterior) {
+  std::array<double, ContactModel::kNodes> values{};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = (static_cast<double>(i) + 0.5) / ContactModel::kNodes;
+  const auto fractions = values;
+  posterior.quantiles(fractions, values);
+  std::array<float, ContactModel::kNodes> nodes{};
+  std::ranges::transform(values, nodes.begin(),
+                         [](double value) { return static_cast<float>(value); });
+  return nodes;
 }
 
 double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> runs) {
@@ -170,10 +185,9 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
     belief.estimate.update(evidence.estimate);
     belief.cautious.update(evidence.cautious);
   }
-  for (std::size_t i = 0; model.any_ambiguous && i < ContactModel::kNodes; ++i) {
-    const double part = (static_cast<double>(i) + 0.5) / ContactModel::kNodes;
-    model.frictions[i] = static_cast<float>(belief.estimate.quantile(part));
-    model.cautious[i] = static_cast<float>(belief.cautious.quantile(part));
+  if (model.any_ambiguous) {
+    model.frictions = nodes_of(belief.estimate);
+    model.cautious = nodes_of(belief.cautious);
   }
   friction_[contact] = reported(contact, evidence.estimate, work);
 }
@@ -256,8 +270,8 @@ bool FrictionEstimator::stays(double friction, bool clear, const Workspace& work
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
                                             const FrictionCurve& log_likelihood, Workspace& work) {
   constexpr double kOneInTwenty = 0.05;
-  const FrictionPosterior& posterior = beliefs_[contact].estimate;
-  ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior,
+  const auto [median, spread] = beliefs_[contact].estimate.summary();
+  ContactFriction friction{median, spread, FrictionSource::prior,
                            beliefs_[contact].cautious.quantile(kOneInTwenty)};
   if (given_) {
     friction.median = *given_;
@@ -267,12 +281,12 @@ ContactFriction FrictionEstimator::reported(std::uint32_t contact,
   if (friction.spread > parameters_.reported_spread) return friction;
   FrictionPosterior alone = prior_.estimate;
   alone.update(log_likelihood);
-  const bool agrees =
-      std::abs(alone.quantile(0.5) / friction.median - 1) <= parameters_.same_friction;
-  const bool clear = agrees && alone.spread() <= parameters_.clear_spread;
+  const FrictionPosterior::Summary now = alone.summary();
+  const bool agrees = std::abs(now.median / friction.median - 1) <= parameters_.same_friction;
+  const bool clear = agrees && now.spread <= parameters_.clear_spread;
   const bool certain = stays(friction.median, clear, work, histories_[contact]);
   if (!certain && may_stick(friction.median, work)) return friction;
-  const bool observed = agrees && alone.spread() <= parameters_.reported_spread;
+  const bool observed = agrees && now.spread <= parameters_.reported_spread;
   friction.spread =
       std::hypot(parameters_.stated_over_spread * friction.spread,
                  friction_scatter(work.samples.ratios(), friction.median, parameters_));

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "base/log_exp.h"
 #include "base/wide.h"
 
 namespace pillarfield {
@@ -29,9 +31,9 @@ constexpr Factors kOnes = [] {
 
 /// Adds the logarithm of a product of at most FrictionLikelihood::kMostPillars factors. Above 1e-4
 /// each, together they may be too small for a double, where no posterior has weight.
-void add_logarithm(const Factors& product, double weight, FrictionCurve& log_likelihood) {
+PF_WIDE void add_logarithm(const Factors& product, double weight, FrictionCurve& log_likelihood) {
   for (std::size_t i = 0; i < kPoints; ++i) {
-    log_likelihood[i] += weight * std::log(std::max(product[i], 1e-300));
+    log_likelihood[i] += weight * fast_log(std::max(product[i], 1e-300));
   }
 }
 
@@ -46,21 +48,60 @@ struct SlipOrStick {
   float outlier;
 };
 
-PF_WIDE void multiply(Factors& estimate, Factors& cautious, const SlipOrStick& pillar,
+/// Pillars whose factors are multiplied as floats: above 1e-4 each, their product is one.
+constexpr std::size_t kBatch = 8;
+
+/// Points at a time, whose products stay in registers.
+constexpr std::size_t kBlock = 16;
+static_assert(kPoints % kBlock == 0);
+using Block = std::array<float, kBlock>;
+
+PF_WIDE_INLINE void multiply(const Block& factors, std::size_t at, Factors& product) {
+  for (std::size_t i = 0; i < kBlock; ++i) product[at + i] *= static_cast<double>(factors[i]);
+}
+
+PF_WIDE void multiply(Factors& estimate, Factors& cautious, std::span<const SlipOrStick> pillars,
                       const Powers& stick_factor) {
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    const float factor =
-        stick_factor[i] > pillar.least_factor ? stick_factor[i] : pillar.least_factor;
-    const float slips = pillar.slip * pillar.density[i] * pillar.below_ceiling[i] + pillar.outlier;
-    const float sticks = pillar.stick * pillar.cumulative[i];
-    estimate[i] *= static_cast<double>(slips + factor * sticks);
-    cautious[i] *= static_cast<double>(slips + sticks);
+  for (std::size_t at = 0; at < kPoints; at += kBlock) {
+    Block estimates;
+    Block cautions;
+    estimates.fill(1);
+    cautions.fill(1);
+    for (const SlipOrStick& pillar : pillars) {
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const float factor = std::max(stick_factor[at + i], pillar.least_factor);
+        const float slips =
+            pillar.slip * pillar.density[at + i] * pillar.below_ceiling[at + i] + pillar.outlier;
+        const float sticks = pillar.stick * pillar.cumulative[at + i];
+        estimates[i] *= slips + factor * sticks;
+        cautions[i] *= slips + sticks;
+      }
+    }
+    multiply(estimates, at, estimate);
+    multiply(cautions, at, cautious);
   }
 }
 
-PF_WIDE void multiply(Factors& product, const float* cumulative, float outliers) {
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    product[i] *= static_cast<double>(cumulative[i] * (1 - outliers) + outliers);
+PF_WIDE void multiply(Factors& product, std::span<const float* const> cumulative, float outliers) {
+  for (std::size_t at = 0; at < kPoints; at += kBlock) {
+    Block factors;
+    factors.fill(1);
+    for (const float* const pillar : cumulative) {
+      for (std::size_t i = 0; i < kBlock; ++i)
+        factors[i] *= pillar[at + i] * (1 - outliers) + outliers;
+    }
+    multiply(factors, at, product);
+  }
+}
+
+/// Calls `use` with the terms of up to kBatch pillars at a time.
+template <class Term, class Pillars, class TermOf, class Use>
+void for_each_batch(const Pillars& pillars, TermOf term_of, Use use) {
+  std::array<Term, kBatch> terms;
+  for (std::size_t first = 0; first < pillars.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, pillars.size() - first);
+    for (std::size_t i = 0; i < count; ++i) terms[i] = term_of(pillars[first + i]);
+    use(std::span(terms).first(count));
   }
 }
 
@@ -108,18 +149,21 @@ void FrictionLikelihood::add_slip_or_stick(const std::vector<ObservedRatio>& pil
   const double sticks = (1 - parameters_.slip_probability) * (1 - parameters_.outliers);
   Factors estimate = kOnes;
   Factors cautious = kOnes;
-  for (const ObservedRatio& pillar : pillars) {
+  const auto terms_of = [&](const ObservedRatio& pillar) {
     const Width& width = width_of(pillar.deviation);
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
     const std::size_t ceiling = FrictionGrid::nearest(pillar.ceiling);
-    multiply(estimate, cautious,
-             {width.density.data() + at, width.cumulative.data() + at,
-              below_ceiling_.data() + kPoints - ceiling,
-              static_cast<float>(slips / std::max(FrictionGrid::kLeast, pillar.ratio)),
-              static_cast<float>(sticks), stick_factor_[ceiling],
-              static_cast<float>(parameters_.outliers / kOutlierRange)},
-             stick_factor_);
-  }
+    return SlipOrStick{width.density.data() + at,
+                       width.cumulative.data() + at,
+                       below_ceiling_.data() + kPoints - ceiling,
+                       static_cast<float>(slips / std::max(FrictionGrid::kLeast, pillar.ratio)),
+                       static_cast<float>(sticks),
+                       stick_factor_[ceiling],
+                       static_cast<float>(parameters_.outliers / kOutlierRange)};
+  };
+  for_each_batch<SlipOrStick>(pillars, terms_of, [&](std::span<const SlipOrStick> batch) {
+    multiply(estimate, cautious, batch, stick_factor_);
+  });
   const double weight = weight_of(pillars.size(), effective);
   add_logarithm(estimate, weight, evidence.estimate);
   add_logarithm(cautious, weight, evidence.cautious);
@@ -129,11 +173,13 @@ void FrictionLikelihood::add_lower_bounds(const std::vector<ObservedRatio>& pill
                                           double effective, FrictionEvidence& evidence) const {
   if (pillars.empty()) return;
   Factors product = kOnes;
-  for (const ObservedRatio& pillar : pillars) {
+  const auto cumulative_of = [&](const ObservedRatio& pillar) {
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
-    multiply(product, width_of(pillar.deviation).cumulative.data() + at,
-             static_cast<float>(parameters_.outliers));
-  }
+    return width_of(pillar.deviation).cumulative.data() + at;
+  };
+  for_each_batch<const float*>(pillars, cumulative_of, [&](std::span<const float* const> batch) {
+    multiply(product, batch, static_cast<float>(parameters_.outliers));
+  });
   FrictionCurve logarithm{};
   add_logarithm(product, weight_of(pillars.size(), effective), logarithm);
   for (std::size_t i = 0; i < kPoints; ++i) {

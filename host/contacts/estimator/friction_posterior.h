@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "contacts/estimator/contact_parameters.h"
 #include "pillarfield/friction.h"
@@ -13,6 +14,7 @@ namespace pillarfield {
 struct FrictionGrid {
   static constexpr std::size_t kPoints = 160;
   static constexpr double kLeast = 0.1;
+  static constexpr double kMost = 100;    ///< larger ratios are those of the last point
   static constexpr double kStep = 0.029;  ///< of the logarithm
 
   /// The point nearest to a ratio, clamped to the ends; the first for NaN.
@@ -40,11 +42,17 @@ class FrictionPosterior {
   /// Applies Bayes' rule with the logarithm of a likelihood.
   void update(const FrictionCurve& log_likelihood);
 
-  /// The friction below which this fraction of the probability lies, (0, 1).
+  /// The frictions below which these fractions of the probability lie, (0, 1) and rising.
+  void quantiles(std::span<const double> fractions, std::span<double> frictions) const;
   [[nodiscard]] double quantile(double fraction) const;
-  /// Standard deviation of the logarithm: half the distance between the 15.9 % and 84.1 %
-  /// quantiles, so that tails do not count.
-  [[nodiscard]] double spread() const;
+
+  struct Summary {
+    double median;
+    /// Standard deviation of the logarithm: half the distance between the 15.9 % and 84.1 %
+    /// quantiles, so that tails do not count.
+    double spread;
+  };
+  [[nodiscard]] Summary summary() const;
 
  private:
   void normalise();
