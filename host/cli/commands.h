@@ -125,7 +125,7 @@ struct DoctorOptions : PrintOptions {
 };
 
 void simulate(const SimulateOptions& options);
-void solve(const SolveOptions& given);
+void solve(const SolveOptions& options);
 void stream(const StreamOptions& options);
 void control(const ControlOptions& options);
 void compare(const CompareOptions& options);

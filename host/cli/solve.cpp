@@ -240,7 +240,7 @@ bool is_folder(const std::string& output) {
 std::string output_of(const std::filesystem::path& input, const std::string& output,
                       const char* ending, std::set<std::string>& outputs) {
   if (output.empty()) return {};
-  const std::string name = (std::filesystem::path(output) / input.stem()).string() + ending;
+  std::string name = (std::filesystem::path(output) / input.stem()).string() + ending;
   if (is_folder(output) && outputs.insert(name).second) return name;
   throw Error(output, fmt::format("holds one result, and {} is not the only input", input.string()),
               "name folders, and inputs of different names");

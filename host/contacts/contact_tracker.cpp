@@ -158,7 +158,7 @@ void check(const ContactOptions& options, const std::string& where) {
 struct ContactTracker::State {
   State(const Pitch& element_pitch_mm, const ContactOptions& contact_options);
 
-  [[nodiscard]] FrictionEstimator estimator() {
+  [[nodiscard]] FrictionEstimator estimator() const {
     return {sensor_of(pitch_mm, options),
             options.friction,
             moments.threads(),
