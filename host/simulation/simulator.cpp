@@ -382,9 +382,9 @@ void Simulator::render(std::uint64_t index, FrameBuffer& raw, ForceField& truth)
 
 void Simulator::render_all(std::uint64_t first, std::uint64_t count, const TakeFrame& take,
                            unsigned threads) const {
-  constexpr unsigned kMostThreads = 16;
+  constexpr unsigned kMostWorkers = 16;
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  const unsigned workers = std::min(threads == 0 ? processors : threads, kMostThreads);
+  const unsigned workers = std::min(threads == 0 ? processors : threads, kMostWorkers);
   RenderAhead(*this, first, count, workers, state_->memory != nullptr).deliver(take);
 }
 

@@ -68,6 +68,7 @@ void CrashGuard::handle_signals() {
   (void)once;
 }
 
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the stack needs no values
 CrashGuard::CrashGuard(const std::filesystem::path& file, bool trusted) {
   if (trusted || guarding != nullptr) return;
   is_outer_ = true;
