@@ -19,8 +19,9 @@ inline double fast_exp(double x) {
   const double shifted = x * kLog2E + kRound;
   const double power = shifted - kRound;
   const double r = (x - power * kLn2High) - power * kLn2Low;
-  constexpr std::array kInverseFactorials = {1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040, 1.0 / 720,
-                                 1.0 / 120,     1.0 / 24,     1.0 / 6,     0.5,        1.0};
+  constexpr std::array kInverseFactorials = {1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040,
+                                             1.0 / 720,     1.0 / 120,    1.0 / 24,    1.0 / 6,
+                                             0.5,           1.0};
   double sum = kInverseFactorials[0];
   for (std::size_t i = 1; i < kInverseFactorials.size(); ++i) sum = sum * r + kInverseFactorials[i];
   const auto scale = (std::bit_cast<std::uint64_t>(shifted) << 52U) + (std::uint64_t{1023} << 52U);

@@ -11,8 +11,9 @@ namespace pillarfield::hdf5 {
 /// Names the file if the HDF5 library crashes or loops on it: while a guard exists, a fatal signal
 /// in this thread, or 2 s of its processor time, end the process with exit status 1 and one line on
 /// standard error. Damaged files do both to HDF5 1.10. A guard of a trusted file, or within
-/// another, does nothing, and signals in other threads have their former actions. Where a signal has none and no guard exists, as
-/// when HDF5 has damaged memory, the line names the file that was read last.
+/// another, does nothing, and signals in other threads have their former actions. Where a signal
+/// has none and no guard exists, as when HDF5 has damaged memory, the line names the file that was
+/// read last.
 class CrashGuard {
  public:
   explicit CrashGuard(const std::filesystem::path& file, bool trusted = false);
