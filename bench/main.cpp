@@ -15,7 +15,6 @@
 
 #include "bench/cases/cases.h"
 #include "bench/timing/unsuffixed_reporter.h"
-#include "device/device_state.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::bench {
@@ -40,7 +39,7 @@ Usage: pillarfield-bench [OPTIONS]
   --benchmark_counters_tabular=BOOL, --benchmark_enable_random_interleaving=BOOL, ...
 
 Cases: limit/ size/ contact/ regions/ type/ lanes/ stage/ sensor/ latency/ throughput/
-       baseline/ intrinsics/ field/ choice/ render/
+       baseline/ field/ choice/
 
 Try:  pillarfield-bench --benchmark_filter=size/
       pillarfield-bench --benchmark_filter=baseline/ --seconds=5
@@ -96,7 +95,7 @@ void print_help() {
 void add_context(const Device& device) {
   const DeviceInfo& info = device.info();
   benchmark::AddCustomContext("device", fmt::format("{} ({})", info.name, info.type));
-  benchmark::AddCustomContext("driver", device.state().device.getInfo<CL_DRIVER_VERSION>());
+  benchmark::AddCustomContext("driver", info.version);
   benchmark::AddCustomContext("platform", info.platform);
   benchmark::AddCustomContext("lanes", fmt::format("{}", info.lanes));
   benchmark::AddCustomContext("shares_memory", info.shares_memory ? "true" : "false");
@@ -127,9 +126,8 @@ int run(const Arguments& arguments) {
       open_device(arguments.device), open_device(is_opencl ? arguments.device : "opencl"), {}};
   session.length.seconds = arguments.seconds;
   add_context(session.device);
-  for (const auto add :
-       {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases, add_baseline_cases,
-        add_intrinsics_cases, add_field_cases, add_choice_cases, add_render_cases}) {
+  for (const auto add : {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases,
+                         add_baseline_cases, add_field_cases, add_choice_cases}) {
     add(session);
   }
   UnsuffixedReporter reporter;

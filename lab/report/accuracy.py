@@ -208,7 +208,7 @@ def band(figure, site):
 def testbed_values(folder):
     parameters = testbed.Parameters()
     ours, other = testbed.run(parameters), nearest_threshold()
-    figures.draw(ours, folder)
+    figures.draw(ours, folder, testbed.solve)
     table = ours["table_2"]
     phi, theta = (row["paper"]["expected"] for row in other["table_2"][:2])
     threshold = other["threshold_counts"]
