@@ -81,9 +81,11 @@ def group_of(text):
 
 
 def entry(path, text, scene):
+    """The picture, and the first sentence of the scene's comment."""
     comment = " ".join(line.lstrip("# ") for line in text[: text.index("\ntitle")].splitlines() if line)
-    return (f"### {scene['title']}\n\n![{scene['title']}](pictures/gallery/{path.stem}.png)\n\n"
-            + textwrap.fill(f"`scenes/{path.name}`. {comment}", 110) + "\n")
+    sentence = re.match(r"[^.:;]*(?:\.(?! |$)[^.:;]*)*", comment)[0]
+    return (f"![{scene['title']}](pictures/gallery/{path.stem}.png)\n\n"
+            + textwrap.fill(f"`scenes/{path.name}`. {sentence}.", 110) + "\n")
 
 
 def write_gallery(scenes):

@@ -1,7 +1,8 @@
-"""Common parts of the pages of ./dev report: reads JSON, fills a Markdown template."""
+"""Common parts of the pages of ./dev report: reads JSON, writes the tables of a page."""
 
 import json
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -47,6 +48,22 @@ def root_mean_square(values):
 def text(value, pattern=".2f", otherwise="–"):
     """A number by a format specification; `otherwise` where there is none."""
     return otherwise if value is None else format(value, pattern)
+
+
+def update(docs, name, **tables):
+    """Writes tables of DOCS/NAME.md, each below a line <!-- KEY -->. The first row of a table whose key ends in
+    _table is its head; others keep the head of the page."""
+    path = Path(docs, f"{name}.md")
+    page = path.read_text(encoding="utf-8")
+    for key, table in tables.items():
+        head, table = "", list(table)
+        if key.endswith("_table"):
+            head = f"{rows(table[:1])}\n|--{'|--:' * (len(table.pop(0)) - 1)}|\n"
+        page, found = re.subn(rf"(<!-- {key} -->\n\n)(\|.*\n\|.*\n)(?:\|.*\n)*",
+                              lambda match: match[1] + (head or match[2]) + rows(table) + "\n", page)
+        if found != 1:
+            raise Failure(f"{path}: {found} tables below <!-- {key} -->; there must be one")
+    path.write_text(page, encoding="utf-8")
 
 
 def write(docs, name, **values):
