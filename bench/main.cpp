@@ -40,7 +40,7 @@ Usage: pillarfield-bench [OPTIONS]
   --benchmark_counters_tabular=BOOL, --benchmark_enable_random_interleaving=BOOL, ...
 
 Cases: limit/ size/ contact/ regions/ type/ lanes/ stage/ sensor/ latency/ throughput/
-       baseline/ intrinsics/ field/ choice/ render/
+       baseline/ field/ choice/
 
 Try:  pillarfield-bench --benchmark_filter=size/
       pillarfield-bench --benchmark_filter=baseline/ --seconds=5
@@ -127,9 +127,8 @@ int run(const Arguments& arguments) {
       open_device(arguments.device), open_device(is_opencl ? arguments.device : "opencl"), {}};
   session.length.seconds = arguments.seconds;
   add_context(session.device);
-  for (const auto add :
-       {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases, add_baseline_cases,
-        add_intrinsics_cases, add_field_cases, add_choice_cases, add_render_cases}) {
+  for (const auto add : {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases,
+                         add_baseline_cases, add_field_cases, add_choice_cases}) {
     add(session);
   }
   UnsuffixedReporter reporter;

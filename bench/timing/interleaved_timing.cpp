@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
-
-#include "base/quantile.h"
 
 namespace pillarfield::bench {
 namespace {
@@ -24,18 +23,22 @@ double processor_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+/// The smallest value that at least a fraction `probability` of the values do not exceed.
+double quantile_of(std::vector<double> values, double probability) {
+  const double rank = std::ceil(probability * static_cast<double>(values.size())) - 1;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max(0.0, rank));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
 /// Median of the pairwise ratios.
 double paired_ratio(std::span<const double> over, std::span<const double> under) {
   std::vector<double> ratios(over.size());
   std::transform(over.begin(), over.end(), under.begin(), ratios.begin(), std::divides());
-  return median(ratios);
+  return quantile_of(std::move(ratios), 0.5);
 }
 
 }  // namespace
-
-InterleavedTiming::InterleavedTiming() : InterleavedTiming(steady_seconds, processor_seconds) {}
-InterleavedTiming::InterleavedTiming(Clock clock, Clock processor_clock)
-    : clock_(std::move(clock)), processor_clock_(std::move(processor_clock)) {}
 
 std::size_t InterleavedTiming::add(Work work) {
   candidates_.push_back({std::move(work), 0, {}, {}});
@@ -44,8 +47,8 @@ std::size_t InterleavedTiming::add(Work work) {
 
 void InterleavedTiming::run(const TimingLength& length) {
   for (Candidate& candidate : candidates_) warm_up(candidate, length);
-  const double start = clock_();
-  for (int round = 0; round < length.rounds || clock_() - start < length.seconds; ++round) {
+  const double start = steady_seconds();
+  for (int round = 0; round < length.rounds || steady_seconds() - start < length.seconds; ++round) {
     if (round % 2 == 0) {
       for (Candidate& candidate : candidates_) take_turn(candidate);
     } else {
@@ -60,19 +63,13 @@ std::span<const double> InterleavedTiming::times(std::size_t candidate) const {
 }
 
 double InterleavedTiming::quantile(std::size_t candidate, double fraction) const {
-  std::vector<double> sample = candidates_.at(candidate).times;
-  return pillarfield::quantile(sample, fraction);
+  return quantile_of(candidates_.at(candidate).times, fraction);
 }
 
 double InterleavedTiming::median(std::size_t candidate) const { return quantile(candidate, 0.5); }
 
 double InterleavedTiming::ratio(std::size_t numerator, std::size_t denominator) const {
   return paired_ratio(times(numerator), times(denominator));
-}
-
-double InterleavedTiming::processor_median(std::size_t candidate) const {
-  std::vector<double> sample = candidates_.at(candidate).processor_times;
-  return pillarfield::median(sample);
 }
 
 double InterleavedTiming::processor_ratio(std::size_t numerator, std::size_t denominator) const {
@@ -84,13 +81,13 @@ std::size_t InterleavedTiming::fastest(std::span<const std::size_t> candidates) 
   return *std::ranges::min_element(candidates, {}, [&](std::size_t i) { return median(i); });
 }
 
-double InterleavedTiming::time(const Candidate& candidate, int frames) const {
-  const double start = clock_();
+double InterleavedTiming::time(const Candidate& candidate, int frames) {
+  const double start = steady_seconds();
   candidate.work(frames);
-  return clock_() - start;
+  return steady_seconds() - start;
 }
 
-void InterleavedTiming::warm_up(Candidate& candidate, const TimingLength& length) const {
+void InterleavedTiming::warm_up(Candidate& candidate, const TimingLength& length) {
   candidate.times.clear();
   candidate.processor_times.clear();
   candidate.frames = length.turn_frames;
@@ -98,10 +95,10 @@ void InterleavedTiming::warm_up(Candidate& candidate, const TimingLength& length
   while (time(candidate, candidate.frames) < length.turn_seconds) candidate.frames *= 2;
 }
 
-void InterleavedTiming::take_turn(Candidate& candidate) const {
-  const double processor_start = processor_clock_();
+void InterleavedTiming::take_turn(Candidate& candidate) {
+  const double processor_start = processor_seconds();
   candidate.times.push_back(time(candidate, candidate.frames) / candidate.frames);
-  candidate.processor_times.push_back((processor_clock_() - processor_start) / candidate.frames);
+  candidate.processor_times.push_back((processor_seconds() - processor_start) / candidate.frames);
 }
 
 }  // namespace pillarfield::bench

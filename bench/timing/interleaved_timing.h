@@ -22,13 +22,6 @@ struct TimingLength {
 /// affects all of them. The order is reversed from round to round.
 class InterleavedTiming {
  public:
-  /// Seconds since an arbitrary moment.
-  using Clock = std::function<double()>;
-
-  /// Uses the steady clock, and the processor time of all threads of the program.
-  InterleavedTiming();
-  InterleavedTiming(Clock clock, Clock processor_clock);
-
   /// Returns the candidate's index.
   std::size_t add(Work work);
 
@@ -45,9 +38,7 @@ class InterleavedTiming {
   /// Median over the rounds of the ratio of two candidates' times.
   [[nodiscard]] double ratio(std::size_t numerator, std::size_t denominator) const;
 
-  /// Median processor time of a frame, seconds, and ratio() of processor times. Other programs
-  /// disturb them less.
-  [[nodiscard]] double processor_median(std::size_t candidate) const;
+  /// ratio() of the processor times of all threads, which other programs disturb less.
   [[nodiscard]] double processor_ratio(std::size_t numerator, std::size_t denominator) const;
 
   /// The candidate of the least median.
@@ -61,12 +52,10 @@ class InterleavedTiming {
     std::vector<double> processor_times;
   };
 
-  [[nodiscard]] double time(const Candidate& candidate, int frames) const;
-  void warm_up(Candidate& candidate, const TimingLength& length) const;
-  void take_turn(Candidate& candidate) const;
+  static double time(const Candidate& candidate, int frames);
+  static void warm_up(Candidate& candidate, const TimingLength& length);
+  static void take_turn(Candidate& candidate);
 
-  Clock clock_;
-  Clock processor_clock_;
   std::vector<Candidate> candidates_;
 };
 

@@ -14,7 +14,7 @@ void UnsuffixedReporter::ReportRuns(const std::vector<Run>& runs) {
   std::vector<Run> plain = runs;
   for (Run& run : plain) {
     run.run_name.time_type.clear();
-    any_failed_ = any_failed_ || (run.error_occurred && !run.error_message.starts_with(kSkipped));
+    any_failed_ = any_failed_ || run.error_occurred;
   }
   inner_->ReportRuns(plain);
 }

@@ -15,15 +15,12 @@ class UnsuffixedReporter final : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override;
   void Finalize() override;
 
-  /// True after a case failed; skipped ones do not count.
+  /// True after a case failed.
   [[nodiscard]] bool any_failed() const { return any_failed_; }
 
  private:
   std::unique_ptr<benchmark::BenchmarkReporter> inner_;
   bool any_failed_ = false;
 };
-
-/// Prefix of the error of a skipped case.
-inline constexpr const char* kSkipped = "skipped: ";
 
 }  // namespace pillarfield::bench

@@ -66,14 +66,6 @@ def update(docs, name, **tables):
     path.write_text(page, encoding="utf-8")
 
 
-def write(docs, name, **values):
-    """Fills the str.format template NAME.md beside this script and writes it into the folder of
-    documents. Values whose name ends in _rows are rows of a table."""
-    template = Path(__file__).with_name(f"{name}.md").read_text(encoding="utf-8")
-    values = {key: rows(value) if key.endswith("_rows") else value for key, value in values.items()}
-    Path(docs, f"{name}.md").write_text(template.format_map(values), encoding="utf-8")
-
-
 def run(main):
     """Runs a script's main function on its command-line arguments."""
     if len(sys.argv) - 1 != main.__code__.co_argcount:

@@ -63,6 +63,8 @@ class Names(unittest.TestCase):
     def test_exports(self):
         for name in pf.__all__:
             self.assertTrue(hasattr(pf, name), name)
+        undescribed = [name for name in pf.__all__ if not inspect.getdoc(getattr(pf, name))]
+        self.assertEqual(undescribed, [])
         self.assertEqual(pf.__all__, sorted(pf.__all__, key=lambda name: (name[0].islower(), name)))
 
 

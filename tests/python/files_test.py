@@ -31,6 +31,25 @@ def pixels_of(png):
     return np.frombuffer(zlib.decompress(data), np.uint8).reshape(rows, -1)[:, 1:].reshape(rows, cols, 3)
 
 
+class Contacts(unittest.TestCase):
+    def test_contacts_have_the_columns_of_the_file(self):
+        options = {"estimator": "contact", "noise_counts": 0.5}
+        pf.save_recording(WORK / "touch.h5", pf.simulate(skins.scene()), overwrite=True)
+        pf.solve_to_file(WORK / "touch.h5", WORK / "contacts.h5", contacts=True, overwrite=True, **options)
+        frames = pf.solve(WORK / "touch.h5", contacts=True, **options).contacts
+        with h5py.File(WORK / "contacts.h5") as file:
+            for group, rows in (("contacts/patch", [each.total for each in frames]),
+                                ("contacts", [contact for each in frames for contact in each])):
+                self.assertGreater(len(rows), 5)
+                compared = [name for name, column in file[group].items()
+                            if hasattr(rows[0], name) and "words" not in column.attrs]
+                self.assertGreater(len(compared), 15)
+                for name in compared:
+                    none = 0 if name == "parent" else np.nan
+                    found = [none if getattr(row, name) is None else getattr(row, name) for row in rows]
+                    np.testing.assert_allclose(found, file[group][name][()], rtol=1e-12, err_msg=name)
+
+
 class Files(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
