@@ -51,7 +51,6 @@ void Application::run() {
     if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
     serve();
   }
-  if (files_ != nullptr) leave_page();
   user_.panels = state_.panels;
   user_.save();
   if (options_.statistics) print_statistics();
@@ -115,17 +114,10 @@ void Application::route(const InputEvent& event) {
 }
 
 void Application::route_to_start_page(const InputEvent& event) {
-  const auto* const key = std::get_if<KeyEvent>(&event);
-  const bool pressed = key != nullptr && key->pressed && !key->unusable;
-  if (pressed && key->key == GLFW_KEY_ESCAPE && loading_ == nullptr) leave_page();
-  if (files_ != nullptr && loading_ == nullptr) {
-    if (const auto file = files_->take(event)) pending_.open = file->string();
-    if (!pressed) gui_input_.take(event);
-    return;
-  }
   gui_input_.take(event);
-  if (!pressed || ImGui::GetIO().WantTextInput) return;
-  if (key->key == GLFW_KEY_O && key->modifiers.control && loading_ == nullptr) show_files();
+  const auto* const key = std::get_if<KeyEvent>(&event);
+  if (key == nullptr || !key->pressed || key->unusable || ImGui::GetIO().WantTextInput) return;
+  if (key->key == GLFW_KEY_ESCAPE && state_.player != nullptr) at_start_ = false;
   if (key->key == GLFW_KEY_Q) pending_.quit = true;
 }
 
@@ -134,24 +126,6 @@ void Application::show_start_page() {
   at_start_ = true;
   choices_.recent = user_.recent();
   state_.notice.clear();
-}
-
-void Application::show_files() { files_ = std::make_unique<FileList>(user_.folder); }
-
-/// From the list of files to the start page, from there to the source.
-void Application::leave_page() {
-  if (files_ != nullptr) {
-    user_.folder = files_->folder();
-    files_.reset();
-  } else if (state_.player != nullptr) {
-    at_start_ = false;
-  }
-}
-
-void Application::act(const StartAction& action) {
-  if (action.files) show_files();
-  if (action.back) leave_page();
-  if (!action.open.empty()) pending_.open = action.open;
 }
 
 void Application::route_key(const KeyEvent& key) {

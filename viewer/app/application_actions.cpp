@@ -43,7 +43,6 @@ void Application::serve_open() {
   options_.beside.clear();
   options_.truth = false;
   options_.first_frame = 0;
-  if (files_ != nullptr) leave_page();
   at_start_ = false;
   open(std::exchange(pending_.open, {}));
 }

@@ -94,11 +94,10 @@ void Application::draw_page() {
   if (loading_ != nullptr) {
     const std::string name = loading_->options().source.filename().string();
     loading_page(name, loading_->message(), all);
-  } else if (files_ != nullptr) {
-    act(file_page(*files_, all, scale()));
   } else {
     choices_.pictures = presenter_.gui().pictures();
-    act(start_page(choices_, all, state_.notice, scale()));
+    const std::string chosen = start_page(choices_, all, state_.notice, scale());
+    if (!chosen.empty()) pending_.open = chosen;
   }
   ImGui::Render();
 }

@@ -17,7 +17,6 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr std::string_view kRecent = "recent ";
-constexpr std::string_view kFolder = "folder ";
 constexpr std::uintmax_t kMostBytes = 1 << 16;
 
 std::filesystem::path settings_path() {
@@ -56,7 +55,6 @@ UserSettings::UserSettings() : path_(settings_path()) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     boxes.add_line(line);
-    if (line.starts_with(kFolder)) folder = line.substr(kFolder.size());
     if (!line.starts_with(kRecent) || recent_.size() == kMostRecent) continue;
     const std::string source = line.substr(kRecent.size());
     if (is_there(source)) recent_.push_back(source);
@@ -82,8 +80,6 @@ void UserSettings::save() const noexcept {
     part += "." + std::to_string(getpid());
     std::ofstream file(part, std::ios::trunc);
     file << text_of(panels) << boxes.text();
-    if (!folder.empty() && folder.string().find('\n') == std::string::npos)
-      file << kFolder << folder.string() << '\n';
     for (const std::string& source : recent_) file << kRecent << source << '\n';
     file.close();
     if (file) {

@@ -20,7 +20,6 @@ class UserSettings {
 
   PanelLayout panels;
   NamedBoxes boxes;
-  std::filesystem::path folder;  ///< of the file list; empty: the working folder
 
   /// Sources opened last, newest first; files that are gone are left out.
   [[nodiscard]] const std::vector<std::string>& recent() const { return recent_; }
