@@ -35,7 +35,6 @@ Application::Application(const Options& options)
       device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
       presenter_(instance_, device_, *surface_, scale()) {
   state_.settings.theme = options.theme;
-  state_.panels = user_.panels;
 }
 
 void Application::run() {
@@ -51,7 +50,6 @@ void Application::run() {
     if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
     serve();
   }
-  user_.panels = state_.panels;
   user_.save();
   if (options_.statistics) print_statistics();
   loading_.reset();
@@ -82,8 +80,8 @@ void Application::take_input() {
   if (!drops.empty()) pending_.open = drops.front();
 }
 
-/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups and panels
-/// over the field take the mouse.
+/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups take the
+/// mouse.
 void Application::route(const InputEvent& event) {
   if (!shows_source()) return route_to_start_page(event);
   if (const auto* key = std::get_if<KeyEvent>(&event)) return route_key(*key);
@@ -101,15 +99,10 @@ void Application::route(const InputEvent& event) {
     state_.show_help = false;
     return;
   }
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const bool over_panel =
-      !controls_.is_dragging() && covers(state_.panels, {mouse.x, mouse.y}, scale());
-  const bool in_field =
-      wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered && !over_panel;
+  const bool in_field = wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered;
   if (!in_field) gui_input_.take(event);
-  if (over_panel && !std::holds_alternative<MotionEvent>(event)) return;
   if (!covered || (button != nullptr && !presses)) {
-    controls_.take(over_panel ? LeaveEvent{} : in_first_half(event), command());
+    controls_.take(in_first_half(event), command());
   }
 }
 

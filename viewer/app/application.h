@@ -12,7 +12,7 @@
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/source/loading.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/app/window/panel_layout.h"
+#include "viewer/app/window/gui.h"
 #include "viewer/app/window/presenter.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/app/window/window.h"

@@ -53,7 +53,6 @@ void Application::keep_boxes() {
   const Skin& skin = state_.player->info().skin;
   if (user_.boxes.on(skin) == state_.boxes) return;
   user_.boxes.set(skin, state_.boxes);
-  user_.panels = state_.panels;
   user_.save();
 }
 

@@ -126,27 +126,6 @@ class WidgetTest(WindowTest):
             before = self.act("widget_" + name, action, before)
         self.assert_quiet(window)
 
-    def test_panels_move_and_are_remembered(self):
-        settings = self.folder / "config/pillarfield/viewer.conf"
-        window = self.open(SCENES / "demo.toml", "--paused")
-        before = self.shoot("panels_0")
-        steps = [("folded", lambda: window.click(1018, 21)),
-                 ("unfolded", lambda: window.click(1018, 21)),
-                 ("left", lambda: window.drag((1070, 335), (60, 300))),
-                 ("floating", lambda: window.drag((1070, 21), (620, 200))),
-                 ("wider", lambda: window.drag((998, 400), (917, 400)))]
-        for (name, action) in steps:
-            before = self.act("panels_" + name, action, before)
-        self.assert_quiet(window)
-        text = settings.read_text(encoding="utf-8")
-        self.assertIn("panel write left 1", text)
-        self.assertIn("panel view floating 1", text)
-        self.assertIn(f"recent {SCENES}/demo.toml", text)
-        window = self.open(SCENES / "demo.toml", "--paused")
-        self.shoot("panels_again")
-        self.assert_quiet(window)
-        self.assertEqual(settings.read_text(encoding="utf-8"), text)
-
 
 class Sensor(threading.Thread):
     """Sends frames of 32 x 32 sensels by UDP, and leaves out every tenth."""

@@ -8,7 +8,6 @@
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/app/window/panel_layout.h"
 #include "viewer/render/gui_context.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
@@ -41,9 +40,6 @@ void contacts_panel(AppState& state, const FieldPlace& place);
 /// Total force, torque and centre of pressure of the whole skin over time, and the force on pins,
 /// named boxes and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
-
-/// Marks the panels that have something to show.
-void mark_used(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
 void sensor_panel(const Command& command);

@@ -8,7 +8,7 @@
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/source/start_pictures.h"
-#include "viewer/app/window/docks.h"
+#include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
 namespace {

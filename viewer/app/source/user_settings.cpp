@@ -51,7 +51,6 @@ bool is_there(const std::string& source) {
 
 UserSettings::UserSettings() : path_(settings_path()) {
   const std::string text = path_.empty() ? "" : text_in(path_);
-  panels = layout_from(text);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     boxes.add_line(line);
@@ -79,7 +78,7 @@ void UserSettings::save() const noexcept {
     std::filesystem::path part = path_;
     part += "." + std::to_string(getpid());
     std::ofstream file(part, std::ios::trunc);
-    file << text_of(panels) << boxes.text();
+    file << boxes.text();
     for (const std::string& source : recent_) file << kRecent << source << '\n';
     file.close();
     if (file) {

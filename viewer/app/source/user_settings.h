@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "viewer/app/named_boxes.h"
-#include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
 
@@ -18,7 +17,6 @@ class UserSettings {
   UserSettings();  ///< reads the file; damaged lines are ignored
   void save() const noexcept;
 
-  PanelLayout panels;
   NamedBoxes boxes;
 
   /// Sources opened last, newest first; files that are gone are left out.
