@@ -71,13 +71,6 @@ def error_rows(found):
                text(rms(found["absent"][name]) / ideal, ".3f")]
 
 
-def region_rows(found):
-    for name in scenes.EFFECTS:
-        calibrated = found["effects"][name]["calibrated"]
-        yield [short(name), percent(share(calibrated, "wrong")), percent(share(calibrated, "unflagged")),
-               coverage(calibrated), text(over_paper(calibrated))]
-
-
 def indenter_rows(found):
     """Errors of off-centre pressure by indenter, ignored and corrected."""
     ignored, corrected = (found["effects"]["off_centre"][way]["indenters"]
@@ -153,8 +146,8 @@ def time_rows(bench):
 def main(docs, measured, timed):
     found = page.load(measured)
     bench = speed.Bench(timed, page.load(timed))
-    page.update(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
-                indenter_rows=indenter_rows(found), time_rows=time_rows(bench),
+    page.update(docs, "sensors", error_rows=error_rows(found), indenter_rows=indenter_rows(found),
+                time_rows=time_rows(bench),
                 goal_rows=[*off_centre_goals(found), *shared_goals(found)])
 
 
