@@ -57,12 +57,11 @@ def draw_bound(curves, folder):
 # --- Coverage ---
 
 def coverage_rows(scenes):
+    """Regions 1 and 2; the others have no standard deviation that covers 95 %."""
     for scene in scenes:
-        for region, covered in enumerate(scene["all"]):
-            held = [f"{percent(covered[key])} %" if region < 2 else "–"
-                    for key in ("shear_x", "shear_y", "normal")]
-            yield [scene["name"] if region == 0 else "", region + 1, covered["pillars"], *held,
-                   f"{percent(covered['ends'], 2)} %"]
+        for region, covered in enumerate(scene["all"][:2]):
+            held = [f"{percent(covered[key])} %" for key in ("shear_x", "shear_y", "normal")]
+            yield [scene["name"] if region == 0 else "", region + 1, *held, f"{percent(covered['ends'], 2)} %"]
 
 
 # --- Small forces ---
@@ -137,36 +136,6 @@ def testbed_rows(folder):
     return expected_rows(found["table_2"])
 
 
-# --- Errata, and hard cases ---
-
-def worst_text(deviation):
-    worst = deviation["worst_rad"]
-    if worst is None:
-        return "0/0"
-    return "0" if worst == 0 else format(worst, ".0e" if worst < 0.001 else ".2f")
-
-
-def erratum_rows(equations):
-    for erratum in equations:
-        cells = [erratum["where"]]
-        for form in ("printed", "mended"):
-            deviation = erratum[f"{form}_deviation"]
-            cells += [erratum[form], f"{deviation['wrong']} of {deviation['cases']}",
-                      worst_text(deviation)]
-        yield cells
-
-
-def condition_text(condition):
-    return "∞" if condition is not None and condition > 1e6 else text(condition, otherwise="0/0")
-
-
-def hard_case_rows(cases):
-    """The cases with the largest errors of `direct`."""
-    for case in sorted(cases, key=lambda case: -max(case["direct"]))[:5]:
-        yield [case["what"], *map(condition_text, case["conditions"]),
-               *(f"{error:.2f}" for error in case["direct"] + case["paper"])]
-
-
 def main(docs, measured):
     folder = Path(docs, "pictures", "accuracy")
     found = page.load(measured)
@@ -175,8 +144,7 @@ def main(docs, measured):
     draw_small_forces(small, folder)
     page.update(docs, "accuracy", ratio_rows=ratio_rows(found["bound"]["table"]),
                 coverage_rows=coverage_rows(found["coverage"]), share_rows=share_rows(small),
-                expected_rows=testbed_rows(folder), erratum_rows=erratum_rows(found["errata"]["equations"]),
-                hard_case_rows=hard_case_rows(found["hard_cases"]))
+                expected_rows=testbed_rows(folder))
 
 
 if __name__ == "__main__":
