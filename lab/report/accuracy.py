@@ -95,18 +95,6 @@ def draw_small_forces(points, folder):
     pictures.save(figure, folder, "small_forces")
 
 
-SHOWN_LOADS = (0.5, 1, 2, 5, 10, 100)
-
-
-def share_rows(points):
-    for point in points:
-        if point["load"] in SHOWN_LOADS:
-            shares = [point["after"]["undetected"], point["after"]["wrong_region"],
-                      point["before"]["unflagged"], point["after"]["unflagged"],
-                      point["before"]["held"], point["after"]["held"]]
-            yield [f"{point['load']:g}", *(f"{percent(share)} %" for share in shares)]
-
-
 # --- The testbed ---
 
 def name_of(row):
@@ -143,7 +131,7 @@ def main(docs, measured):
     draw_bound(found["bound"]["curves"], folder)
     draw_small_forces(small, folder)
     page.update(docs, "accuracy", ratio_rows=ratio_rows(found["bound"]["table"]),
-                coverage_rows=coverage_rows(found["coverage"]), share_rows=share_rows(small),
+                coverage_rows=coverage_rows(found["coverage"]),
                 expected_rows=testbed_rows(folder))
 
 
