@@ -96,7 +96,6 @@ std::vector<FrameBuffer> render(const Scene& scene) {
 }  // namespace
 
 ContactFrames::ContactFrames(Indenters indenters, std::size_t count)
-    : plan_(plan_of(scene_of(indenters, count))),
-      frames_(plan_.skin, render(scene_of(indenters, count))) {}
+    : plan_(plan_of(scene_of(indenters, count))), frames_(render(scene_of(indenters, count))) {}
 
 }  // namespace pillarfield::bench

@@ -8,9 +8,6 @@
 #include <utility>
 
 #include "pillarfield/status.h"
-#include "simulation/ideal_readings.h"
-#include "skin/pillar_sensels.h"
-#include "skin/raw_reading.h"
 
 namespace pillarfield::bench {
 namespace {
@@ -31,15 +28,20 @@ Quartet random_readings(Random& random) {
   const double cosine = uniform(random);
   const double shear = magnitude * std::sqrt(1 - cosine * cosine);
   const double phi = 2 * std::numbers::pi * uniform(random);
-  const auto v =
-      ideal_readings({-shear * std::cos(phi), -shear * std::sin(phi), magnitude * cosine},
-                     /*counts_per_newton=*/1);
-  // Below half a count a sensel is inactive in every type.
+  const double x = -shear * std::cos(phi) / std::numbers::sqrt2;
+  const double y = -shear * std::sin(phi) / std::numbers::sqrt2;
+  const double normal = magnitude * cosine;
+  // Equation (2). Below half a count a sensel is inactive in every type.
   const auto active = [](double reading) { return reading < 0.5 ? 0.0 : reading; };
-  return {active(v.v1), active(v.v2), active(v.v3), active(v.v4)};
+  return {active(normal + x + y), active(normal - x + y), active(normal - x - y),
+          active(normal + x - y)};
 }
 
-std::uint8_t usable(const Quartet& v) { return usable_bits({v[0], v[1], v[2], v[3]}); }
+std::uint8_t usable(const Quartet& v) {
+  return static_cast<std::uint8_t>(
+      (v[0] > 0 ? status::kSensel1 : 0) | (v[1] > 0 ? status::kSensel2 : 0) |
+      (v[2] > 0 ? status::kSensel3 : 0) | (v[3] > 0 ? status::kSensel4 : 0));
+}
 
 /// Random readings of one region, or of all regions.
 std::vector<Quartet> draw(Touch touch, Random& random) {
@@ -172,30 +174,11 @@ void fill(std::vector<FrameBuffer>& frames, SenselType type, const Skin& skin,
 
 }  // namespace
 
-Frames::Frames(const Skin& skin, SenselType type, const Scenario& scenario) : skin_(skin) {
+Frames::Frames(const Skin& skin, SenselType type, const Scenario& scenario) {
   const std::size_t fit = kMostBytes / (skin.sensels() * size_of(type));
   const std::size_t count = std::clamp<std::size_t>(fit, 2, kMostFrames);
   for (std::size_t i = 0; i < count; ++i) frames_.emplace_back(type, skin.rows, skin.cols);
   fill(frames_, type, skin, scenario);
-}
-
-Frames::Frames(Skin skin, std::vector<FrameBuffer> frames)
-    : skin_(std::move(skin)), frames_(std::move(frames)) {}
-
-double Frames::contact() const {
-  std::size_t pressed = 0;
-  for (const FrameBuffer& frame : frames_) {
-    for_each_row(frame.view(), [&](std::size_t row, const auto* top) {
-      if (row % 2 != 0 || row + 1 == skin_.rows) return;
-      const auto* const bottom = top + skin_.cols;
-      for (std::size_t col = 0; col + 1 < skin_.cols; col += 2) {
-        const bool loaded =
-            top[col] > 0 || top[col + 1] > 0 || bottom[col] > 0 || bottom[col + 1] > 0;
-        pressed += loaded ? 1 : 0;
-      }
-    });
-  }
-  return static_cast<double>(pressed) / static_cast<double>(frames_.size() * skin_.pillars());
 }
 
 }  // namespace pillarfield::bench

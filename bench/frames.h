@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "pillarfield/frame.h"
@@ -35,7 +36,7 @@ class Frames {
   /// 64 frames, or as many as fit in 1 GiB, at least 2.
   Frames(const Skin& skin, SenselType type, const Scenario& scenario);
   /// Wraps one or more given frames.
-  Frames(Skin skin, std::vector<FrameBuffer> frames);
+  explicit Frames(std::vector<FrameBuffer> frames) : frames_(std::move(frames)) {}
 
   [[nodiscard]] std::size_t size() const { return frames_.size(); }
   /// Frames repeat after size().
@@ -43,11 +44,7 @@ class Frames {
     return frames_[frame % frames_.size()].view();
   }
 
-  /// Fraction of the pillars of all frames with a reading above 0.
-  [[nodiscard]] double contact() const;
-
  private:
-  Skin skin_;
   std::vector<FrameBuffer> frames_;
 };
 

@@ -15,7 +15,6 @@
 
 #include "bench/cases/cases.h"
 #include "bench/timing/unsuffixed_reporter.h"
-#include "device/device_state.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::bench {
@@ -96,7 +95,7 @@ void print_help() {
 void add_context(const Device& device) {
   const DeviceInfo& info = device.info();
   benchmark::AddCustomContext("device", fmt::format("{} ({})", info.name, info.type));
-  benchmark::AddCustomContext("driver", device.state().device.getInfo<CL_DRIVER_VERSION>());
+  benchmark::AddCustomContext("driver", info.version);
   benchmark::AddCustomContext("platform", info.platform);
   benchmark::AddCustomContext("lanes", fmt::format("{}", info.lanes));
   benchmark::AddCustomContext("shares_memory", info.shares_memory ? "true" : "false");

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "device/kernel_source.h"
-
 namespace pillarfield::bench {
 namespace {
 
-/// Prefetches 4096 bytes ahead of each read, as the loop of vector intrinsics does.
+/// Prefetches 4096 bytes ahead of each read.
 constexpr const char* kPrefetching = R"(
 #define READ_AHEAD 4096
 #if PREFETCHING && defined(__has_builtin)
@@ -155,10 +153,16 @@ std::string define(const char* macro, const Value& value) {
   return fmt::format("#define {} {}\n", macro, value);
 }
 
+/// The OpenCL C type of a reading.
+const char* sensel_name(SenselType type) {
+  if (type == SenselType::u8) return "uchar";
+  return type == SenselType::u16 ? "ushort" : "float";
+}
+
 }  // namespace
 
 std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind) {
-  return define("SENSEL", sensel_macro(streams.sensel_type)) + define("MASK", int{streams.mask}) +
+  return define("SENSEL", sensel_name(streams.sensel_type)) + define("MASK", int{streams.mask}) +
          define("CALIBRATION_PLANES", streams.calibration_planes) +
          define("RESULT_PLANES", streams.result_planes) +
          define("FOLLOW", int{streams.tare_follows}) + define("LANES", lanes > 1 ? 16 : 1) +

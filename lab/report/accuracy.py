@@ -120,7 +120,7 @@ def expected_rows(table):
 
 def testbed_rows(folder):
     found = testbed.run(testbed.Parameters())
-    figures.draw(found, folder)
+    figures.draw(found, folder, testbed.solve)
     return expected_rows(found["table_2"])
 
 

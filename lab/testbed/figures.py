@@ -6,8 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-import testbed
-
 sys.path.insert(0, str(Path(__file__).parents[1] / "report"))
 import pictures  # noqa: E402
 
@@ -69,13 +67,7 @@ def draw_regions(folder):
     pictures.save(figure, folder, "figure_3_regions")
 
 
-def estimate(ratio, estimator):
-    """theta and phi of the program's estimate on the contour."""
-    found = testbed.solve(np.array([[0, 0, ratio, 1.0]]), estimator)
-    return found["theta"][0], found["phi"][0]
-
-
-def draw_contours(folder):
+def draw_contours(folder, solve):
     figure, axis = pictures.panels(800, 480)
     phi = np.linspace(math.pi / 4, 3 * math.pi / 4, 201)
     low = np.maximum(border(1, phi), border(2, phi))
@@ -88,8 +80,8 @@ def draw_contours(folder):
         axis.text(azimuth[-1], theta[-1] - 0.03, name, ha="center")
     for estimator, marker, face, label in (("direct", "D", pictures.GREEN, "7/8 of the segment (direct)"),
                                            ("paper", "o", "white", "midpoint in θ (paper)")):
-        theta, azimuth = estimate(2, estimator)
-        axis.plot(azimuth, theta, marker, color=pictures.BLACK, markerfacecolor=face, markersize=7, label=label,
+        found = solve(np.array([[0, 0, 2, 1.0]]), estimator)  # R = 2
+        axis.plot(found["phi"][0], found["theta"][0], marker, color=pictures.BLACK, markerfacecolor=face, markersize=7, label=label,
                   zorder=3)
     axis.set(ylim=(0.82, TOP), xlabel="azimuth φ (rad)", ylabel="inclination θ (rad)",
              title="contours of $R=V_3/V_4$")
@@ -112,7 +104,7 @@ def draw_uncertainty(folder):
 
 def draw_magnitude(points, folder):
     figure, axes = pictures.panels(1040, 370, 1, 3, sharex=True, sharey=True)
-    for axis, (site, *_) in zip(axes, testbed.SITES):
+    for axis, site in zip(axes, dict.fromkeys(point["site"] for point in points)):
         here = [point for point in points if point["site"] == site]
         applied, low, high, paper, direct, least, most = (
             np.array([point[key] for point in here]) for key in (
@@ -130,9 +122,9 @@ def draw_magnitude(points, folder):
     pictures.save(figure, folder, "figure_8_magnitude")
 
 
-def draw(found, folder):
-    """Draws all into `folder`; `found` is the output of testbed.run()."""
+def draw(found, folder, solve):
+    """Draws all into `folder`; `found` is the output of run() of testbed.py, `solve` its function."""
     draw_regions(folder)
-    draw_contours(folder)
+    draw_contours(folder, solve)
     draw_uncertainty(folder)
     draw_magnitude(found["figure_8"], folder)

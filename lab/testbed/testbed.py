@@ -219,7 +219,7 @@ def main():
     found = run(p)
     if folder is not None:
         import figures  # needs matplotlib
-        figures.draw(found, folder)
+        figures.draw(found, folder, solve)
     if as_json:
         json.dump(found, sys.stdout, indent=1)
     else:

@@ -465,4 +465,5 @@ class ForceField:
         >>> features["observation.tactile.left"]
         {'dtype': 'float32', 'shape': (4, 6, 3), 'names': ['shear_x', 'shear_y', 'normal']}
         """
-        return columns_and_features(self, name)
+        channels = _FORCES if self.has_pillars else ("normal",)
+        return columns_and_features({channel: getattr(self, channel) for channel in channels}, name)
