@@ -161,15 +161,6 @@ def draw_sizes(found, bare, every, folder):
     pictures.save(figure, folder, "size_and_contact")
 
 
-def contact_rows(bare, every):
-    """Times are divided by those of copies of the same bytes before they are compared."""
-    for costs in zip(bare, every):
-        cells = [f"{costs[0]['percent']} %"]
-        for cost, whole in zip(costs, (bare[-1], every[-1])):
-            cells += [f"{cost['time']:.3g}", f"{cost['over_copy'] / whole['over_copy']:.3f}"]
-        yield cells
-
-
 # --- Latency ---
 
 def draw_latency(bench, folder):
@@ -191,12 +182,7 @@ def draw_latency(bench, folder):
     pictures.save(figure, folder, "latency")
 
 
-# --- The paper, stages ---
-
-def paper_cells(bench):
-    return bench.cells("baseline/paper_opencl",
-                       "ns_per_pillar:.3g our_ns_per_pillar:.3g speedup:.3g of_copy:.3f")
-
+# --- Stages ---
 
 def stage_rows(bench):
     bare = bench.value("stage/none", "ns_per_pillar")
@@ -204,18 +190,6 @@ def stage_rows(bench):
         time = bench.value(case, "ns_per_pillar")
         yield [case.removeprefix("stage/"), *bench.cells(case, "ns_per_pillar:.3g of_copy:.2f"),
                text(time / bare)]
-
-
-# --- A square metre at 1 kHz ---
-
-def live_rows(live):
-    cost = live["cost"]
-    late = {key: text(latency, ".3f", "never") for key, latency in live["latency_ms"].items()}
-    return [["frames scheduled", live["solved"] + live["lost"]],
-            ["solved later than a period", live["missed"]], ["lost", live["lost"]],
-            ["latency, median, ms", late["median"]], ["99 %", late["p99"]], ["worst", late["worst"]],
-            ["readings in and forces out, GB/s", text(cost["readings_gb_per_s"] + cost["forces_gb_per_s"], ".3g")],
-            ["core-milliseconds a frame", text(1e3 * cost["core_s_per_frame"], ".3g")]]
 
 
 def main(docs, bench_json, live_json):
@@ -227,9 +201,7 @@ def main(docs, bench_json, live_json):
     context = {"commit": "unknown"} | bench.context
     kept = processors.keep(docs, "goals", {"date": context["date"][:10], "commit": context["commit"],
                                            "goals": goals(bench, live)})
-    page.update(docs, "performance", goal_table=goal_table(kept), contact_rows=contact_rows(bare, every),
-                live_rows=live_rows(live), paper_rows=[paper_cells(bench)],
-                stage_rows=stage_rows(bench))
+    page.update(docs, "performance", goal_table=goal_table(kept), stage_rows=stage_rows(bench))
 
 
 if __name__ == "__main__":
