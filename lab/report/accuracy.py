@@ -1,15 +1,14 @@
-"""accuracy.py DOCS MEASURED: writes DOCS/accuracy.md with its pictures.
+"""accuracy.py DOCS MEASURED: writes the tables and pictures of DOCS/accuracy.md.
 
 MEASURED is the output of measure_accuracy. lab/testbed computes the paper's figures with the Python package."""
 
-import dataclasses
 import math
 import sys
 from pathlib import Path
 
 import page
 import pictures
-from page import percent, text
+from page import percent, root_mean_square, text
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "testbed"))
 import figures  # noqa: E402
@@ -55,44 +54,14 @@ def draw_bound(curves, folder):
     pictures.save(figure, folder, "bound")
 
 
-def bound_values(bound):
-    forces = [force for cell in bound["table"] for force in cell["forces"]]
-    of_region_1 = [force["paper"] for force in forces if force["usable"] == 4]
-    return {
-        "ratio_rows": ratio_rows(bound["table"]),
-        "direct_most": max(force["direct"] for force in forces),
-        # The standard error of an RMS error, and so of a ratio.
-        "ratio_error": 0.7 / math.sqrt(bound["draws"]),
-        "paper_least": min(of_region_1),
-        "paper_most": max(of_region_1),
-        "cost_of_misreading": percent(bound["cost_of_misreading"], 0),
-    }
-
-
-# --- Coverage, and region 3 ---
+# --- Coverage ---
 
 def coverage_rows(scenes):
+    """Regions 1 and 2; the others have no standard deviation that covers 95 %."""
     for scene in scenes:
-        for region, covered in enumerate(scene["all"]):
-            held = [f"{percent(covered[key])} %" if region < 2 else "–"
-                    for key in ("shear_x", "shear_y", "normal")]
-            yield [scene["name"] if region == 0 else "", region + 1, covered["pillars"], *held,
-                   f"{percent(covered['ends'], 2)} %"]
-
-
-def luck_rows(scenes):
-    for scene in scenes:
-        for region in (0, 1):
-            cells = []
-            for part in ("as_without_noise", "usable_by_luck", "inactive_by_bad_luck"):
-                covered = scene[part][region]
-                if covered["pillars"] == 0:
-                    cells += ["none", "–"]
-                    continue
-                held = (covered["shear_x"] + covered["shear_y"] + covered["normal"]) / 3
-                share = covered["pillars"] / scene["all"][region]["pillars"]
-                cells += [f"{percent(share)} %", f"{percent(held)} %"]
-            yield [scene["name"] if region == 0 else "", region + 1, *cells]
+        for region, covered in enumerate(scene["all"][:2]):
+            held = [f"{percent(covered[key])} %" for key in ("shear_x", "shear_y", "normal")]
+            yield [scene["name"] if region == 0 else "", region + 1, *held, f"{percent(covered['ends'], 2)} %"]
 
 
 # --- Small forces ---
@@ -126,31 +95,6 @@ def draw_small_forces(points, folder):
     pictures.save(figure, folder, "small_forces")
 
 
-def share_rows(points):
-    for point in points:
-        shares = [point["after"]["undetected"], point["after"]["wrong_region"],
-                  point["before"]["unflagged"], point["after"]["unflagged"],
-                  point["before"]["held"], point["after"]["held"]]
-        yield [f"{point['load']:g}", *(f"{percent(share)} %" for share in shares)]
-
-
-def error_rows(points):
-    for point in points:
-        cells = []
-        for key in ("determined", "force", "theta_rad", "phi_rad"):
-            errors = [point[solve][key] for solve in ("paper", "before", "after")]
-            cells.append("none" if errors[2] is None else
-                         " / ".join(f"{error:.3f}" for error in errors))
-        yield [f"{point['load']:g}", *cells]
-
-
-def small_forces_values(points):
-    gain = next(point["before"]["determined"] / point["after"]["determined"]
-                for point in points if point["load"] == 10)
-    return {"share_rows": share_rows(points), "error_rows": error_rows(points),
-            "dead_zone_gain": gain, "largest_force": points[-1]}
-
-
 # --- The testbed ---
 
 def name_of(row):
@@ -162,17 +106,9 @@ def as_printed(figure):
     return f"{figure:.4f}".removesuffix("0")
 
 
-def run_rows(table):
-    for row in table:
-        yield [name_of(row), f"{row['truth']:.3f}",
-               *(as_printed(row["published"][key]) for key in testbed.STATISTICS),
-               *(f"{row[solve]['run'][key]:.3f}" for solve in ("paper", "direct")
-                 for key in testbed.STATISTICS)]
-
-
 def expected_rows(table):
     for row in table:
-        cells = []
+        cells = [f"{row['truth']:.3f}", *(as_printed(row["published"][key]) for key in testbed.STATISTICS)]
         for solve in ("paper", "direct"):
             for key in testbed.STATISTICS:
                 bold = "**" if solve == "paper" and row["reproduced"][key] else ""
@@ -182,98 +118,21 @@ def expected_rows(table):
         yield [name_of(row), *cells]
 
 
-def scan_rows(scan):
-    """Every tenth point and the neighbours of the nearest one, which is bold."""
-    nearest = min(range(len(scan)), key=lambda i: scan[i]["distance_rad"])
-    for i, point in enumerate(scan):
-        if i % 10 == 0 or abs(i - nearest) <= 3:
-            bold = "**" if i == nearest else ""
-            yield [f"{bold}{point['dead_zone_n']:.1f}{bold}",
-                   *(f"{point[key]:.3f}" for key in (*testbed.STATISTICS, "distance_rad"))]
-
-
-def nearest_threshold():
-    """The sensor without a dead zone whose threshold comes nearest to the paper's figures."""
-    runs = [testbed.run(testbed.Parameters(dead_zone_counts=0, threshold_counts=counts))
-            for counts in range(10, 201, 10)]
-    return min(runs, key=lambda run: testbed.difference(run["table_2"]))
-
-
-def band(figure, site):
-    """Half-width of the band of uncertain angles, percent of the applied force."""
-    point = next(point for point in figure if point["site"] == site)
-    return percent((point["uncertain_high_n"] - point["uncertain_low_n"]) / point["applied_n"] / 2)
-
-
-def testbed_values(folder):
-    parameters = testbed.Parameters()
-    ours, other = testbed.run(parameters), nearest_threshold()
-    figures.draw(ours, folder, testbed.solve)
-    table = ours["table_2"]
-    phi, theta = (row["paper"]["expected"] for row in other["table_2"][:2])
-    threshold = other["threshold_counts"]
-    return {
-        "testbed": ours,
-        "sensor": dataclasses.asdict(parameters),
-        "dead_zone_n": parameters.dead_zone_counts / parameters.counts_per_newton,
-        "run_rows": run_rows(table),
-        "expected_rows": expected_rows(table),
-        "scan_rows": scan_rows(testbed.scan_dead_zones(parameters)),
-        "theta": table[1],
-        "dead_zone_difference": testbed.difference(table),
-        "threshold_difference": testbed.difference(other["table_2"]),
-        "threshold_counts": threshold,
-        "threshold_n": threshold / other["counts_per_newton"],
-        "threshold_phi": phi,
-        "threshold_theta": theta,
-        "bands": [band(ours["figure_8"], f"Region {number}") for number in (1, 2, 3)],
-    }
-
-
-# --- Errata, and hard cases ---
-
-def worst_text(deviation):
-    worst = deviation["worst_rad"]
-    if worst is None:
-        return "0/0"
-    return "0" if worst == 0 else format(worst, ".0e" if worst < 0.001 else ".2f")
-
-
-def erratum_rows(equations):
-    for erratum in equations:
-        cells = [erratum["where"]]
-        for form in ("printed", "mended"):
-            deviation = erratum[f"{form}_deviation"]
-            cells += [erratum[form], f"{deviation['wrong']} of {deviation['cases']}",
-                      worst_text(deviation)]
-        yield cells
-
-
-def condition_text(condition):
-    return "∞" if condition is not None and condition > 1e6 else text(condition, otherwise="0/0")
-
-
-def hard_case_rows(cases):
-    for case in cases:
-        yield [case["what"], *map(condition_text, case["conditions"]),
-               *(f"{error:.2f}" for error in case["direct"] + case["paper"])]
+def testbed_rows(folder):
+    found = testbed.run(testbed.Parameters())
+    figures.draw(found, folder, testbed.solve)
+    return expected_rows(found["table_2"])
 
 
 def main(docs, measured):
     folder = Path(docs, "pictures", "accuracy")
     found = page.load(measured)
-    small, errata, cases = found["small_forces"]["points"], found["errata"], found["hard_cases"]
+    small = found["small_forces"]["points"]
     draw_bound(found["bound"]["curves"], folder)
     draw_small_forces(small, folder)
-    page.write(
-        docs, "accuracy", **found, **bound_values(found["bound"]), **small_forces_values(small),
-        **testbed_values(folder),
-        coverage_rows=coverage_rows(found["coverage"]), luck_rows=luck_rows(found["coverage"]),
-        erratum_rows=erratum_rows(errata["equations"]),
-        right_as_printed=[worst_text(right) for right in errata["right_as_printed"]],
-        hard_case_rows=hard_case_rows(cases),
-        direct_worst=max(max(case["direct"]) for case in cases),
-        paper_worst=max(max(case["paper"]) for case in cases))
+    page.update(docs, "accuracy", ratio_rows=ratio_rows(found["bound"]["table"]),
+                coverage_rows=coverage_rows(found["coverage"]),
+                expected_rows=testbed_rows(folder))
 
 
 if __name__ == "__main__":

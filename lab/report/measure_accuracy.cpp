@@ -1,7 +1,6 @@
 // measure_accuracy: the measurements of docs/accuracy.md, as one JSON document on standard output.
 // The result depends on nothing but the code.
 
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -10,11 +9,8 @@
 #include <utility>
 
 #include "lab/studies/bound.h"
-#include "lab/studies/case_accuracy.h"
 #include "lab/studies/coverage_study.h"
-#include "lab/studies/errata.h"
 #include "lab/studies/small_forces.h"
-#include "solve/one_pillar.h"
 
 namespace pillarfield::report {
 namespace {
@@ -100,26 +96,12 @@ Json bound_curves() {
   return curves;
 }
 
-/// By how much misread draws raise the error over the bound where the third reading of region 2 is
-/// kFar standard deviations from the threshold.
-double cost_of_misreading() {
-  constexpr int kManyDraws = 1'000'000;
-  const PillarSensor sensor = sensor_of(1);
-  double far = 50;
-  double near = 64;
-  for (int step = 0; step < 40; ++step) {
-    const double middle = (far + near) / 2;
-    (is_measured(force_from(middle, 22.5), sensor) ? far : near) = middle;
-  }
-  const Force force = force_from(far, 22.5);
-  const auto error = bound::rms_error(force, sensor, Estimator::direct, kManyDraws, 0);
-  return error.of_all / bound::least_error(force, sensor) - 1;
-}
-
 Json bound_json() {
-  return {{"force_counts", kForceCounts}, {"draws", kDraws},
-          {"far_deviations", kFar},       {"table", bound_table()},
-          {"curves", bound_curves()},     {"cost_of_misreading", cost_of_misreading()}};
+  return {{"force_counts", kForceCounts},
+          {"draws", kDraws},
+          {"far_deviations", kFar},
+          {"table", bound_table()},
+          {"curves", bound_curves()}};
 }
 
 // --- Coverage ---
@@ -150,36 +132,6 @@ Json coverage_json() {
   return scenes;
 }
 
-// --- The ambiguity of region 3 ---
-
-/// The largest half-width of an angle, and the ratio of the two readings there.
-struct Worst {
-  double half_width_rad = 0;
-  double ratio = 0;
-
-  void add(double width_rad, double at) {
-    if (width_rad / 2 > half_width_rad) *this = {width_rad / 2, at};
-  }
-  [[nodiscard]] Json json() const { return {{"half_width_rad", half_width_rad}, {"ratio", ratio}}; }
-};
-
-Json region_three_json() {
-  constexpr int kStepsToOne = 2000;
-  constexpr int kLargest = 50;
-  Worst theta;
-  Worst phi;
-  for (int step = kStepsToOne; step <= kLargest * kStepsToOne; ++step) {
-    const double ratio = static_cast<double>(step) / kStepsToOne;
-    const auto ends = estimate_pillar<double>({ratio, 1, 0, 0}, {}, Estimator::direct).interval;
-    theta.add(ends.theta_high - ends.theta_low, ratio);
-    phi.add(ends.phi_high - ends.phi_low, ratio);
-  }
-  return {{"largest_ratio", kLargest},
-          {"ratio_step", 1.0 / kStepsToOne},
-          {"theta", theta.json()},
-          {"phi", phi.json()}};
-}
-
 // --- Small forces ---
 
 Json json_of(const small_forces_study::SmallForceErrors& errors) {
@@ -204,81 +156,10 @@ Json small_forces_json() {
           {"points", std::move(points)}};
 }
 
-// --- Errata, and hard cases ---
-
-/// `worst_rad` is null where a case is 0/0.
-Json json_of(const errata::Deviation& deviation) {
-  return {
-      {"cases", deviation.cases}, {"wrong", deviation.wrong}, {"worst_rad", deviation.worst_rad}};
-}
-
-Json errata_json() {
-  Json equations = Json::array();
-  for (const errata::Erratum& erratum : errata::equation_errata()) {
-    equations.push_back({{"where", erratum.where},
-                         {"printed", erratum.printed},
-                         {"printed_deviation", json_of(erratum.measure_printed())},
-                         {"mended", erratum.mended},
-                         {"mended_deviation", json_of(erratum.measure_mended())}});
-  }
-  const auto right = errata::right_as_printed();
-  return {{"equations", std::move(equations)},
-          {"right_as_printed", {json_of(right[0]), json_of(right[1])}},
-          {"table_two_region_three", errata::table_two_region_three()}};
-}
-
-/// The largest of what `measure` finds of a case's examples; null where one is not a number.
-template <class Measure>
-Json worst_of(const hard_cases::HardCase& hard_case, hard_cases::Precision precision,
-              Measure measure) {
-  double worst = 0;
-  for (const hard_cases::Example& example : hard_case.examples(precision)) {
-    const double value = measure(example);
-    if (std::isnan(value) || value > worst) worst = value;
-    if (std::isnan(worst)) return nullptr;
-  }
-  return worst;
-}
-
-Json hard_cases_json() {
-  using hard_cases::Example;
-  using hard_cases::Precision;
-  Json cases = Json::array();
-  for (const hard_cases::HardCase& hard_case : hard_cases::hard_cases()) {
-    const auto condition = [&](Estimator estimator) {
-      return worst_of(hard_case, Precision::double_precision, [&](const Example& example) {
-        return condition_of(example, estimator, Precision::double_precision);
-      });
-    };
-    const auto error = [&](Estimator estimator, Precision precision) {
-      return worst_of(hard_case, precision, [&](const Example& example) {
-        return error_of(solve(example, estimator, precision), example, estimator, precision);
-      });
-    };
-    const Json as_assigned =
-        worst_of(hard_case, Precision::double_precision, [](const Example& example) {
-          return condition_as_assigned(example, Precision::double_precision);
-        });
-    cases.push_back(
-        {{"what", hard_case.what},
-         {"conditions", {condition(Estimator::direct), condition(Estimator::paper), as_assigned}},
-         {"direct",
-          {error(Estimator::direct, Precision::single_precision),
-           error(Estimator::direct, Precision::double_precision)}},
-         {"paper",
-          {error(Estimator::paper, Precision::single_precision),
-           error(Estimator::paper, Precision::double_precision)}}});
-  }
-  return cases;
-}
-
 Json all() {
   return {{"bound", bound_json()},
           {"coverage", coverage_json()},
-          {"region_three", region_three_json()},
-          {"small_forces", small_forces_json()},
-          {"errata", errata_json()},
-          {"hard_cases", hard_cases_json()}};
+          {"small_forces", small_forces_json()}};
 }
 
 }  // namespace

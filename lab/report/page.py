@@ -1,7 +1,8 @@
-"""Common parts of the pages of ./dev report: reads JSON, fills a Markdown template."""
+"""Common parts of the pages of ./dev report: reads JSON, writes the tables of a page."""
 
 import json
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -49,12 +50,20 @@ def text(value, pattern=".2f", otherwise="–"):
     return otherwise if value is None else format(value, pattern)
 
 
-def write(docs, name, **values):
-    """Fills the str.format template NAME.md beside this script and writes it into the folder of
-    documents. Values whose name ends in _rows are rows of a table."""
-    template = Path(__file__).with_name(f"{name}.md").read_text(encoding="utf-8")
-    values = {key: rows(value) if key.endswith("_rows") else value for key, value in values.items()}
-    Path(docs, f"{name}.md").write_text(template.format_map(values), encoding="utf-8")
+def update(docs, name, **tables):
+    """Writes tables of DOCS/NAME.md, each below a line <!-- KEY -->. The first row of a table whose key ends in
+    _table is its head; others keep the head of the page."""
+    path = Path(docs, f"{name}.md")
+    page = path.read_text(encoding="utf-8")
+    for key, table in tables.items():
+        head, table = "", list(table)
+        if key.endswith("_table"):
+            head = f"{rows(table[:1])}\n|--{'|--:' * (len(table.pop(0)) - 1)}|\n"
+        page, found = re.subn(rf"(<!-- {key} -->\n\n)(\|.*\n\|.*\n)(?:\|.*\n)*",
+                              lambda match: match[1] + (head or match[2]) + rows(table) + "\n", page)
+        if found != 1:
+            raise Failure(f"{path}: {found} tables below <!-- {key} -->; there must be one")
+    path.write_text(page, encoding="utf-8")
 
 
 def run(main):

@@ -1,13 +1,11 @@
-"""sensors.py DOCS MEASURED TIMED: writes DOCS/sensors.md.
+"""sensors.py DOCS MEASURED TIMED: writes the tables of DOCS/sensors.md.
 
 MEASURED is the output of measure_sensors.py, TIMED that of pillarfield-bench of its cases sensor/."""
 
 import math
-import os
 
 import page
 import sensor_scenes as scenes
-import processors
 import speed
 from page import met_or_not, percent, text
 
@@ -49,23 +47,28 @@ def coverage(score):
     return " / ".join(percent(share(score, name), 0) for name in COMPONENTS)
 
 
+def limit(name):
+    """The wanted error over the ideal sensor's; None of off-centre pressure alone."""
+    return None if name == "off_centre" else SINGLE_LIMIT.get(name, OTHER_LIMIT)
+
+
+def ratio_cells(name, ratio):
+    """A ratio, bold where it misses its goal, and the goal."""
+    wanted = limit(name)
+    if wanted is None:
+        return [text(ratio), "–"]
+    return [text(ratio) if ratio <= wanted else f"**{text(ratio)}**", f"≤ {wanted}"]
+
+
 def error_rows(found):
     ideal = rms(found["ideal"])
     for name, effect in scenes.EFFECTS.items():
         ignored, exact, calibrated = (found["effects"][name][way]
                                       for way in ("ignored", "exact", "calibrated"))
         yield [effect.title, text(rms(ignored)), text(rms(exact)) if is_exact(name) else "–",
-               text(rms(calibrated)), text(rms(calibrated) / ideal),
+               text(rms(calibrated)), *ratio_cells(name, rms(calibrated) / ideal),
                *(text(rms(score, "ambiguous")) for score in (ignored, calibrated)),
                text(rms(found["absent"][name]) / ideal, ".3f")]
-
-
-def region_rows(found):
-    for name, effect in scenes.EFFECTS.items():
-        ignored, calibrated = (found["effects"][name][way] for way in ("ignored", "calibrated"))
-        yield [effect.title, percent(share(ignored, "wrong")), percent(share(calibrated, "wrong")),
-               percent(share(calibrated, "unflagged")), coverage(ignored),
-               coverage(calibrated), text(over_paper(calibrated))]
 
 
 def indenter_rows(found):
@@ -82,17 +85,6 @@ def indenter_rows(found):
 
 def goal(what, wanted, measured, holds):
     return [what, wanted, measured, met_or_not(holds)]
-
-
-def error_goals(found):
-    ideal = rms(found["ideal"])
-    for name in scenes.EFFECTS:
-        if name == "off_centre":
-            continue
-        limit = SINGLE_LIMIT.get(name, OTHER_LIMIT)
-        ratio = rms(found["effects"][name]["calibrated"]) / ideal
-        yield goal(f"{short(name)}: error over the ideal sensor's", f"≤ {limit}", text(ratio),
-                   ratio <= limit)
 
 
 def off_centre_goals(found):
@@ -154,18 +146,9 @@ def time_rows(bench):
 def main(docs, measured, timed):
     found = page.load(measured)
     bench = speed.Bench(timed, page.load(timed))
-    ideal = found["ideal"]
-    page.write(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
-               indenter_rows=indenter_rows(found), time_rows=time_rows(bench),
-               processor=processors.name(), threads=os.cpu_count(),
-               goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
-               ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),
-               ideal_wrong=percent(share(ideal, "wrong")), ideal_coverage=coverage(ideal),
-               ideal_unflagged=percent(share(ideal, "unflagged")),
-               ideal_paper=text(over_paper(found["absent"]["gains"])),
-               tared_wrong=percent(share(found["absent"]["gains"], "wrong")),
-               histories=len(scenes.BODIES), frames=scenes.FRAMES, friction=scenes.FRICTION,
-               peak=scenes.PEAK_COUNTS, noise=scenes.NOISE_COUNTS, least=8)
+    page.update(docs, "sensors", error_rows=error_rows(found), indenter_rows=indenter_rows(found),
+                time_rows=time_rows(bench),
+                goal_rows=[*off_centre_goals(found), *shared_goals(found)])
 
 
 if __name__ == "__main__":

@@ -1,11 +1,9 @@
-"""speed.py DOCS BENCH LIVE: writes DOCS/performance.md with its pictures.
+"""speed.py DOCS BENCH LIVE: writes the tables and pictures of DOCS/performance.md.
 
 BENCH is the output of pillarfield-bench --benchmark_format=json, LIVE that of `pillarfield stream
 --summary --json`. What they say of the goals is kept in DOCS/measured, a file for each kind of processor; the
 page shows all of them."""
 
-import os
-import platform
 from pathlib import Path
 
 import page
@@ -113,8 +111,9 @@ def goal_cell(sign, limit, measured):
     return number if met else f"**{number}**"
 
 
-def goal_rows(kept):
+def goal_table(kept):
     """A column for each processor."""
+    yield ["Goal", "wanted", *(f"{one['processor']}, {one['date']}" for one in kept)]
     for what, sign, limit, _ in GOALS:
         yield [what, f"{sign} {limit:g}", *(goal_cell(sign, limit, one["goals"].get(what)) for one in kept)]
 
@@ -162,27 +161,7 @@ def draw_sizes(found, bare, every, folder):
     pictures.save(figure, folder, "size_and_contact")
 
 
-def size_rows(found):
-    for size in found:
-        yield [f"{size['pillars']:.0f}", text(size["ours"], ".3g"), text(size["copy"], ".3g"), text(size["of_copy"])]
-
-
-def contact_rows(bare, every):
-    """Times are divided by those of copies of the same bytes before they are compared."""
-    for costs in zip(bare, every):
-        cells = [f"{costs[0]['percent']} %"]
-        for cost, whole in zip(costs, (bare[-1], every[-1])):
-            cells += [f"{cost['time']:.3g}", f"{cost['over_copy'] / whole['over_copy']:.3f}"]
-        yield cells
-
-
 # --- Latency ---
-
-def latency_rows(bench):
-    return [bench.cells(case, "pillars:.0f host_median_us:.1f host_p99_us:.1f opencl_median_us:.1f "
-                              "opencl_p99_us:.1f median_us:.1f of_empty_launch:.2f")
-            for case in bench.group("latency")]
-
 
 def draw_latency(bench, folder):
     """Bands reach from the median to the 99 % quantile."""
@@ -203,84 +182,26 @@ def draw_latency(bench, folder):
     pictures.save(figure, folder, "latency")
 
 
-# --- The paper, stages, lanes ---
-
-def paper_cells(bench):
-    return bench.cells("baseline/paper_opencl",
-                       "ns_per_pillar:.3g our_ns_per_pillar:.3g speedup:.3g of_copy:.3f")
-
+# --- Stages ---
 
 def stage_rows(bench):
     bare = bench.value("stage/none", "ns_per_pillar")
     for case in bench.group("stage"):
-        time, share = bench.value(case, "ns_per_pillar"), bench.value(case, "of_copy")
-        yield [case.removeprefix("stage/"), f"{bench.value(case, 'bytes_per_pillar'):.0f}",
-               f"{time:.3g}", f"{share * time:.3g}", text(share), text(time / bare)]
-
-
-def lane_rows(bench):
-    for case in bench.group("lanes"):
-        yield [case.removeprefix("lanes/"), *bench.cells(case, "ns_per_pillar:.3g of_copy:.3f")]
-
-
-# --- The machine ---
-
-def caches_text(caches):
-    """"level 1: 32 KiB, level 2: 1 MiB for 2 cores": the data caches."""
-    texts = []
-    for cache in caches:
-        if cache["type"] != "Instruction":
-            size = cache["size"] // 1024
-            size = f"{size // 1024} MiB" if size >= 1024 else f"{size} KiB"
-            sharing = cache["num_sharing"]
-            texts.append(f"level {cache['level']}: {size}"
-                         + (f" for {sharing} cores" if sharing > 1 else ""))
-    return ", ".join(texts)
-
-
-def loads_text(loads):
-    return ", ".join(f"{load:.2f}" for load in loads)
-
-
-def latencies(live):
-    return {key: text(latency, ".3f", "never") for key, latency in live["latency_ms"].items()}
-
-
-def live_cost_rows(bench, live):
-    cost = live["cost"]
-    traffic = cost["readings_gb_per_s"] + cost["forces_gb_per_s"]
-    case = "stage/all"
-    copy_ns = bench.value(case, "of_copy") * bench.value(case, "ns_per_pillar")
-    copy_gb_per_s = bench.value(case, "bytes_per_pillar") / copy_ns
-    return [["readings in, GB/s", text(cost["readings_gb_per_s"], ".3g")],
-            ["forces out, GB/s", text(cost["forces_gb_per_s"], ".3g")],
-            [f"both over the copy's {copy_gb_per_s:.3g} GB/s of all stages", text(traffic / copy_gb_per_s)],
-            ["core-milliseconds a frame", text(1e3 * cost["core_s_per_frame"], ".3g")]]
+        time = bench.value(case, "ns_per_pillar")
+        yield [case.removeprefix("stage/"), *bench.cells(case, "ns_per_pillar:.3g of_copy:.2f"),
+               text(time / bare)]
 
 
 def main(docs, bench_json, live_json):
     folder = Path(docs, "pictures", "performance")
     bench, live = Bench(bench_json, page.load(bench_json)), page.load(live_json)["summary"]
-    found = list(sizes(bench))
     bare, every = list(contact_costs(bench, "bare")), list(contact_costs(bench, "all"))
-    draw_sizes(found, bare, every, folder)
+    draw_sizes(list(sizes(bench)), bare, every, folder)
     draw_latency(bench, folder)
     context = {"commit": "unknown"} | bench.context
     kept = processors.keep(docs, "goals", {"date": context["date"][:10], "commit": context["commit"],
                                            "goals": goals(bench, live)})
-    page.write(
-        docs, "performance", goal_rows=goal_rows(kept),
-        goal_heads=" | ".join(one["processor"] for one in kept), goal_aligns="--:|" * len(kept),
-        goal_dates="; ".join(f"{one['processor']}: {one['date']}, commit {one['commit']}" for one in kept),
-        size_rows=size_rows(found),
-        contact_rows=contact_rows(bare, every), latency_rows=latency_rows(bench),
-        live=live, latencies=latencies(live), live_cost_rows=live_cost_rows(bench, live),
-        scheduled=live["solved"] + live["lost"], paper_rows=[paper_cells(bench)],
-        stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
-        context=context, processor=processors.name(),
-        caches=caches_text(bench.context["caches"]),
-        system=f"{platform.freedesktop_os_release()['PRETTY_NAME']}, kernel {platform.release()}",
-        load_before=loads_text(bench.context["load_avg"]), load_after=loads_text(os.getloadavg()))
+    page.update(docs, "performance", goal_table=goal_table(kept), stage_rows=stage_rows(bench))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
-"""speed_and_error.py DOCS MEASURED TIMED: writes DOCS/speed_and_error.md and its picture.
+"""speed_and_error.py DOCS MEASURED TIMED: writes the table and the picture of DOCS/speed_and_error.md.
 
-MEASURED is the output of measure_choices.py, TIMED that of pillarfield-bench of its cases choice/.
-The times are kept in DOCS/measured, a file for each kind of processor; the page shows all of them."""
+MEASURED is the output of measure_choices.py, TIMED that of pillarfield-bench of its cases choice/."""
 
 import math
 from pathlib import Path
@@ -37,62 +36,34 @@ def of_peak(counts):
     return counts / scenes.PEAK_COUNTS
 
 
-def times(bench):
-    """Time over that of the bare direct solve, and frames a second of a square metre."""
-    return {name.removeprefix("choice/"):
-            {"over_bare": round(bench.value(name, "over_bare"), 3),
-             "frames_hz": round(1e6 / bench.value(name, "real_time"), 2)}
-            for name in bench.group("choice")}
+def frames_hz(bench, way):
+    """Frames a second of a square metre; None where the way was not timed."""
+    time_us = bench.find(f"choice/{way}", "real_time")
+    return time_us and 1e6 / time_us
 
 
-def keep_times(docs, bench):
-    """Adds this processor's times to those kept, and returns all by processor."""
-    return processors.keep(docs, "choices", {
-        "cores": bench.context["num_cpus"], "date": bench.context["date"][:10],
-        "load": bench.context["load_avg"][0], "times": times(bench)})
-
-
-def time_cells(kept, case):
-    for one in kept:
-        found = one["times"].get(case)
-        yield text(found and found["over_bare"], ".1f")
-        yield text(found and found["frames_hz"], ".0f")
-
-
-def choice_rows(measured, kept):
+def choice_rows(measured, bench):
     for sensor, known, title in SENSORS:
         for estimator, score in measured[sensor][known].items():
+            way = f"{known}/{estimator}"
             yield [title, estimator, text(error(score)), percent(of_peak(error(score))),
                    text(rms(score, "determined")), text(rms(score, "ambiguous")),
-                   *time_cells(kept, f"{known}/{estimator}")]
+                   text(bench.find(f"choice/{way}", "over_bare"), ".1f"), text(frames_hz(bench, way), ".0f"),
+                   text(frames_hz(bench, f"{way}_and_deviations"), ".0f")]
 
 
-def deviation_rows(kept):
-    for known, title in (("none", "nothing"), ("calibrated", "tares and gains"),
-                         ("sensor", "all corrections")):
-        for way in ("direct", "contact"):
-            yield [title, way, *time_cells(kept, f"{known}/{way}"),
-                   *time_cells(kept, f"{known}/{way}_and_deviations")]
-
-
-def heads(kept, outputs=""):
-    """Names of the columns of times."""
-    return " | ".join(f"{outputs}{one['processor']}: time over bare | frames/s" for one in kept)
-
-
-def draw(measured, kept, folder):
+def draw(measured, bench, folder):
     figure, axes = pictures.panels(900, 520)
-    here = kept[0]["times"]
     for sensor, known, title in SENSORS:
         for estimator, score in measured[sensor][known].items():
-            axes.plot(here[f"{known}/{estimator}"]["frames_hz"], 100 * of_peak(error(score)),
+            axes.plot(frames_hz(bench, f"{known}/{estimator}"), 100 * of_peak(error(score)),
                       MARKERS[estimator], color=COLOURS[title], markersize=9)
     axes.set_xscale("log")
     axes.set_yscale("log")
     pictures.plain_ticks(axes.xaxis)
     pictures.plain_ticks(axes.yaxis)
-    axes.set_xlabel(f"frames per second of a square metre, 5 % in contact ({kept[0]['processor']}, "
-                    f"{kept[0]['cores']} cores)")
+    axes.set_xlabel(f"frames per second of a square metre, 5 % in contact ({processors.name()}, "
+                    f"{bench.context['num_cpus']} cores)")
     axes.set_ylabel("RMS error of a pillar's force, % of the largest")
     for title, colour in COLOURS.items():
         axes.plot([], [], "o", color=colour, label=title)
@@ -104,26 +75,8 @@ def draw(measured, kept, folder):
 
 def main(docs, measured, timed):
     measured, bench = page.load(measured), speed.Bench(timed, page.load(timed))
-    kept = keep_times(docs, bench)
-    draw(measured, kept, Path(docs, "pictures/performance"))
-    score = {(sensor, known, estimator): error(found)
-             for sensor, by_known in measured.items() for known, by_estimator in by_known.items()
-             for estimator, found in by_estimator.items()}
-    page.write(docs, "speed_and_error", choice_rows=list(choice_rows(measured, kept)),
-               deviation_rows=list(deviation_rows(kept)), heads=heads(kept),
-               aligns="--:|" * (2 * len(kept)), twice_heads=heads(kept, "forces, ") + " | " + heads(kept, "and deviations, "),
-               twice_aligns="--:|" * (4 * len(kept)),
-               peak=scenes.PEAK_COUNTS, noise=scenes.NOISE_COUNTS,
-               ideal=of_text(score, "ideal", "none"), ignored=of_text(score, "real", "none"),
-               corrected=of_text(score, "real", "sensor"),
-               machines="; ".join(f"{one['processor']}, {one['cores']} cores, {one['date']}, load average "
-                                  f"{one['load']:.1f} before" for one in kept))
-
-
-def of_text(score, sensor, known):
-    """Errors by estimator as text, % of the largest force."""
-    return ", ".join(f"`{estimator}` {percent(of_peak(score[sensor, known, estimator]))} %"
-                     for estimator in MARKERS)
+    draw(measured, bench, Path(docs, "pictures/performance"))
+    page.update(docs, "speed_and_error", choice_rows=choice_rows(measured, bench))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@
 #include "lab/studies/oracle.h"
 #include "solve/one_pillar.h"
 
-/// Named hard cases of single pillars, for tests and docs/accuracy.md.
+/// Named hard cases of single pillars, for tests and docs/derivations/conditioning.md.
 namespace pillarfield::hard_cases {
 
 /// Precision of the arithmetic and of the rounded readings.

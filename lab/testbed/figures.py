@@ -1,4 +1,4 @@
-"""Figures 3, 4, 5 and 8 of the paper, from the output of testbed.run() and the solve (docs/testbed.md)."""
+"""Figures 3, 4, 5 and 8 of the paper, from the output of testbed.run() and the solve (docs/accuracy.md)."""
 
 import math
 import sys

@@ -1,4 +1,4 @@
-"""The paper's testbed (sections IV and V), simulated: Table II and Figures 3, 4, 5 and 8 (docs/testbed.md).
+"""The paper's testbed (sections IV and V), simulated: Table II and Figures 3, 4, 5 and 8 (docs/accuracy.md).
 
 A probe presses one pillar from three directions with 10 to 100 N. Readings of many runs are made by equation (2) and a
 sensor with a dead zone, and solved by the package pillarfield with the paper's equations and with the direct solve."""
@@ -26,7 +26,7 @@ AMBIGUOUS_OR_INCONSISTENT = pf.Status.AMBIGUOUS | pf.Status.INCONSISTENT
 
 @dataclass(frozen=True)
 class Parameters:
-    """Constants of probe and sensor; the paper states those of the probe (docs/testbed.md)."""
+    """Constants of probe and sensor; the paper states those of the probe (docs/accuracy.md)."""
     counts_per_newton: float = 20
     threshold_counts: float = 3
     dead_zone_counts: float = 144

@@ -267,12 +267,10 @@ TEST(SceneSurface, SamplesAHeightMapAtThePillars) {
   EXPECT_THROW(Simulator(scene("[20, 12]")), Error);
 }
 
-TEST(ShippedScenes, AreTheOnesOfTheDocumentation) {
-  const std::string page = text_of(PILLARFIELD_SCENES_PAGE);
+TEST(ShippedScenes, BeginWithADescription) {
   const auto scenes = shipped_scenes();
   EXPECT_GE(scenes.size(), 10U);
   for (const auto& path : scenes) {
-    EXPECT_NE(page.find("`" + path.filename().string() + "`"), std::string::npos) << path;
     EXPECT_EQ(text_of(path).substr(0, 2), "# ") << path << " has no head";
   }
 }

@@ -35,7 +35,6 @@ Application::Application(const Options& options)
       device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
       presenter_(instance_, device_, *surface_, scale()) {
   state_.settings.theme = options.theme;
-  state_.panels = user_.panels;
 }
 
 void Application::run() {
@@ -51,8 +50,6 @@ void Application::run() {
     if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
     serve();
   }
-  if (files_ != nullptr) leave_page();
-  user_.panels = state_.panels;
   user_.save();
   if (options_.statistics) print_statistics();
   loading_.reset();
@@ -83,8 +80,8 @@ void Application::take_input() {
   if (!drops.empty()) pending_.open = drops.front();
 }
 
-/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups and panels
-/// over the field take the mouse.
+/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups take the
+/// mouse.
 void Application::route(const InputEvent& event) {
   if (!shows_source()) return route_to_start_page(event);
   if (const auto* key = std::get_if<KeyEvent>(&event)) return route_key(*key);
@@ -102,30 +99,18 @@ void Application::route(const InputEvent& event) {
     state_.show_help = false;
     return;
   }
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const bool over_panel =
-      !controls_.is_dragging() && covers(state_.panels, {mouse.x, mouse.y}, scale());
-  const bool in_field =
-      wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered && !over_panel;
+  const bool in_field = wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered;
   if (!in_field) gui_input_.take(event);
-  if (over_panel && !std::holds_alternative<MotionEvent>(event)) return;
   if (!covered || (button != nullptr && !presses)) {
-    controls_.take(over_panel ? LeaveEvent{} : in_first_half(event), command());
+    controls_.take(in_first_half(event), command());
   }
 }
 
 void Application::route_to_start_page(const InputEvent& event) {
-  const auto* const key = std::get_if<KeyEvent>(&event);
-  const bool pressed = key != nullptr && key->pressed && !key->unusable;
-  if (pressed && key->key == GLFW_KEY_ESCAPE && loading_ == nullptr) leave_page();
-  if (files_ != nullptr && loading_ == nullptr) {
-    if (const auto file = files_->take(event)) pending_.open = file->string();
-    if (!pressed) gui_input_.take(event);
-    return;
-  }
   gui_input_.take(event);
-  if (!pressed || ImGui::GetIO().WantTextInput) return;
-  if (key->key == GLFW_KEY_O && key->modifiers.control && loading_ == nullptr) show_files();
+  const auto* const key = std::get_if<KeyEvent>(&event);
+  if (key == nullptr || !key->pressed || key->unusable || ImGui::GetIO().WantTextInput) return;
+  if (key->key == GLFW_KEY_ESCAPE && state_.player != nullptr) at_start_ = false;
   if (key->key == GLFW_KEY_Q) pending_.quit = true;
 }
 
@@ -134,24 +119,6 @@ void Application::show_start_page() {
   at_start_ = true;
   choices_.recent = user_.recent();
   state_.notice.clear();
-}
-
-void Application::show_files() { files_ = std::make_unique<FileList>(user_.folder); }
-
-/// From the list of files to the start page, from there to the source.
-void Application::leave_page() {
-  if (files_ != nullptr) {
-    user_.folder = files_->folder();
-    files_.reset();
-  } else if (state_.player != nullptr) {
-    at_start_ = false;
-  }
-}
-
-void Application::act(const StartAction& action) {
-  if (action.files) show_files();
-  if (action.back) leave_page();
-  if (!action.open.empty()) pending_.open = action.open;
 }
 
 void Application::route_key(const KeyEvent& key) {

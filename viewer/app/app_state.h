@@ -8,7 +8,6 @@
 #include "viewer/app/named_boxes.h"
 #include "viewer/app/panels/time_window.h"
 #include "viewer/app/trails.h"
-#include "viewer/app/window/panel_layout.h"
 #include "viewer/source/live_player.h"
 #include "viewer/source/player.h"
 #include "viewer/source/selection.h"
@@ -69,7 +68,6 @@ struct AppState {
   TimeWindow time_window;
   Trails trails;
   bool show_trails = false;
-  PanelLayout panels = default_layout();
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
   std::optional<Selection> selection;
@@ -79,6 +77,7 @@ struct AppState {
   bool show_help = false;
   Viewport help_place;  ///< in the window, pixels
   bool show_panels = true;
+  bool folds_curves = false;
   bool show_counters = false;  ///< times and counts of solving and drawing
   /// The last range of each quantity shown so far.
   std::array<std::optional<Range>, kQuantities> ranges;

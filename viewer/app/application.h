@@ -12,7 +12,7 @@
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/source/loading.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/app/window/panel_layout.h"
+#include "viewer/app/window/gui.h"
 #include "viewer/app/window/presenter.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/app/window/window.h"
@@ -59,9 +59,6 @@ class Application {
   void route_to_start_page(const InputEvent& event);
   void route_key(const KeyEvent& key);
   void show_start_page();
-  void show_files();
-  void leave_page();
-  void act(const StartAction& action);
   void keep_boxes();
   [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();
@@ -95,8 +92,7 @@ class Application {
   Options options_;  ///< of the open source
   UserSettings user_;
   StartChoices choices_;
-  bool at_start_ = false;            ///< the start page covers the source
-  std::unique_ptr<FileList> files_;  ///< shown instead of the start page; null: not
+  bool at_start_ = false;  ///< the start page covers the source
   Window window_;
   std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
   std::atomic<bool> news_ = false;      ///< a thread has progressed

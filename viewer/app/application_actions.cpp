@@ -43,7 +43,6 @@ void Application::serve_open() {
   options_.beside.clear();
   options_.truth = false;
   options_.first_frame = 0;
-  if (files_ != nullptr) leave_page();
   at_start_ = false;
   open(std::exchange(pending_.open, {}));
 }
@@ -54,7 +53,6 @@ void Application::keep_boxes() {
   const Skin& skin = state_.player->info().skin;
   if (user_.boxes.on(skin) == state_.boxes) return;
   user_.boxes.set(skin, state_.boxes);
-  user_.panels = state_.panels;
   user_.save();
 }
 

@@ -2,7 +2,6 @@
 
 #include "viewer/app/application.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/window/docks.h"
 #include "viewer/app/window/style.h"
 
 // What an Application draws, and when.
@@ -39,9 +38,8 @@ void Application::arrange() {
   if (size.width == 0 || size.height == 0) return;
   state_.settings.scale = scale();
   state_.settings.colour_bar = state_.beside == nullptr;
-  if (state_.player != nullptr) mark_used(state_);
   const Viewport before = place_.area;
-  screen_ = divide(size.width, size.height, scale(), state_.show_panels ? &state_.panels : nullptr);
+  screen_ = divide(size.width, size.height, scale(), sides_of(state_));
   place_.area = state_.beside != nullptr ? first_half(screen_.field) : screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
   if (moved && state_.view_is_fitted && state_.player != nullptr) reset_view(state_, place_);
@@ -94,11 +92,10 @@ void Application::draw_page() {
   if (loading_ != nullptr) {
     const std::string name = loading_->options().source.filename().string();
     loading_page(name, loading_->message(), all);
-  } else if (files_ != nullptr) {
-    act(file_page(*files_, all, scale()));
   } else {
     choices_.pictures = presenter_.gui().pictures();
-    act(start_page(choices_, all, state_.notice, scale()));
+    const std::string chosen = start_page(choices_, all, state_.notice, scale());
+    if (!chosen.empty()) pending_.open = chosen;
   }
   ImGui::Render();
 }

@@ -59,8 +59,8 @@ void Application::show(LoadedSource loaded) {
   next.settings = loaded_.settings;
   if (source_was_shown_) next.settings.theme = state_.settings.theme;
   next.boxes = user_.boxes.on(source.skin);
-  next.panels = std::move(state_.panels);
   next.show_panels = state_.show_panels;
+  next.folds_curves = state_.folds_curves;
   next.show_counters = state_.show_counters;
   follows_load_ = next.player->live() != nullptr && !options_.range;
   load_range_ = {};

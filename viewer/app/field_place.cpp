@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/app/window/panel_layout.h"
 #include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {

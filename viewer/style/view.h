@@ -62,6 +62,10 @@ using View = std::variant<TopView, OrbitView>;
 struct Viewport {
   double x = 0, y = 0, width = 1, height = 1;
 };
+[[nodiscard]] constexpr bool contains(const Viewport& box, Vec2 pixel) {
+  return pixel.x >= box.x && pixel.y >= box.y && pixel.x < box.x + box.width &&
+         pixel.y < box.y + box.height;
+}
 
 /// The whole skin in the viewport, with a margin of at least 4 % at each side.
 [[nodiscard]] TopView fit_top(const SkinSize& skin, const Viewport& viewport);

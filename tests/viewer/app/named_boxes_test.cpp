@@ -98,7 +98,7 @@ class Variable {
   std::optional<std::string> before_;
 };
 
-TEST(UserSettings, RememberBoxesFolderAndSources) {
+TEST(UserSettings, RememberBoxesAndSources) {
   const io_test::TemporaryDirectory folder;
   const Variable config("XDG_CONFIG_HOME", (folder / "config").c_str());
   const std::vector<NamedBox> boxes{{"thumb", {1, 4, 2, 9}, 1}};
@@ -106,13 +106,11 @@ TEST(UserSettings, RememberBoxesFolderAndSources) {
   {
     UserSettings settings;
     settings.boxes.set(skin_of(20, 30), boxes);
-    settings.folder = folder / "data of today";
     settings.add_recent((folder / "a.h5").string());
     settings.save();
   }
   const UserSettings again;
   EXPECT_EQ(again.boxes.on(skin_of(20, 30)), boxes);
-  EXPECT_EQ(again.folder, folder / "data of today");
   EXPECT_EQ(again.recent(), std::vector{(folder / "a.h5").string()});
 }
 

@@ -10,6 +10,7 @@
 #include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/export/export.h"
 #include "viewer/app/panels/panels.h"
+#include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -64,15 +65,8 @@ std::string words_of_panels(FakeAppState& fake) {
     ImGui::SetNextWindowSize(ImVec2(500, 1600));
     ImGui::Begin("panels", nullptr, ImGuiWindowFlags_NoTitleBar);
     ImGui::LogToBuffer();
-    view_panel(fake.command());
-    write_panel(fake.command());
-    contacts_panel(fake.state, fake.place);
-    hover_panel(fake.state);
-    pillar_panel(fake.state);
-    selection_panel(fake.state);
-    boxes_panel(fake.state);
+    draw_panels(fake.command());
     status_row(fake.state, "gpu");
-    ImGui::TextUnformatted(title_of(PanelId::pillar, fake.place.source->skin.layout));
     words = context->LogBuffer.c_str();
     ImGui::LogFinish();
     ImGui::End();

@@ -6,7 +6,7 @@
 #include "viewer/app/load_range.h"
 #include "viewer/app/panels/time_window.h"
 #include "viewer/app/trails.h"
-#include "viewer/app/window/panel_layout.h"
+#include "viewer/app/window/gui.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/options.h"
 #include "viewer/source/shown_contacts.h"
@@ -16,23 +16,21 @@ namespace {
 
 double area(const Viewport& box) { return box.width * box.height; }
 
+constexpr Sides kBothSides{true, 0.12, 0};
+
 TEST(Screen, ItsPartsTileTheWindow) {
   for (const std::uint32_t width : {1u, 100u, 481u, 1280u, 3841u}) {
     for (const std::uint32_t height : {1u, 30u, 321u, 720u, 2160u}) {
       for (const double scale : {1.0, 1.25, 2.0}) {
-        PanelLayout layout = default_layout();
-        move_panel(layout, PanelId::pillar, Dock::left);
-        for (const bool hidden : {false, true}) {
-          const PanelLayout* const shown = hidden ? nullptr : &layout;
-          const Screen screen = divide(width, height, scale, shown);
-          const double all = area(screen.field) + area(screen.left) + area(screen.right) +
-                             area(screen.bottom) + area(screen.transport) + area(screen.status);
+        for (const Sides& sides : {Sides{}, kBothSides}) {
+          const Screen screen = divide(width, height, scale, sides);
+          const double all = area(screen.field) + area(screen.column) + area(screen.row) +
+                             area(screen.transport) + area(screen.status);
           EXPECT_EQ(all, static_cast<double>(width) * height) << width << " x " << height;
           EXPECT_GE(screen.field.width, 1);
           EXPECT_GE(screen.field.height, 1);
-          EXPECT_EQ(screen.right.width > 0, shown != nullptr && width > 1);
-          EXPECT_EQ(screen.left.width > 0, shown != nullptr && width > 1);
-          EXPECT_EQ(screen.bottom.height > 0, shown != nullptr && height > 300);
+          EXPECT_EQ(screen.column.width > 0, sides.column && width > 1);
+          EXPECT_EQ(screen.row.height > 0, sides.column && height > 300);
         }
       }
     }
@@ -41,24 +39,15 @@ TEST(Screen, ItsPartsTileTheWindow) {
 
 TEST(Screen, TheFieldHasMostOfTheDefaultWindow) {
   const Options options;
-  PanelLayout layout = default_layout();
   for (const double scale : {1.0, 1.5}) {
     const auto width = static_cast<std::uint32_t>(scale * options.width);
     const auto height = static_cast<std::uint32_t>(scale * options.height);
-    const Screen screen = divide(width, height, scale, &layout);
+    const Screen screen = divide(width, height, scale, kBothSides);
     RenderSettings settings;
     settings.scale = scale;
     const Layout picture = layout_of(screen.field.width, screen.field.height, settings);
     EXPECT_GE(area(picture.plot), 0.55 * width * height) << "at scale " << scale;
   }
-}
-
-TEST(Screen, UnusedPanelsTakeNoPlace) {
-  PanelLayout layout = default_layout();
-  move_panel(layout, PanelId::pillar, Dock::left);
-  EXPECT_GT(divide(1280, 720, 1, &layout).left.width, 0);
-  place_of(layout, PanelId::pillar).used = false;
-  EXPECT_EQ(divide(1280, 720, 1, &layout).left.width, 0);
 }
 
 TEST(Layout, AFittedSkinLiesBesideTheLegend) {
@@ -92,30 +81,6 @@ TEST(LoadRange, RisesAtOnceAndFallsWithPatience) {
   EXPECT_FALSE(range.add(110, 3)) << "a load again";
   EXPECT_EQ(hold(110, 111 + LoadRange::kPatienceS, 1), 1.0F);
   EXPECT_EQ(range.add(200, 2), 2.0F);
-}
-
-TEST(PanelLayout, IsReadAsItWasWritten) {
-  PanelLayout layout = default_layout();
-  move_panel(layout, PanelId::contacts, Dock::left);
-  move_panel(layout, PanelId::view, Dock::floating);
-  place_of(layout, PanelId::view).window = {40, 50, 300, 400};
-  place_of(layout, PanelId::pillar).open = false;
-  layout.right_width = 444;
-  const PanelLayout read = layout_from(text_of(layout));
-  EXPECT_EQ(text_of(read), text_of(layout));
-  EXPECT_EQ(read.places.back().id, PanelId::view);
-  EXPECT_FALSE(place_of(layout, PanelId::pillar).open);
-}
-
-TEST(PanelLayout, RubbishIsIgnoredAndSizesAreLimited) {
-  const PanelLayout layout = layout_from(
-      "panel nonsense left 1 0 0 100 100\npanel view nowhere 1 0 0 1 1\npanel view left\n"
-      "panel write floating 1 -50 1e9 nan 1\nright_width 1e30\nleft_width -3\n\n\xff\xfe");
-  EXPECT_EQ(layout.places.size(), kPanels);
-  EXPECT_EQ(layout.right_width, 2000);
-  EXPECT_EQ(layout.left_width, 120);
-  std::string text = text_of(layout);
-  EXPECT_EQ(text_of(layout_from(text)), text);
 }
 
 void expect_span(const Span& span, double from, double to) {

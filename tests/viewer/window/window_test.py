@@ -3,7 +3,6 @@ that can be seen, nothing is said by Vulkan's validation, and the field in the w
 that --headless writes. Screenshots stay in the folder that PILLARFIELD_PICTURES names."""
 
 import os
-import shutil
 import signal
 import socket
 import struct
@@ -127,27 +126,6 @@ class WidgetTest(WindowTest):
             before = self.act("widget_" + name, action, before)
         self.assert_quiet(window)
 
-    def test_panels_move_and_are_remembered(self):
-        settings = self.folder / "config/pillarfield/viewer.conf"
-        window = self.open(SCENES / "demo.toml", "--paused")
-        before = self.shoot("panels_0")
-        steps = [("folded", lambda: window.click(1018, 21)),
-                 ("unfolded", lambda: window.click(1018, 21)),
-                 ("left", lambda: window.drag((1070, 335), (60, 300))),
-                 ("floating", lambda: window.drag((1070, 21), (620, 200))),
-                 ("wider", lambda: window.drag((998, 400), (917, 400)))]
-        for (name, action) in steps:
-            before = self.act("panels_" + name, action, before)
-        self.assert_quiet(window)
-        text = settings.read_text(encoding="utf-8")
-        self.assertIn("panel write left 1", text)
-        self.assertIn("panel view floating 1", text)
-        self.assertIn(f"recent {SCENES}/demo.toml", text)
-        window = self.open(SCENES / "demo.toml", "--paused")
-        self.shoot("panels_again")
-        self.assert_quiet(window)
-        self.assertEqual(settings.read_text(encoding="utf-8"), text)
-
 
 class Sensor(threading.Thread):
     """Sends frames of 32 x 32 sensels by UDP, and leaves out every tenth."""
@@ -186,31 +164,15 @@ class SourceTest(WindowTest):
         before = self.shoot_page("start")
         window.click(312, 150)  # The first picture.
         window.wait_for_source()
-        self.shoot("start_opened")
+        opened = self.shoot("start_opened")
+        window.key("ctrl+o")
+        covered = self.shoot_changed("start_covered", opened)
+        window.key("Escape")
+        self.shoot_changed("start_uncovered", covered)
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
         window = self.open()
         self.shoot_changed("start_recent", before)
         self.assert_quiet(window)
-
-    def test_the_list_of_files_opens_one_by_the_keyboard(self):
-        (self.folder / "inner").mkdir()
-        shutil.copy(SCENES / "spin.toml", self.folder / "inner")
-        shutil.copy(SCENES / "demo.toml", self.folder / "stretch.toml")
-        window = self.open("--paused")
-        before = [self.shoot_page("files_start")]
-        for (name, key) in (("opened", "ctrl+o"), ("down", "Down"), ("letter", "s"), ("up", "Up"),
-                            ("entered", "Return"), ("scene", "s")):
-            window.key(key)
-            before.append(self.shoot_changed("files_" + name, *before[-1:]))
-        window.key("Return")
-        window.wait_for_source()
-        before.append(self.shoot("files_scene"))
-        for (name, key) in (("covered", "ctrl+o"), ("uncovered", "Escape")):
-            window.key(key)
-            before.append(self.shoot_changed("files_" + name, *before[-1:]))
-        self.assert_quiet(window)
-        settings = (self.folder / "config/pillarfield/viewer.conf").read_text(encoding="utf-8")
-        self.assertIn(f"folder {self.folder.resolve()}/inner", settings)
 
     def test_a_missing_file_is_an_error(self):
         ended = subprocess.run([VIEWER, self.folder / "none.h5"], env=self.screen.environment(),
@@ -312,11 +274,7 @@ class LargeBoxTest(BoxTest):
 
     def test_start_page(self):
         window = self.open("--size", "1920x1080")
-        before = self.shoot_page("start_1080")
-        window.key("ctrl+o")
-        files = self.shoot_changed("files_1080", before)
-        window.key("Escape")  # In the list of files Q is a letter.
-        self.shoot_changed("start_1080", files)
+        self.shoot_page("start_1080")
         self.assert_quiet(window)
 
 

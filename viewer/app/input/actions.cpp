@@ -8,7 +8,6 @@
 
 #include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -175,7 +174,6 @@ void keep_selection(AppState& state) {
   while (std::ranges::find(state.boxes, number, &NamedBox::number) != state.boxes.end()) ++number;
   state.boxes.push_back({fmt::format("box {}", number), state.selection->rect, number});
   state.selection.reset();
-  place_of(state.panels, PanelId::boxes).open = true;
   state.names_box = state.show_panels;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "viewer/app/input/actions.h"
-#include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
 namespace {

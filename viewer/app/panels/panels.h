@@ -7,9 +7,7 @@
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
-#include "viewer/app/source/file_list.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/app/window/panel_layout.h"
 #include "viewer/render/gui_context.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
@@ -42,9 +40,6 @@ void contacts_panel(AppState& state, const FieldPlace& place);
 /// Total force, torque and centre of pressure of the whole skin over time, and the force on pins,
 /// named boxes and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
-
-/// Marks the panels that have something to show.
-void mark_used(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
 void sensor_panel(const Command& command);
@@ -82,26 +77,10 @@ struct StartChoices {
   std::vector<TexturePlace> pictures;  ///< of embedded_pictures(), in the texture of the font
 };
 
-/// What a user chose on the start page or in its list of files.
-struct StartAction {
-  std::string open;    ///< a source; empty: none
-  bool files = false;  ///< show the list of files
-  bool back = false;
-};
-
 /// The page of a window without a source: pictures of scenes, a line for the name of a source,
-/// recent sources, scenes.
-[[nodiscard]] StartAction start_page(const StartChoices& choices, const Viewport& area,
+/// recent sources, scenes. Returns the source that is chosen; empty: none.
+[[nodiscard]] std::string start_page(const StartChoices& choices, const Viewport& area,
                                      const std::string& notice, double scale);
-
-/// The list of files of the start page; a click opens a line.
-[[nodiscard]] StartAction file_page(FileList& files, const Viewport& area, double scale);
-
-/// Begins a page that fills the window; ImGui::End() ends it.
-void begin_page(const char* name, const Viewport& area, double scale);
-
-/// A line that cannot be overlooked.
-void warning_words(const std::string& words);
 
 /// What the window waits for while a source is opened.
 void loading_page(const std::string& source, const std::string& message, const Viewport& area);

@@ -8,7 +8,7 @@
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/source/start_pictures.h"
-#include "viewer/app/window/docks.h"
+#include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -92,36 +92,20 @@ std::string picture_row(const StartChoices& choices, double scale) {
   return chosen;
 }
 
-/// Returns what is entered or asked for.
-StartAction name_line() {
+/// Returns the name that is entered.
+std::string name_line() {
   static std::array<char, 4096> name{};
-  StartAction action;
   caption("A file, or a sensor: udp:ADDRESS:PORT, shm:NAME, serial:DEVICE");
   const float button = 6 * ImGui::GetFontSize();
-  const float gap = ImGui::GetStyle().ItemSpacing.x;
-  ImGui::SetNextItemWidth(-2 * (button + gap));
+  ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemSpacing.x);
   const bool entered = ImGui::InputTextWithHint("##name", "udp:127.0.0.1:9870", name.data(),
                                                 name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   const bool pressed = ImGui::Button("Open", ImVec2(button, 0));
-  ImGui::SameLine();
-  action.files = ImGui::Button("Files…", ImVec2(button, 0));
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Ctrl+O");
-  if (entered || pressed) action.open = name.data();
-  return action;
+  return entered || pressed ? name.data() : "";
 }
 
-}  // namespace
-
-void begin_page(const char* name, const Viewport& area, double scale) {
-  const double side = std::max(0.5 * (area.width - kStartPageWidth * scale), 24 * scale);
-  ImGui::SetNextWindowPos(to_imgui({area.x, area.y}));
-  ImGui::SetNextWindowSize(to_imgui({area.width, area.height}));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, to_imgui({side, 24 * scale}));
-  ImGui::Begin(name, nullptr, fixed_window_flags());
-  ImGui::PopStyleVar();
-}
-
+/// A line that cannot be overlooked.
 void warning_words(const std::string& words) {
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Text, packed(kWarningColour));
@@ -129,23 +113,29 @@ void warning_words(const std::string& words) {
   ImGui::PopStyleColor();
 }
 
-StartAction start_page(const StartChoices& choices, const Viewport& area, const std::string& notice,
+}  // namespace
+
+std::string start_page(const StartChoices& choices, const Viewport& area, const std::string& notice,
                        double scale) {
-  begin_page("start", area, scale);
+  const double side = std::max(0.5 * (area.width - kStartPageWidth * scale), 24 * scale);
+  ImGui::SetNextWindowPos(to_imgui({area.x, area.y}));
+  ImGui::SetNextWindowSize(to_imgui({area.width, area.height}));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, to_imgui({side, 24 * scale}));
+  ImGui::Begin("start", nullptr, fixed_window_flags());
+  ImGui::PopStyleVar();
   ImGui::TextUnformatted("Pillarfield");
   ImGui::TextDisabled("Choose a source, or drop a file onto the window.");
   if (!notice.empty()) warning_words(notice);
   ImGui::Spacing();
-  const std::string pictured = picture_row(choices, scale);
-  StartAction action = name_line();
-  for (const std::string& other :
-       {pictured, recent_list(choices.recent),
+  std::string chosen;
+  for (const std::string& each :
+       {picture_row(choices, scale), name_line(), recent_list(choices.recent),
         scene_list("Scenes, simulated as they are opened", choices.scenes.touches),
         scene_list("Recordings for pillarfield calibrate", choices.scenes.calibration)}) {
-    if (action.open.empty()) action.open = other;
+    if (chosen.empty()) chosen = each;
   }
   ImGui::End();
-  return action;
+  return chosen;
 }
 
 void loading_page(const std::string& source, const std::string& message, const Viewport& area) {

@@ -25,25 +25,20 @@ void tip(const char* help) {
 
 }  // namespace
 
-Section section(const char* title) {
+bool section(const char* title) {
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Header, 0);
   ImGui::PushStyleColor(ImGuiCol_HeaderHovered, 0);
   ImGui::PushStyleColor(ImGuiCol_HeaderActive, 0);
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
-  const bool open = ImGui::CollapsingHeader(title);
+  const bool open = ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
   ImGui::PopStyleColor(4);
-  constexpr float kLeastDrag = 8;
-  const bool dragged =
-      ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, kLeastDrag);
-  const bool menu = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("drag to move, right click for its place");
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, high.y + 1),
                                             ImGui::GetColorU32(ImGuiCol_Separator));
   if (open) ImGui::Spacing();
-  return {open, dragged, menu};
+  return open;
 }
 
 void labelled(const char* label) {

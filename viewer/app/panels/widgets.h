@@ -15,15 +15,8 @@ namespace pillarfield::viewer {
 
 // Widgets that ImGui lacks, in its style, for its current window.
 
-/// State of a heading.
-struct Section {
-  bool open;     ///< expanded
-  bool dragged;  ///< being dragged away
-  bool menu;     ///< right click
-};
-
-/// A collapsible heading.
-[[nodiscard]] Section section(const char* title);
+/// A heading that folds what follows; true while it is open.
+[[nodiscard]] bool section(const char* title);
 
 /// A label on the left; the next control takes the rest of the line.
 void labelled(const char* label);

@@ -17,7 +17,6 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr std::string_view kRecent = "recent ";
-constexpr std::string_view kFolder = "folder ";
 constexpr std::uintmax_t kMostBytes = 1 << 16;
 
 std::filesystem::path settings_path() {
@@ -52,11 +51,9 @@ bool is_there(const std::string& source) {
 
 UserSettings::UserSettings() : path_(settings_path()) {
   const std::string text = path_.empty() ? "" : text_in(path_);
-  panels = layout_from(text);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     boxes.add_line(line);
-    if (line.starts_with(kFolder)) folder = line.substr(kFolder.size());
     if (!line.starts_with(kRecent) || recent_.size() == kMostRecent) continue;
     const std::string source = line.substr(kRecent.size());
     if (is_there(source)) recent_.push_back(source);
@@ -81,9 +78,7 @@ void UserSettings::save() const noexcept {
     std::filesystem::path part = path_;
     part += "." + std::to_string(getpid());
     std::ofstream file(part, std::ios::trunc);
-    file << text_of(panels) << boxes.text();
-    if (!folder.empty() && folder.string().find('\n') == std::string::npos)
-      file << kFolder << folder.string() << '\n';
+    file << boxes.text();
     for (const std::string& source : recent_) file << kRecent << source << '\n';
     file.close();
     if (file) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "viewer/app/named_boxes.h"
-#include "viewer/app/window/panel_layout.h"
 
 namespace pillarfield::viewer {
 
@@ -18,9 +17,7 @@ class UserSettings {
   UserSettings();  ///< reads the file; damaged lines are ignored
   void save() const noexcept;
 
-  PanelLayout panels;
   NamedBoxes boxes;
-  std::filesystem::path folder;  ///< of the file list; empty: the working folder
 
   /// Sources opened last, newest first; files that are gone are left out.
   [[nodiscard]] const std::vector<std::string>& recent() const { return recent_; }

@@ -71,12 +71,6 @@ void set_surfaces(ImGuiStyle& style, const Shades& shades) {
   style.Colors[ImGuiCol_Separator] = vector(shades.line);
   style.Colors[ImGuiCol_TableBorderLight] = vector(shades.line);
   style.Colors[ImGuiCol_TableBorderStrong] = vector(shades.line);
-  style.Colors[ImGuiCol_TitleBg] = vector(shades.field);
-  style.Colors[ImGuiCol_TitleBgActive] = vector(shades.field_hovered);
-  style.Colors[ImGuiCol_TitleBgCollapsed] = vector(shades.field);
-  style.Colors[ImGuiCol_ResizeGrip] = vector(shades.field_active);
-  style.Colors[ImGuiCol_ResizeGripHovered] = vector(shades.accent);
-  style.Colors[ImGuiCol_ResizeGripActive] = vector(shades.accent);
   style.Colors[ImGuiCol_ScrollbarBg] = vector(shades.panel, 0);
   style.Colors[ImGuiCol_ScrollbarGrab] = vector(shades.field_active);
   style.Colors[ImGuiCol_ScrollbarGrabHovered] = vector(shades.faint);

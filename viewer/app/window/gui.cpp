@@ -1,0 +1,186 @@
+#include "viewer/app/window/gui.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "viewer/app/input/marks.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/widgets.h"
+#include "viewer/app/window/style.h"
+#include "viewer/render/imgui_point.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kColumn = 284;  ///< nominal pixels, as those below
+constexpr double kTransport = 36;
+constexpr double kStatus = 24;
+constexpr double kFoldedRow = 28;
+constexpr double kLineOfNames = 16;   ///< of named boxes, in the row
+constexpr double kShareOfRow = 0.12;  ///< of the window's height
+constexpr int kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+
+bool has_curves(const AppState& state) {
+  return state.player->live() != nullptr || state.player->info().frames > 1;
+}
+
+/// A panel of the column.
+struct Panel {
+  const char* title;
+  bool (*has_contents)(const AppState& state);
+  void (*draw)(const Command& command);
+  bool (*unfolds)(const AppState& state) = nullptr;
+};
+
+bool always(const AppState& /*state*/) { return true; }
+
+template <bool pillars>
+bool has_pins(const AppState& state) {
+  return !state.pins.empty() && state.player->info().skin.has_pillars() == pillars;
+}
+
+constexpr std::array kPanels{
+    Panel{"Sensor", [](const AppState& state) { return state.player->live() != nullptr; },
+          sensor_panel},
+    Panel{"View", always, view_panel},
+    Panel{"Selection", [](const AppState& state) { return state.selection.has_value(); },
+          [](const Command& command) { selection_panel(command.state); }},
+    Panel{"Boxes", [](const AppState& state) { return !state.boxes.empty(); },
+          [](const Command& command) { boxes_panel(command.state); },
+          [](const AppState& state) { return state.names_box; }},
+    Panel{"Contacts", [](const AppState& state) { return state.settings.contacts; },
+          [](const Command& command) { contacts_panel(command.state, command.place); }},
+    Panel{"Under the cursor", always, [](const Command& command) { hover_panel(command.state); }},
+    Panel{"Pillar", has_pins<true>, [](const Command& command) { pillar_panel(command.state); }},
+    Panel{"Sensel", has_pins<false>, [](const Command& command) { pillar_panel(command.state); }},
+    Panel{"Write", always, write_panel},
+};
+
+/// Begins a fixed part of the window and draws its upper and left edge; ImGui::End() ends it.
+void begin_part(const char* name, const Viewport& box, Theme theme, int flags = 0) {
+  ImGui::SetNextWindowPos(to_imgui({box.x, box.y}));
+  ImGui::SetNextWindowSize(to_imgui({box.width, box.height}));
+  ImGui::Begin(name, nullptr, fixed_window_flags() | flags);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto line = [&](double width, double height) {
+    list.AddRectFilled(to_imgui({box.x, box.y}), to_imgui({box.x + width, box.y + height}),
+                       palette_of(theme).line);
+  };
+  list.PushClipRect(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}));
+  if (box.y > 0) line(box.width, 1);
+  if (box.x > 0) line(1, box.height);
+  list.PopClipRect();
+}
+
+void draw_column(const Command& command, const Viewport& box) {
+  if (box.width < 1) return;
+  begin_part("right", box, command.state.settings.theme);
+  draw_panels(command);
+  ImGui::End();
+}
+
+/// The curves, whose charts have titles, beside the fold of their panel.
+void draw_row(const Command& command, const Viewport& box) {
+  if (box.height < 1) return;
+  AppState& state = command.state;
+  const float padding = ImGui::GetStyle().WindowPadding.x;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(padding, 0.4f * padding));
+  begin_part("bottom", box, state.settings.theme, kStill);
+  ImGui::PopStyleVar();
+  const float side = ImGui::GetFontSize();
+  const bool open = !state.folds_curves;
+  ImGui::BeginChild("fold", ImVec2(open ? 1.6f * side : 0, 0), false, kStill);
+  ImGui::SetCursorPosX(-0.5f * side);
+  ImGui::SetNextItemOpen(open);
+  state.folds_curves = !section(open ? "##fold" : "Over time");
+  ImGui::EndChild();
+  if (open) {
+    ImGui::SameLine();
+    ImGui::BeginChild("charts", ImVec2(0, 0), false, ImGuiWindowFlags_NoScrollWithMouse);
+    time_panel(state);
+    ImGui::EndChild();
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+Sides sides_of(const AppState& state) {
+  if (!state.show_panels || state.player == nullptr) return {};
+  if (!has_curves(state)) return {.column = true};
+  if (state.folds_curves) return {.column = true, .row_pixels = kFoldedRow};
+  return {.column = true,
+          .row_share = kShareOfRow,
+          .row_pixels = state.boxes.empty() ? 0 : kLineOfNames};
+}
+
+Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Sides& sides) {
+  const double wide = std::max(width, 1u);
+  const double high = std::max(height, 1u);
+  const double status = std::min(std::round(kStatus * scale), high - 1);
+  const double transport = std::min(std::round(kTransport * scale), high - 1 - status);
+  const double above = high - status;
+  // In a narrow window the column takes about a third, in a low one the row too.
+  const double column = sides.column ? std::round(std::min(kColumn * scale, 0.36 * wide)) : 0;
+  const double row =
+      std::round(std::min(sides.row_share * above + sides.row_pixels * scale, 0.4 * above));
+  const double middle = std::max(wide - column, 1.0);
+  const double field = std::max(above - transport - row, 1.0);
+  return {.field = {0, 0, middle, field},
+          .column = {middle, 0, wide - middle, above},
+          .row = {0, field + transport, middle, above - field - transport},
+          .transport = {0, field, middle, transport},
+          .status = {0, above, wide, status}};
+}
+
+int fixed_window_flags() {
+  return ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+         ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_NoBringToFrontOnFocus;
+}
+
+void draw_panels(const Command& command) {
+  for (const Panel& panel : kPanels) {
+    if (!panel.has_contents(command.state)) continue;
+    if (panel.unfolds != nullptr && panel.unfolds(command.state)) ImGui::SetNextItemOpen(true);
+    ImGui::PushID(panel.title);
+    if (section(panel.title)) panel.draw(command);
+    ImGui::PopID();
+  }
+}
+
+void draw_gui(const Command& command, const Screen& screen, const std::string& gpu) {
+  AppState& state = command.state;
+  const Theme theme = state.settings.theme;
+  const float padding = ImGui::GetStyle().WindowPadding.x;
+  draw_marks(state, command.place);
+  if (state.beside != nullptr) draw_marks(state, beside_place(state, command.place));
+  draw_silence(state, command.place.area);
+  draw_column(command, screen.column);
+  draw_row(command, screen.row);
+
+  const float side = 2 * ImGui::GetFontSize();
+  const auto above = 0.5f * (static_cast<float>(screen.transport.height) - side);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(padding, std::max(above, 0.0f)));
+  begin_part("transport", screen.transport, theme, kStill);
+  transport(command);
+  ImGui::End();
+  ImGui::PopStyleVar();
+
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, palette_of(theme).background);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  begin_part("status", screen.status, theme, kStill);
+  status_row(state, gpu);
+  ImGui::End();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+
+  if (!state.show_help) return;
+  const Viewport window{0, 0, screen.status.width, screen.status.y};
+  state.help_place = help_overlay(window, state.player->info());
+}
+
+}  // namespace pillarfield::viewer
