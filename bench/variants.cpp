@@ -89,7 +89,7 @@ void add_bending(SolverPlan& plan) {
   plan.calibration.bend_xy = uneven_plane(plan.skin, -60, 60, 7);
 }
 
-/// What every calibrated skin has.
+/// The corrections that every calibrated skin has.
 void add_calibrated(SolverPlan& plan) {
   add_tare(plan);
   add_gain(plan);
@@ -185,7 +185,7 @@ Streams streams_of(const SolverPlan& plan) {
   }
   streams.mask = !calibration.mask.empty();
   streams.tare_follows = plan.baseline_rate.has_value();
-  // A float and a byte for each of 2 x 2 sensels: 20 bytes, of which the copy makes 21.
+  // A float and a byte for each of 2 x 2 sensels: 20 bytes, but the copy writes 21.
   if (!plan.skin.has_pillars()) streams.result_planes = 5;
   if (plan.angles) streams.result_planes += 3;
   if (plan.uncertainty) streams.result_planes += static_cast<int>(kUncertaintyPlanes);

@@ -47,7 +47,7 @@ SolverPlan plan_of_source(const FrameSource& source) {
 constexpr std::uint64_t kMaxSceneSensels = 1 << 12;
 constexpr std::uint64_t kMaxSceneWork = 1 << 14;
 
-/// Whether an indenter's contact has few pillars and few steps, and its shape is not in a file.
+/// True if an indenter's contact has few pillars and few steps, and its shape is not in a file.
 bool is_small(const Indenter& indenter, const Scene& scene) {
   constexpr double kMaxPillars = 8;
   constexpr double kMaxSteps = 2;

@@ -46,7 +46,7 @@ constexpr rlim_t kMaxBytes = 1 << 30;
 constexpr int kRead = 10;
 constexpr int kRefused = 11;
 constexpr int kOtherException = 12;
-/// Of a process that the HDF5 library crashes (hdf5/crash_guard.h).
+/// Exit status of a process that the HDF5 library crashes (hdf5/crash_guard.h).
 constexpr int kCrashOfHdf5 = 1;
 
 void limit(decltype(RLIMIT_AS) resource, rlim_t most) {

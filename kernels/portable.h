@@ -39,7 +39,7 @@
  * C++ includes it inside a namespace, once per precision, or with PF_LANES inside a struct whose
  * members are the numbers of a plan; it therefore has no guard. In OpenCL C the program's first
  * lines define PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE; PF_SCALAR is then defined for a single
- * lane, which is no vector.
+ * lane, which is not a vector.
  *
  * kernels/pillar uses only expressions with one meaning in all four: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts;

@@ -54,8 +54,8 @@ void translate(std::exception_ptr pointer) {
   }
 }
 
-/// Where an object was made by __new__ alone, pybind11 would allocate its value without
-/// constructing it, and read that.
+/// Refuses objects made by __new__ alone: pybind11 would allocate their value without constructing
+/// it, and read that.
 void* refuse_to_allocate(std::size_t) {
   throw py::type_error("the object was not constructed: call its class, not __new__()");
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kFrames = 16;  ///< 40 MB
 
-/// What is known of the sensor: nothing, tares and gains, or all of its effects.
+/// Knowledge of the sensor: none, tares and gains, or all of its effects.
 constexpr std::string_view kKnowledge[] = {"none", "calibrated", "sensor"};
 
 struct Way {

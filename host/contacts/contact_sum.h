@@ -10,7 +10,7 @@
 
 namespace pillarfield {
 
-/// What tells slipping pillars from sticking ones.
+/// The criterion that tells slipping pillars from sticking ones.
 struct SlipTest {
   double ratio = 0;    ///< least ratio of shear to normal force of a slipping pillar
   double noise_n = 0;  ///< standard deviation of ratio times normal force, over the ratio

@@ -10,10 +10,10 @@ namespace pillarfield {
 /// friction (docs/contacts_found.md).
 class SlipTrend {
  public:
-  /// The ratio at a time after those before. A time that is not later begins anew.
+  /// The ratio at a time after those before. A time that is not later starts a new trend.
   void add(double time_s, double ratio);
 
-  /// When the ratio reaches this friction, of this standard deviation: times in s from the newest
+  /// Time at which the ratio reaches this friction, of this standard deviation: s from the newest
   /// frame, probabilities within SlipForecast::kWithinS. Unset before four frames.
   [[nodiscard]] std::optional<SlipForecast> forecast(double friction, double deviation) const;
 

@@ -131,7 +131,7 @@ struct LiveSession::State final : FrameStream, ForceSink {
 
   FrameStream& source;
   Processor& processor;
-  // Of the thread of run().
+  // Members of the thread of run().
   std::optional<std::uint64_t> most_frames;
   ContactTracker* contacts = nullptr;  ///< of the run
   std::uint64_t taken = 0;             ///< frames that the pipeline got

@@ -115,7 +115,7 @@ Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
       ahead_is_ = Arrival::timed_out;
       if (pace_.drop_after && now - due_ > *pace_.drop_after) {
         ++dropped_;
-        // Where reading takes longer than a period, all are dropped: let the caller look around.
+        // All are dropped if reading takes longer than a period: let the caller look around.
         if (now - begun > timeout) return Arrival::timed_out;
         continue;
       }

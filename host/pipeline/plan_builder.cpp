@@ -69,7 +69,7 @@ void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
   plan.pressure = std::ranges::find(outputs, "pressure") != outputs.end();
 }
 
-/// Where the noise is known and nothing states a threshold: that of a tare.
+/// Sets the threshold of a tare if the noise is known and nothing states a threshold.
 void set_default_threshold(SolverPlan& plan) {
   const bool has_noise = plan.noise_counts || !plan.calibration.noise.empty();
   const std::vector<std::uint8_t>& mask = plan.calibration.mask;

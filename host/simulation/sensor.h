@@ -27,7 +27,7 @@ class Sensor {
   [[nodiscard]] SenselType sensel_type() const;
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 
-  /// Whether a reading depends on other sensels or frames, so that read_row() does not apply.
+  /// True if a reading depends on other sensels or frames, so that read_row() does not apply.
   [[nodiscard]] bool needs_frames() const { return needs_frames_; }
 
   /// Dead zone and leak of a frame: overwrites the model's V, counts.

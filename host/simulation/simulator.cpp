@@ -191,7 +191,7 @@ struct FrameLoad {
   PressureMoments moments;  ///< empty unless pillars need them
 };
 
-/// Whether no pillar of `count` from `first` on bears a force.
+/// True if no pillar of `count` from `first` on bears a force.
 bool is_untouched(const ForceField& truth, std::size_t first, std::size_t count) {
   std::uint32_t any = 0;
   for (const std::vector<float>* plane : {&truth.shear_x, &truth.shear_y, &truth.normal}) {

@@ -7,7 +7,7 @@ namespace pillarfield {
 
 // Ranges of numbers that scenes, files, plans and the command line share.
 
-// Of SensorEffects.
+// Numbers of SensorEffects.
 inline constexpr Range kSenselLeak = {-kMostSenselLeak, kMostSenselLeak};
 inline constexpr Range kPillarLeak = {-kMostPillarLeak / 4, kMostPillarLeak / 4};
 inline constexpr Range kShearCoefficient = {0.1, 10};
@@ -19,7 +19,7 @@ inline constexpr Range kBaselineTimeS = {1e-6, 1e9};  ///< of a followed baselin
 
 inline constexpr Range kReachMm = {0, 1000};  ///< of ContactOptions
 
-// Of FrictionKnowledge.
+// Numbers of FrictionKnowledge.
 inline constexpr Range kFrictions = {0.1, 9.9};
 inline constexpr Range kPriorSpread = {0.01, 3};
 inline constexpr Range kFrictionBound = {0.1, 100};

@@ -1,4 +1,4 @@
-/* What a work-item of solve_frame.cl reads and writes. */
+/* Inputs and outputs of a work-item of solve_frame.cl. */
 
 #if defined(PF_LEAK) && !defined(PF_SCALAR)
 #define PF_RING

@@ -231,7 +231,7 @@ kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
   }
 }
 
-/* Which of the pillars around PF_LANES pillars have a load: rows from above, columns from the left.
+/* True where a pillar around PF_LANES pillars has a load: rows from above, columns from the left.
  * Scratch memory holds anything beside the others. */
 typedef struct {
   Mask at[3][3];

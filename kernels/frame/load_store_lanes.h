@@ -160,7 +160,7 @@ PF_INLINE Bits load_status(const uchar* row, int col, uint cols) {
   return __builtin_convertvector(load_whole<Bytes>(padded), Bits);
 }
 
-/* Of numbers and of vectors. */
+/* Maximum and minimum of numbers and of vectors. */
 template <class Value>
 PF_INLINE Value max(Value a, Value b) {
   return a < b ? b : a;

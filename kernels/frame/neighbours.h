@@ -1,7 +1,7 @@
 /* The sensels next to a pillar, for stages that need them: those under it and a ring of one
  * around. With several lanes a work-item keeps the three pillar rows of sensels that it needs at a
  * time, so that each is read and corrected once for each band; with one lane, which shares a row
- * with other work-items, it corrects them anew. Sensels outside the skin leak nothing. Stage
+ * with other work-items, it corrects them again. Sensels outside the skin leak nothing. Stage
  * PF_LEAK. */
 #ifdef PF_LEAK
 
@@ -10,7 +10,7 @@ typedef struct {
   Real at[4][4];
 } Surroundings;
 
-/* What one row of sensels under PF_LANES pillars leaks. */
+/* The leak sources in one row of sensels under PF_LANES pillars. */
 PF_INLINE RealPair leak_sources(global const PF_SENSEL* raw, Calibration calibration, Place place) {
   const Real threshold = PF_VALUE(Real, threshold);
   const SenselPair pair = read_linear(raw, calibration, place);

@@ -256,7 +256,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
   const Row row = row_of(input, output.idle, at_row);
   size_t row_ahead = 2 * at_row + 2;
 #ifdef PF_RING
-  if (PF_NAMED(leak)) row_ahead = 2 * at_row + 4; /* the next one of which the ring is filled */
+  if (PF_NAMED(leak)) row_ahead = 2 * at_row + 4; /* the next one that fills the ring */
 #endif
   const uint step = (uint)get_global_size(0);
   for (uint at = next_active(row, (uint)get_global_id(0)); at < row.blocks;

@@ -13,7 +13,7 @@ typedef struct {
   float idle;
 } WireModel;
 
-/* Of rows of sensels, one a lane. */
+/* Wires of rows of sensels, one row a lane. */
 typedef struct {
   Real row;    /* a, as in Wires */
   Real driven; /* k = C (1 - lambda), with the factor lambda of idle rows */

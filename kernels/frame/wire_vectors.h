@@ -1,4 +1,4 @@
-/* What the wires of each tile do (WireCrosstalk), found by find_wires.cl: a and k a for each
+/* Effect of the wires of each tile (WireCrosstalk), found by find_wires.cl: a and k a for each
  * row of sensels and tile across, the gain for each column and tile down. */
 #ifdef PF_WIRES
 

@@ -35,8 +35,8 @@ typedef struct {
         at(in_v, -(in_h)), at(-(in_v), -(in_h))                                                  \
   }
 
-/* What a sensel leaks: its reading above the threshold. Below, it counts as zero, so that noise
- * does not spread and idle sensels stay idle. */
+/* The reading that a sensel leaks: zero up to the threshold, so that noise does not spread and idle
+ * sensels stay idle. */
 PF_INLINE Real leak_source(Sensel sensel, Real threshold) {
   return (sensel.reading > threshold && !sensel.missing) ? sensel.reading : PF_REAL(0.0);
 }

@@ -8,7 +8,7 @@ typedef struct {
   Mask usable;    /* V is the reading, which is above the threshold */
   Mask saturated; /* V is at least the reading, which is above the threshold */
   Mask missing;   /* V is unconstrained: dead, absent, masked, or not a number; reads zero */
-  Mask absent;    /* missing because the sensor has no sensel there, which is no fault */
+  Mask absent;    /* missing because the sensor has no sensel there, which is not a fault */
 } Sensel;
 
 /* A valid sensel with the reading `raw`. */

@@ -1,8 +1,8 @@
 /* Standard deviations of the components of `direct_force` from the noise of the sensels
  * (docs/derivations/uncertainty.md). */
 
-/* What saturated sensels leave open of the force of a pillar (docs/derivations/uncertainty.md, U11,
- * U12): a saturated sensel bears its reading or more. */
+/* Bounds of a pillar's force with saturated sensels (docs/derivations/uncertainty.md, U11, U12): a
+ * saturated sensel bears its reading or more. */
 
 PF_INLINE Mask any_saturated(Pillar pillar) {
   return pillar.s1.saturated || pillar.s2.saturated || pillar.s3.saturated || pillar.s4.saturated;
@@ -17,7 +17,7 @@ PF_INLINE Real hidden_difference(Sensel p, Sensel q, Mask measured, Real sum) {
   return (measured && p.saturated && q.saturated && rest > PF_REAL(0.0)) ? rest : PF_REAL(0.0);
 }
 
-/* What saturated sensels leave open: components without a bound, and half the range of the
+/* The components that saturated sensels leave without a bound, and half the range of the
  * differences over the diagonals, counts. */
 typedef struct {
   Mask shear_x;

@@ -3,7 +3,7 @@
 /* Largest gain of a row, of the type that `constant` gives; beyond it the readout is saturated. */
 #define PF_WIRE_LARGEST_GAIN(constant) constant(1.4)
 
-/* What the wires do to a sensel. */
+/* Effect of the wires on a sensel. */
 typedef struct {
   Real row;    /* a: ideal over actual voltage of the driven row */
   Real own;    /* k a: what the driven row adds to the loss of its column, per count */

@@ -26,11 +26,11 @@ using Force = double_precision::Force;
 using Sensels = std::array<PillarSensor, 4>;
 [[nodiscard]] double least_error(Force force, const Sensels& sensels);
 
-/// Whether every V is `deviations` standard deviations or more above the threshold or below.
+/// True if every V is `deviations` standard deviations or more above the threshold or below.
 [[nodiscard]] bool is_far_from_borders(Force force, const PillarSensor& sensor, double deviations);
 [[nodiscard]] bool is_far_from_borders(Force force, const Sensels& sensels, double deviations);
 
-/// How many sensels read above the threshold when there is no noise.
+/// Number of sensels that read above the threshold when there is no noise.
 [[nodiscard]] int usable_sensels(Force force, const PillarSensor& sensor);
 [[nodiscard]] int usable_sensels(Force force, const Sensels& sensels);
 

@@ -74,7 +74,7 @@ Exact largest_difference(const Force& a, const Force& b) {
                    exact::abs(a.normal - b.normal)});
 }
 
-/// What an error is measured in, newtons.
+/// Unit of an error, newtons.
 Exact unit_of_error(Exact magnitude, Precision precision) {
   const bool single = precision == Precision::single_precision;
   const Exact epsilon = single ? Exact(std::numeric_limits<float>::epsilon())

@@ -7,7 +7,7 @@
 /// Accuracy of kernels/pillar, measured against the oracle.
 namespace pillarfield::hard_cases {
 
-/// What is solved of an example, in either precision.
+/// Solution of an example, in either precision.
 struct Outcome {
   oracle::Force force;
   std::vector<double> outputs;  ///< force, direction, deviations and ends of the intervals

@@ -87,7 +87,7 @@ std::uint8_t bits_without_noise(const ForceField& truth, std::size_t pillar,
   return usable_bits({v.v1 - begins, v.v2 - begins, v.v3 - begins, v.v4 - begins});
 }
 
-/// What noise did to the usable bits of a pillar.
+/// Effect of noise on the usable bits of a pillar.
 enum class Luck : std::uint8_t { none, good, bad };
 
 Luck luck_of(std::uint8_t solved, std::uint8_t without_noise) {

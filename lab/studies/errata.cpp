@@ -31,7 +31,7 @@ struct Direction {
   double phi;
 };
 
-/// Directions of which exactly the sensels in `inactive` do not read; none stands for region 1.
+/// Directions in which exactly the sensels in `inactive` do not read; none stands for region 1.
 std::vector<Direction> directions(std::size_t inactive) {
   std::vector<Direction> found;
   for (int i = 1; i < 16; ++i) {

@@ -166,7 +166,7 @@ Examples of_magnitude(double force_n, Precision precision) {
 Examples subnormal(Precision precision) {
   const double least = least_above_zero(precision);
   Examples examples;
-  // Of 8, so that seven eighths need no rounding: it would be of counts, and count by 1 / 2k.
+  // Seven eighths of a reading of 8 need no rounding, whose error would be in counts, not newtons.
   for (const double k : {kMinCountsPerNewton, 1.0, 320.0}) {
     for (const Raw& raw : {Raw{7, 5, 3, 5}, Raw{1, 1, 1, 1}, Raw{60, 90, 31, 0}, Raw{9, 8, 0, 0},
                            Raw{1, 0, 0, 0}, Raw{100, 0, 3, 0}}) {

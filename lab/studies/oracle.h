@@ -25,7 +25,7 @@ using SomeReadings = std::array<std::optional<Exact>, 4>;  ///< absent where not
 
 [[nodiscard]] Exact magnitude(const Force& force);
 
-/// Where sensel 0..3 sits, radians.
+/// Direction in which sensel 0..3 lies, radians.
 [[nodiscard]] Exact sensel_angle(std::size_t sensel);
 
 /// The force that comes from (theta, phi), radians.

@@ -22,7 +22,7 @@ inline constexpr const char* kQuietReport = "Show no progress";
 /// Scenes store seeds as integers of TOML.
 inline constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
 
-/// What is wrong with the command line of `command`, whose whole name is `name`: the misspelt word
+/// Message about a wrong command line of `command`, whose whole name is `name`: the misspelt word
 /// with a suggestion, or CLI11's words and where the help is.
 [[nodiscard]] std::string complaint_of(const CLI::App& command, const CLI::ParseError& error,
                                        const std::string& name);

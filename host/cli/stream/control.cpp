@@ -142,7 +142,7 @@ bool ControlChannel::read_from(
   return client.begun.size() <= kMostLineBytes;
 }
 
-/// Whether a client that has sent its last line still waits for an answer. socat leaves half a
+/// True if a client that has sent its last line still waits for an answer. socat leaves half a
 /// second after its last line or byte from here, so blanks precede an answer that takes longer.
 bool ControlChannel::awaits_answer(Client& client) {
   if (client.awaited == 0) return false;

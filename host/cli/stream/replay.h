@@ -9,7 +9,7 @@
 
 namespace pillarfield::cli {
 
-/// Whether the name of the file ends in .toml.
+/// True if the name of the file ends in .toml.
 [[nodiscard]] bool is_scene(const std::string& file);
 
 /// Streams a scene, or a recording or other file of frames, at its own pace or at `rate_hz`; again

@@ -8,7 +8,7 @@
 namespace pillarfield::cli {
 namespace {
 
-/// Of all threads of this process, user and system.
+/// Processor time of all threads of this process, user and system.
 double core_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

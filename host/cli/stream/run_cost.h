@@ -11,7 +11,7 @@
 
 namespace pillarfield::cli {
 
-/// What a run asks of the computer: its traffic and core-seconds from construction on.
+/// The cost of a run: its traffic and core-seconds from construction on.
 class RunCost {
  public:
   explicit RunCost(const SolverPlan& plan);

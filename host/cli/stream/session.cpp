@@ -35,7 +35,7 @@ std::vector<std::string> words_of(std::string_view line) {
   return words;
 }
 
-/// What follows a word of a line, without blanks around it.
+/// The rest of a line after a word, without blanks around it.
 std::string rest_of(std::string_view line, const std::string& word) {
   line.remove_prefix(line.find(word) + word.size());
   line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -210,7 +210,7 @@ void StreamSession::print_line(const std::string& line) {
   [[maybe_unused]] const std::FILE* const nowhere = std::freopen("/dev/null", "w", stdout);
 }
 
-/// A line of JSON, or on a terminal a line that each report draws anew.
+/// A line of JSON, or on a terminal a line that each report redraws.
 void StreamSession::show(const HealthReport& health) {
   if (options_.summary) return;
   if (options_.json) {

@@ -64,7 +64,7 @@ void check_files(const StreamOptions& options) {
   check_outputs(files_read(options), outputs, options.replace);
 }
 
-/// The plan has a tare, so that it can be measured anew.
+/// The plan has a tare, so that it can be measured again.
 SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
   SolverPlan plan = cli::plan_of(options.plan, plan_of_frames(source), options.source, [&] {
     if (options.rate_hz) return 1 / *options.rate_hz;

@@ -177,7 +177,7 @@ struct Batch {
   }
 };
 
-/// What the pillars of a contact share.
+/// Parameters that the pillars of a contact share.
 struct BatchModel {
   const ContactParameters& parameters;
   const SegmentModel& model;
@@ -200,7 +200,7 @@ PF_WIDE void fuse(Batch& batch, const BatchModel& shared) {
     const double residual = residual_error * (batch.moving[i] / batch.slope[i]);  // mean reading
     double variance = mixture + 0.5 * (noise + residual * residual) + own_square * mean * mean +
                       batch.lean_square[i];
-    // What the cautious posterior adds (C8a): its mean square distance from the mean.
+    // Variance that the cautious posterior adds (C8a): its mean square distance from the mean.
     const double apart =
         batch.cautious_square[i] + mean * (mean - 2 * double{batch.cautious_mean[i]}) - mixture;
     double added = apart > 0 ? apart : 0;
@@ -214,7 +214,7 @@ PF_WIDE void fuse(Batch& batch, const BatchModel& shared) {
     variance *= 1 - weight;
     added *= (1 - weight) * (1 - weight);
 
-    // What the past bounds, it bounds for the cautious posterior too.
+    // The past bounds the cautious posterior too.
     const double stated = variance + added;
     weight = batch.past[i] > 0 ? stated / (stated + batch.past_variance[i]) : 0;
     mean += weight * (batch.past[i] - mean);

@@ -66,7 +66,7 @@ struct ContactParameters {
   double usual_scatter = 0.05;
   double usual_scatter_pillars = 4;
   double most_scatter = 0.15;
-  /// Whether pillars remember their normal forces (contact.md, section 4): costly beside a solve
+  /// True if pillars remember their normal forces (contact.md, section 4): costly beside a solve
   /// that does not resolve them.
   bool past_pressure = true;
 };

@@ -236,7 +236,7 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   }
 }
 
-/// Whether all pillars of a contact may stick and still share one ratio (section 5): its edge bears
+/// True if all pillars of a contact may stick and still share one ratio (section 5): its edge bears
 /// nearly as much as its middle, as under a flat face, or ratios exceed the friction.
 bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
   if (!work.samples.has_edges()) work.samples.add_edges();
@@ -248,7 +248,7 @@ bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
          static_cast<double>(above) > parameters_.most_above * static_cast<double>(ratios.size());
 }
 
-/// Whether the friction stayed while the mean ratio of the pillars changed; under sticking both
+/// True if the friction stayed while the mean ratio of the pillars changed; under sticking both
 /// change together. `clear`: this frame alone determines the friction.
 bool FrictionEstimator::stays(double friction, bool clear, const Workspace& work,
                               History& history) const {

@@ -31,7 +31,7 @@ struct ContactModel {
   bool any_ambiguous = false;  ///< false only if no pillar is ambiguous
 };
 
-/// What is known of the friction of a contact.
+/// Knowledge of the friction of a contact.
 struct FrictionBelief {
   FrictionPosterior estimate;  ///< for the forces
   /// For their intervals, with a wider prior and sticking pillars as lower bounds only (C8a).

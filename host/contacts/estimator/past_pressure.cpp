@@ -21,7 +21,7 @@ PF_WIDE void copy_pressing(const float* from, std::size_t pillars, float* to) {
 
 }  // namespace
 
-/// How the load of a contact changed since the frame before.
+/// Change of a contact's load since the frame before.
 struct PastPressure::Load {
   double now = 0;  ///< sums of the largest possible normal forces, N
   double before = 0;

@@ -34,19 +34,19 @@ class PastPressure {
               const Movement& movement, double noise_n, const SegmentModel& model,
               const ContactParameters& parameters);
 
-  /// What the past says of a pillar of an updated contact, limited to the end `high` of its
+  /// Normal force of a pillar of an updated contact by its past, limited to the end `high` of its
   /// segment, N, plus noise.
   [[nodiscard]] std::optional<NormalEstimate> at(std::uint32_t index, double high,
                                                  double noise_n) const;
 
  private:
-  /// What a frame knows, [rows, cols] each.
+  /// Knowledge of a frame, [rows, cols] each.
   struct Frame {
     /// Normal forces, N: above zero if determined, below if carried over, zero if unknown.
     std::vector<float> normal;
-    /// Of those carried over, N²; that of the determined ones is the noise's.
+    /// Variances of those carried over, N²; that of the determined ones is the noise's.
     std::vector<float> variance;
-    /// Of those carried over: the largest that the readings allow, N.
+    /// Largest forces that the readings allow, N, of those carried over.
     std::vector<float> most;
     std::vector<ContactRun> runs;  ///< beyond them `normal` is zero
   };
@@ -58,7 +58,7 @@ class PastPressure {
   };
   struct Load;
 
-  /// Where pillars of a contact were: between four pillars, of which the first is so many rows and
+  /// Earlier place of a contact's pillars: between four pillars, the first one so many rows and
   /// columns away.
   struct Origin {
     explicit Origin(const Movement& movement);

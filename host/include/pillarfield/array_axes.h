@@ -9,7 +9,7 @@ namespace pillarfield {
 
 class FrameSource;
 
-/// What an axis of an array of readings counts.
+/// The items along an axis of an array of readings.
 enum class ArrayAxis : std::uint8_t { frames, rows, columns };
 
 /// Parses the order of an array's axes, the first one first: the words frames, rows and columns,

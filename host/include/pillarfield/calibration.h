@@ -49,12 +49,12 @@ struct Calibration {
   }
 };
 
-/// Whether the sensel of this index exists and is not masked.
+/// True if the sensel of this index exists and is not masked.
 [[nodiscard]] inline bool is_good(const Calibration& calibration, std::size_t sensel) {
   return calibration.mask.empty() || calibration.mask[sensel] == kGood;
 }
 
-/// Whether no sensel of an element, a pillar or a sensel by itself, exists.
+/// True if no sensel of an element (a pillar or a single sensel) exists.
 [[nodiscard]] bool lacks_sensels(const Calibration& calibration, const Skin& skin,
                                  std::uint32_t row, std::uint32_t col);
 

@@ -8,7 +8,7 @@
 
 namespace pillarfield {
 
-/// Whether this is an HDF5 file of a calibration; false if it cannot be read.
+/// True if this is an HDF5 file of a calibration; false if it cannot be read.
 [[nodiscard]] bool is_calibration_file(const std::filesystem::path& path);
 
 /// Reads a file of the format "pillarfield-calibration" version 1 (docs/formats.md). Throws Error

@@ -15,7 +15,7 @@ struct PatchPlace {
   double y_mm = 0;
 };
 
-/// Whether a contact slips.
+/// The slip state of a contact.
 enum class SlipState : std::uint8_t {
   unknown,   ///< friction, noise and ambiguous pillars leave it open
   sticking,  ///< slipping pillars carry at most a tenth of the load
@@ -32,7 +32,7 @@ struct Wrench {
   Vector3 moment_nmm;
 };
 
-/// When a contact will slide as a whole, if its load goes on to change at the present rate.
+/// Time until a contact slides as a whole, if its load goes on to change at the present rate.
 struct SlipForecast {
   static constexpr std::array<double, 3> kWithinS = {0.1, 0.3, 1};
   std::optional<double> time_s;  ///< unset if the load does not come nearer to the friction

@@ -15,17 +15,17 @@
 
 namespace pillarfield {
 
-/// Which way readings go under load.
+/// The direction of readings under load.
 enum class Polarity : std::uint8_t { rises, falls, unknown };
 
-/// What the readings say about what lies on the sensels.
+/// The structure on the sensels, as the readings show it.
 enum class ArrayLayout : std::uint8_t {
   pillars,  ///< groups of 2 x 2 sensels share the load of a pillar
   sensels,  ///< each sensel is loaded by itself
   unknown,  ///< nothing decides it
 };
 
-/// What is wrong with an array.
+/// A fault of an array.
 enum class ArrayFault : std::uint8_t {
   absent,            ///< sensels without a reading, or that always read 0 where all others do not
   dead,              ///< sensels that do not respond although their neighbours do
@@ -97,7 +97,7 @@ struct SenselFigure {
   SenselPlace place = {};
 };
 
-/// What Doctor says.
+/// The result of Doctor.
 struct Diagnosis {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
@@ -116,7 +116,7 @@ struct Diagnosis {
   std::uint64_t clipped = 0;  ///< sensels that were at full scale in some frames, not in most
   std::vector<SenselPlace> untouched = {};  ///< sensels that nothing tested
   ArrayLayout layout = ArrayLayout::unknown;
-  /// What four sensels of a pillar do not share, relative to four others; around 1 for bare
+  /// Disagreement of sensels that may share a pillar, relative to that of others; around 1 for bare
   /// sensels.
   std::optional<double> layout_ratio = {};
   bool row_order_tested = false;  ///< a small contact swept over most rows

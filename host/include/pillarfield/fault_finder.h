@@ -47,7 +47,7 @@ class FaultFinder {
   /// Adds a frame of the skin's size and type; about 20 ns per sensel.
   void add(const FrameView& frame);
 
-  /// Of the raw readings of all frames so far.
+  /// Statistics of the raw readings of all frames so far.
   [[nodiscard]] const FrameStatistics& statistics() const { return statistics_; }
 
   /// The findings so far. Throws Error if the frames are too few or nothing moves in them.

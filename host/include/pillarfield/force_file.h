@@ -41,7 +41,7 @@ struct ForceFileInfo {
   std::uint64_t frames = 0;  ///< how many it will hold, if known, which keeps small files small
 };
 
-/// What the plan says of a file of its forces, without contacts. `device` and `source` are names.
+/// Metadata for a file of the plan's forces, without contacts. `device` and `source` are names.
 [[nodiscard]] ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
                                       const std::string& source);
 
@@ -66,7 +66,7 @@ void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& inf
 /// extension.
 [[nodiscard]] PlannedOutput planned_force_file(const std::filesystem::path& path);
 
-/// Whether this is an HDF5 file of force fields; false if it cannot be read.
+/// True if this is an HDF5 file of force fields; false if it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path);
 
 /// Reads files of the format "pillarfield-forces" (docs/formats.md), including those of a killed

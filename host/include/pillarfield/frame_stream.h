@@ -30,7 +30,7 @@ struct StreamedFrame {
   std::chrono::nanoseconds arrived{0};  ///< time of arrival, std::steady_clock
 };
 
-/// What a stream received so far, and what it did not.
+/// Statistics of a stream so far: frames and packets received, lost and refused.
 struct StreamHealth {
   std::uint64_t frames = 0;       ///< delivered by next()
   std::uint64_t lost = 0;         ///< frames whose sequence number never came
@@ -39,12 +39,12 @@ struct StreamHealth {
   std::uint64_t duplicates = 0;   ///< packets that came twice
   std::uint64_t reordered = 0;    ///< packets that came after one of a later frame, in time
   std::uint64_t invalid = 0;      ///< packets that are not a frame of this stream
-  std::uint64_t restarts = 0;     ///< new sessions, or sequences that began anew
+  std::uint64_t restarts = 0;     ///< new sessions, or sequences that started again
   std::uint64_t clock_jumps = 0;  ///< sensor times that went back, or ahead by over a second
   std::uint64_t overrun = 0;      ///< packets or ring slots that came faster than they were read
   double rate_hz = 0;             ///< frames per second, over about the last second
-  /// What came instead of frames of this stream: "frames are 32 x 32, 40 x 60 expected", rows and
-  /// columns of sensels; empty: nothing.
+  /// Description of other frames that came instead: "frames are 32 x 32, 40 x 60 expected", rows
+  /// and columns of sensels; empty: none.
   std::string mismatch = {};
 };
 

@@ -32,8 +32,8 @@ class DriftFollower;
 /// once.
 [[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
 
-/// What a frame leaves to the next one: hysteresis and creep of the sensels (SenselMemory), the
-/// curvature of the skin, and the drift of its tares. Empty: at rest, and flat.
+/// The state that passes from a frame to the next: hysteresis and creep of the sensels
+/// (SenselMemory), the curvature of the skin, and the drift of its tares. Empty: at rest, and flat.
 struct SensorState {
   std::vector<std::uint32_t> states;  ///< as Memory of the kernels, [pillar rows, cols, words]
   std::uint32_t frame = 0;            ///< number of frames so far

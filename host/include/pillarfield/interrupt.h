@@ -9,7 +9,7 @@ namespace pillarfield {
 /// block. The library never calls it.
 void catch_interrupts();
 
-/// Whether one of these signals has arrived.
+/// True once one of these signals has arrived.
 [[nodiscard]] bool is_interrupted();
 
 }  // namespace pillarfield

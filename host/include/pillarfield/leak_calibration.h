@@ -46,7 +46,7 @@ class LeakFinder {
 
   /// The leaks so far. They replace those of the calibration, unless both of a kind lie within
   /// three standard errors of zero, and so do the counts per newton and the gains at the skin's
-  /// edge, of which the leaks have a part (rescale_for_leaks()). Throws Error without isolated
+  /// edge, which contain a part of the leaks (rescale_for_leaks()). Throws Error without isolated
   /// pillars.
   [[nodiscard]] LeakResult result() const;
 

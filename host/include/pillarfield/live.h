@@ -38,7 +38,7 @@ struct LiveSourceOptions {
   std::uint32_t serial_baud = 2'000'000;  ///< of `serial:`
 };
 
-/// Whether `source` names a live source: `-` (packets on standard input), `shm:NAME` (a ring in
+/// True if `source` names a live source: `-` (packets on standard input), `shm:NAME` (a ring in
 /// shared memory), `udp:ADDRESS:PORT`, or `serial:DEVICE` (packets) with
 /// `?protocol=flexitac&rows=ROWS&cols=COLS` for a FlexiTac board (docs/streams.md); also one
 /// misspelt, unless a file has this name: open_live_source() names the right one.
@@ -54,7 +54,7 @@ struct LiveSourceOptions {
 [[nodiscard]] std::unique_ptr<FrameStream> open_live_source(const std::string& source,
                                                             const LiveSourceOptions& options);
 
-/// What a live sink did so far.
+/// Statistics of a live sink so far.
 struct LiveSinkStatistics {
   std::uint64_t frames = 0;   ///< written or sent
   std::uint64_t dropped = 0;  ///< frames that the sink was too slow for
@@ -93,7 +93,7 @@ class LiveSink : public ForceSink {
   virtual void set_tare(const LiveSinkInfo& info) { static_cast<void>(info); }
 };
 
-/// What a live sink says of the stream that it passes on.
+/// Description of the stream that a live sink passes on.
 struct LiveSinkInfo {
   ForceFileInfo forces = {};
   Skin skin = {};

@@ -15,13 +15,13 @@
 
 namespace pillarfield {
 
-/// What live sinks say of frames that are solved by `plan` on `device` (its name, or empty).
-/// `contacts` are set for sinks that write them.
+/// Description, for live sinks, of frames that are solved by `plan` on `device` (its name, or
+/// empty). `contacts` are set for sinks that write them.
 [[nodiscard]] LiveSinkInfo live_sink_info(const SolverPlan& plan, const std::string& device,
                                           const std::string& source,
                                           const std::optional<ContactOptions>& contacts = {});
 
-/// What a LiveSession has done.
+/// A tare or a recording that a LiveSession has finished.
 struct LiveEvent {
   enum class Kind : std::uint8_t { tare, recording };
   Kind kind = Kind::tare;
@@ -86,10 +86,10 @@ class LiveSession {
   /// where none runs.
   bool stop_recording(std::uint64_t tag = 0);
 
-  /// What sinks say of frames by the plan of now: constructor's, or with the tare taken last.
+  /// Description of frames by the current plan: the constructor's, or with the tare taken last.
   [[nodiscard]] LiveSinkInfo info() const;
 
-  /// What was done since the last call, in this order.
+  /// The events since the last call, in order.
   [[nodiscard]] std::vector<LiveEvent> take_events();
 
   struct Sink {
@@ -100,7 +100,7 @@ class LiveSession {
 
   /// The health since the last report().
   [[nodiscard]] HealthReport health() const;
-  /// Passes the health since the last call to all sinks, and begins anew.
+  /// Passes the health since the last call to all sinks, and starts counting again.
   HealthReport report();
 
   /// The latency in ms that a `fraction` (0..1) of all frames did not exceed, to 2.4 %, with `lost`

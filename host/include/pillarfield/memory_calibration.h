@@ -16,7 +16,7 @@ struct MemoryResult {
   double creep_per_decade = 0;  ///< its rise from a tenth of the longest recording to all of it
   double range_counts = 0;      ///< largest V of the experiment
   double dead_zone_counts = 0;  ///< common to all sensels
-  bool curved = false;          ///< whether the response curve is fitted anew
+  bool curved = false;          ///< whether the response curve is fitted again
   /// RMS of the reading of the whole skin minus that of the model, as a fraction of the range:
   /// without memory and with it.
   double residual_before = 0;

@@ -29,7 +29,7 @@ enum class OutputKind : std::uint8_t {
 /// The file name extensions of forces or of contacts: ".csv or .json".
 [[nodiscard]] std::string endings_of(OutputKind kind);
 
-/// Which existing file an output may replace. All but `nothing` replace an empty file.
+/// The existing files that an output may replace. All but `nothing` replace an empty file.
 enum class Replace : std::uint8_t {
   nothing,
   results,   ///< a file whose content is of the same kind, except recordings, calibrations,
@@ -43,7 +43,7 @@ struct PlannedOutput {
   OutputKind kind = OutputKind::text;
 };
 
-/// Whether two paths lead to the same file, links and files that do not exist yet included.
+/// True if two paths lead to the same file, links and files that do not exist yet included.
 [[nodiscard]] bool name_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Checks the outputs of a program before its work begins; writes nothing. Throws Error if an

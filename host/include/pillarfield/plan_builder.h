@@ -14,7 +14,7 @@
 
 namespace pillarfield {
 
-/// What frames say of their plan. `Frames` is a FrameSource or a FrameStream.
+/// The part of a plan that its frames state. `Frames` is a FrameSource or a FrameStream.
 template <class Frames>
 [[nodiscard]] SolverPlan plan_of_frames(const Frames& frames) {
   SolverPlan plan;
@@ -50,7 +50,7 @@ struct PlanSettings {
   bool everything = false;  ///< all outputs, the parity test and a followed baseline
 };
 
-/// Where a plan comes from beside its frames.
+/// The sources of a plan beside its frames.
 struct PlanSources {
   const Scene* scene = nullptr;                  ///< null: none
   const SkinCalibration* calibration = nullptr;  ///< null: none
@@ -67,7 +67,7 @@ struct PlanSources {
                                     const std::string& where,
                                     const std::function<double()>& frame_interval_s);
 
-/// What a user states of frames and of their plan, in the options of a program.
+/// A user's statements about frames and their plan, in the options of a program.
 struct PlanOptions {
   ReadOptions read = {};         ///< of the frames and the calibration
   std::string scene = {};        ///< file; empty: none

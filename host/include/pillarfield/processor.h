@@ -17,7 +17,7 @@
 
 namespace pillarfield {
 
-/// How frames and results reach the device.
+/// The path of frames and results to and from the device.
 enum class Memory : std::uint8_t {
   automatic,  ///< shared if the device uses the host's memory, else staged
   shared,     ///< zero copy: the kernel reads the caller's frame and writes the result in place
@@ -52,7 +52,7 @@ struct DeviceInfo {
 /// A device and the programs compiled for it so far. Copies share both.
 class Device {
  public:
-  /// Of a device that was not named, opens the best OpenCL device, as open_device() says.
+  /// Properties of the device. If none was named, opens the best OpenCL device: see open_device().
   [[nodiscard]] const DeviceInfo& info() const;
 
   /// The device that solves the frames of a plan: this one, if it was named. Else the host for a

@@ -51,8 +51,8 @@ struct ReadOptions {
   std::optional<double> counts_per_newton = {};
   std::optional<double> threshold_counts = {};
   std::optional<double> full_scale_counts = {};
-  /// What stands on the sensels, in place of what the file says; plain data and Tekscan exports,
-  /// which say nothing, have SkinLayout::sensels.
+  /// Layout in place of the file's; plain data and Tekscan exports, which state none, have
+  /// SkinLayout::sensels.
   std::optional<SkinLayout> layout = {};
   /// Readings fall under load, as those of dividers whose lower resistor is the sensel: frames are
   /// mirrored as they are read. A recording that says so itself is mirrored already.

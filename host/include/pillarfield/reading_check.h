@@ -29,7 +29,7 @@ class ReadingCheck final : public ForceSink {
   /// Counts a frame. Looks at its readings only where hardly any pillar is in contact.
   void append(const SolvedFrame& frame) override;
 
-  /// What was noticed, one sentence each. Simulated frames need none.
+  /// Warnings about the readings, one sentence each. Simulated frames need none.
   [[nodiscard]] std::vector<std::string> warnings() const;
 
  private:

@@ -90,14 +90,14 @@ class RecordingWriter {
   void append(const FrameView& frame, double time_s, const ForceField* truth = nullptr);
 
   /// The same for a frame in which the blocks `missing` did not arrive: their sensels are NaN if
-  /// readings are float32, and hold what `frame` has otherwise, of which readers of the file warn.
+  /// readings are float32, else those of `frame`, about which readers of the file warn.
   /// Only with Options::missing.
   void append_incomplete(const FrameView& frame, double time_s,
                          std::span<const SenselBlock> missing);
 
-  /// Replaces the threshold of the file and the planes tare and noise, of which the calibration has
-  /// those with which the recording was created. Throws Error if that was without a tare, or a
-  /// value is out of range.
+  /// Replaces the threshold of the file and, where the file and `calibration` have them, the planes
+  /// tare and noise. Throws Error if the recording was created without a tare, or a value is out of
+  /// range.
   void set_tare(const Calibration& calibration, double threshold_counts);
 
   /// Writes all frames so far to the file, so that they survive the death of the process.

@@ -33,7 +33,7 @@ class SenselWatch {
   /// frames without missing readings. Calls come from one thread.
   void offer(const FrameView& frame);
 
-  /// Begins anew with another plan of the same frames, which has a new tare.
+  /// Starts again with another plan of the same frames, which has a new tare.
   void set_plan(const SolverPlan& plan);
 
   /// As of the last whole window; zero before.

@@ -42,7 +42,7 @@ struct PillarLeak {
 };
 inline constexpr double kMostPillarLeak = 0.5;
 
-/// How the readings of unloaded sensels behind wires arise.
+/// The cause of the readings of unloaded sensels behind wires.
 enum class TareOrigin : std::uint8_t {
   conductance,  ///< unloaded sensels conduct: the wires act on tare and load
   offset,       ///< the converter adds the tare: the wires act on the load alone
@@ -80,7 +80,7 @@ struct SenselMemory {
 inline constexpr std::size_t kMaxPlays = 4;
 inline constexpr std::size_t kMaxCreeps = 2;
 
-/// What calibration leaves, beside noise, of a corrected reading V: standard deviations of
+/// Error, beside noise, that calibration leaves in a corrected reading V: standard deviations of
 /// relative·V and of offset_counts. Curves, hysteresis and creep are common to the sensels of a
 /// pillar, gains are not; stated deviations allow for both: `relative` is counted once as
 /// independent from sensel to sensel, and once as common to all components of the force;

@@ -43,7 +43,7 @@ class Simulator {
   /// the contact of an indenter cannot be solved, or is_interrupted() becomes true meanwhile.
   void render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const;
 
-  /// What render_all() calls with the index, readings and truth of a frame.
+  /// Callback of render_all(), with the index, readings and truth of a frame.
   using TakeFrame =
       std::function<void(std::uint64_t index, const FrameView& raw, const ForceField& truth)>;
 

@@ -32,7 +32,7 @@ struct PowerLaw {
 /// The V of a corrected reading, >= 0 counts.
 [[nodiscard]] double straightened(const PowerLaw& law, double reading);
 
-/// What stands on the sensels, and therefore what an element of the force field is.
+/// The structure on the sensels, which decides what an element of the force field is.
 enum class SkinLayout : std::uint8_t {
   pillars,  ///< a pillar on each 2 x 2 sensels: three components of force
   sensels,  ///< nothing: each sensel is an element, which feels normal force alone
@@ -108,8 +108,8 @@ inline constexpr double kMaxExponent = 5;
 inline constexpr double kMinReferenceCounts = 1e-3;
 inline constexpr double kMaxReferenceCounts = 1e6;
 
-/// The sentence about a skin of pillars of which nothing states the layout; none about others. For
-/// frames that meet a skin which a program made.
+/// A warning about a skin of pillars whose layout nothing states; none about others. For frames
+/// that meet a skin which a program made.
 [[nodiscard]] std::vector<std::string> layout_warnings(const Skin& skin);
 
 /// Throws Error, naming `where`, if a member is out of range.

@@ -30,13 +30,13 @@ struct RangeOptions {
 
 /// Number of earlier frames that matter to a frame of such a solve: three time constants of a
 /// followed baseline and of creep, and three seconds for friction, contacts, hysteresis and
-/// bending; 0 if frames leave nothing to the next ones.
+/// bending; 0 if no state passes from frame to frame.
 [[nodiscard]] std::uint64_t warm_up_frames(const SolverPlan& plan, bool contacts);
 
 /// Solves the frames of a range and passes them to sinks, which it does not finish. The frames
-/// before it, as many as the warm-up has, are solved first, so that the range has what frames leave
-/// to the next ones; ids of contacts count from there. Without such memory, the bits are those of a
-/// solve of all frames.
+/// before it, as many as the warm-up has, are solved first, so that the range begins with their
+/// state; ids of contacts count from there. Without such memory, the bits are those of a solve of
+/// all frames.
 ///
 /// Throws Error if the range is empty or reaches beyond the frames of the source, and as Pipeline.
 PipelineStatistics solve_range(FrameSource& source, const Device& device, const SolverPlan& plan,

@@ -38,7 +38,7 @@ inline constexpr int kRegions = 6;
 /// The region of a status byte, from its usable bits.
 [[nodiscard]] Region region_of(std::uint8_t status);
 
-/// Whether the readings of a pillar determine its force but for noise: three or four sensels are
+/// True if the readings of a pillar determine its force but for noise: three or four sensels are
 /// usable, none is saturated. If noise leaves it open whether the fourth sensel presses, the pillar
 /// has `status::kAmbiguous` too.
 [[nodiscard]] constexpr bool is_determined(std::uint8_t status) {
@@ -46,7 +46,7 @@ inline constexpr int kRegions = 6;
   return ((unusable & (unusable - 1)) | (status & status::kSaturated)) == 0;
 }
 
-/// Whether the readings of a pillar restrict its force to a segment (docs/derivations/segment.md),
+/// True if the readings of a pillar restrict its force to a segment (docs/derivations/segment.md),
 /// resolved or not: two adjacent sensels usable, the others inactive. Other pillars may also have
 /// `status::kAmbiguous`.
 [[nodiscard]] inline bool has_feasible_segment(std::uint8_t status) {

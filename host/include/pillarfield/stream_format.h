@@ -11,7 +11,7 @@
 
 enum PillarfieldReadingType { PILLARFIELD_U8 = 1, PILLARFIELD_U16 = 2, PILLARFIELD_F32 = 3 };
 
-/* What follows a packet's header. */
+/* The content after a packet's header. */
 enum PillarfieldContent {
   PILLARFIELD_FRAME = 0,     /* all readings, row by row from the top left */
   PILLARFIELD_ROWS = 1,      /* `count` whole rows from row `first` on */
@@ -19,7 +19,7 @@ enum PillarfieldContent {
   PILLARFIELD_END = 3        /* nothing: the sensor stops */
 };
 
-/* What stands on the sensels. */
+/* The structure on the sensels. */
 enum PillarfieldLayout {
   PILLARFIELD_LAYOUT_NOT_STATED = 0,
   PILLARFIELD_PILLARS = 1, /* a pillar on each 2 x 2 */

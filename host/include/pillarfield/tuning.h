@@ -12,7 +12,7 @@
 /// version.
 namespace pillarfield {
 
-/// How a kernel writes its results to memory.
+/// The kind of stores that write a kernel's results to memory.
 enum class Stores : std::uint8_t {
   automatic,  ///< streaming if the results of all slots exceed the device's caches, else cached
   cached,     ///< through the caches
@@ -27,7 +27,7 @@ struct SpeedPaths {
   Stores stores = Stores::automatic;
 };
 
-/// How a Processor uses its device.
+/// Tuning of a Processor for its device.
 struct ProcessorTuning {
   /// Pillars that a work-item solves at once: 1, 2, 4, 8 or 16, fewer if a row of the skin is
   /// shorter. 0: DeviceInfo::lanes.

@@ -21,7 +21,7 @@ struct WeightResult {
   std::size_t frames_used = 0;
   std::size_t places = 0;             ///< different sensels under the weight's centre
   std::size_t frames_saturated = 0;   ///< left out: a reading at full scale
-  std::size_t frames_unreadable = 0;  ///< left out: a reading that is no number
+  std::size_t frames_unreadable = 0;  ///< left out: a reading is not a number
   std::size_t frames_at_edge = 0;     ///< left out: on sensels beside the edge
   std::size_t frames_apart = 0;       ///< left out: far from the others, or disagree after the fit
 
@@ -31,7 +31,7 @@ struct WeightResult {
 
   double gain_spread = 0;     ///< of the visited sensels' gains, relative to those before
   double gain_deviation = 0;  ///< of a visited sensel's gain, relative, root mean square
-  /// Of the gain of a sensel that was not visited, relative: the spread between sensels.
+  /// Deviation of an unvisited sensel's gain, relative: the spread between sensels.
   double unvisited_deviation = 0;
   double misfit = 0;           ///< of the sum of a frame beyond noise, relative
   double misfit_before = 0;    ///< the same with gains and response as before

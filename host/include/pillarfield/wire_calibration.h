@@ -22,10 +22,10 @@ struct WireResult {
   WireCrosstalk standard_error;
   bool found = false;       ///< whether the row's or the column's exceeds three standard errors
   std::size_t sensels = 0;  ///< under the body at rest
-  /// Part of the tares that conducts, near 0 or 1: how far the readings of unloaded sensels follow
-  /// the loss of their wires.
+  /// Fraction of the tares caused by conductance, near 0 or 1: how far the readings of unloaded
+  /// sensels follow the loss of their wires.
   double conducting_share = 0;
-  /// What `conducting_share` shows; unset where tares or the loss are within the noise.
+  /// Origin of the tares by `conducting_share`; unset where tares or the loss are within the noise.
   std::optional<TareOrigin> tares_shown;
   /// RMS change of their readings under the other loads, as a fraction: before and after.
   double residual_before = 0;
@@ -35,7 +35,7 @@ struct WireResult {
 /// Fits the resistances of the wires. Under all of `presses` the same body rests at the same place;
 /// in the first one it is alone, in the others another body presses elsewhere, in some in its rows
 /// and in some in its columns. What its sensels read then changes only through the wires. Tares,
-/// gains and noise of `before` were measured through the wires and are removed: take them anew.
+/// gains and noise of `before` were measured through the wires and are removed: measure them again.
 /// `tares` says how tares arise; unset: as the readings of unloaded sensels show, or else by
 /// conductance. Formulas and limits: docs/calibration.md. Throws Error without a body that rests
 /// alone, or if the other loads change nothing that tells rows from columns.

@@ -48,7 +48,7 @@ PF_WIDE_INLINE double second_near_mean(double x, double y, double z) {
   return series / (mean * std::sqrt(mean));
 }
 
-/// Whether the series have converged in all lanes: their error is the sixth power of the spread.
+/// True if the series have converged in all lanes: their error is the sixth power of the spread.
 PF_WIDE_INLINE bool nearly_agree(const CarlsonArguments& at) {
   constexpr double kSpread = 3e-3;
   double excess = 0;

@@ -19,7 +19,7 @@ class PillarModel {
  public:
   explicit PillarModel(const SensorModel& sensor);
 
-  /// Whether each pillar passes on the force on it.
+  /// True if each pillar passes on the force on it.
   [[nodiscard]] bool is_ideal() const { return is_ideal_; }
   [[nodiscard]] bool needs_moments() const { return per_arm_ != 0; }
 

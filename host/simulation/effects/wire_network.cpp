@@ -91,7 +91,7 @@ Matrix row_admittance(const Matrix& conductance, double column_per_count) {
   return admittance;
 }
 
-/// What the columns of a tile read with each row driven in turn.
+/// Readings of the columns of a tile with each row driven in turn.
 Matrix scan(const WireCrosstalk& wires, const Matrix& conductance) {
   const Matrix admittance = row_admittance(conductance, wires.column_per_count);
   Matrix potential = admittance;

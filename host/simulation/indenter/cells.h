@@ -27,7 +27,7 @@ struct CellBox {
   [[nodiscard]] std::int64_t end_row() const { return first_row + rows; }
   [[nodiscard]] std::int64_t end_col() const { return first_col + cols; }
 
-  /// Whether `other` lies within; an empty box lies in any.
+  /// True if `other` lies within; an empty box lies in any.
   [[nodiscard]] bool holds(const CellBox& other) const {
     return other.empty() || (other.first_row >= first_row && other.end_row() <= end_row() &&
                              other.first_col >= first_col && other.end_col() <= end_col());

@@ -59,7 +59,7 @@ class PressureSearch {
     surface_.press(pressure_, depth_);
   }
 
-  /// Whether it converged.
+  /// Iterates; true if it converged.
   bool run() {
     double previous = 1;
     bool conjugate = false;

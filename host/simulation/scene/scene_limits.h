@@ -63,12 +63,12 @@ struct ContactQuantity {
   bool (*applies)(ContactShape shape, ContactMotion motion) = nullptr;
 };
 
-/// Whether the motion has a direction.
+/// True if the motion has a direction.
 [[nodiscard]] constexpr bool is_directed(ContactMotion motion) {
   return motion != ContactMotion::press && motion != ContactMotion::spin;
 }
 
-/// Whether the motion has a stick zone.
+/// True if the motion has a stick zone.
 [[nodiscard]] constexpr bool sticks(ContactMotion motion) {
   return motion == ContactMotion::partial_slip || motion == ContactMotion::roll;
 }
@@ -103,7 +103,7 @@ struct IndenterQuantity {
   bool (*applies)(IndenterShape shape) = nullptr;
 };
 
-/// Whether an indenter of this shape has a single radius.
+/// True if an indenter of this shape has a single radius.
 [[nodiscard]] constexpr bool has_radius(IndenterShape shape) {
   return shape == IndenterShape::sphere || shape == IndenterShape::cylinder ||
          shape == IndenterShape::punch;
@@ -211,7 +211,7 @@ inline constexpr std::array<Named<Estimator>, 3> kEstimators = {{
     {"contact", Estimator::contact},
 }};
 
-/// Whether a closed form exists for this shape and motion.
+/// True if a closed form exists for this shape and motion.
 [[nodiscard]] bool is_possible(ContactShape shape, ContactMotion motion);
 
 /// Largest value of the analogue-to-digital converter, 2^bits − 1; unset without one.

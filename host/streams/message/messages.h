@@ -76,13 +76,13 @@ class SkinGeometry {
  public:
   explicit SkinGeometry(const LiveSinkInfo& info);
 
-  /// Of all pillars, row by row.
+  /// Poses of all pillars, row by row.
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }
 
   [[nodiscard]] const Pitch& pitch_mm() const { return layout_.pitch_mm; }
   [[nodiscard]] bool is_flat() const { return surface_.shape == SurfaceShape::plane; }
 
-  /// Of a point of the skin; on a height map that of the nearest pillar.
+  /// Pose of a point of the skin; on a height map that of the nearest pillar.
   [[nodiscard]] Pose pose_of(const PatchPlace& place) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace pillarfield {
 
-/// What a ring holds.
+/// The content of a ring.
 struct RingLayout {
   PillarfieldRingKind kind = PILLARFIELD_RING_FRAMES;
   std::uint32_t rows = 0;
@@ -32,10 +32,10 @@ struct RingLayout {
 
 [[nodiscard]] RingLayout layout_of(const PillarfieldRing& ring);
 
-/// Whether the slots of a ring hold its layout and lie in a segment of `segment_bytes`.
+/// True if the slots of a ring hold its layout and lie in a segment of `segment_bytes`.
 [[nodiscard]] bool is_valid(const PillarfieldRing& ring, std::uint64_t segment_bytes);
 
-/// Where the slot of a publication lies in the segment.
+/// Offset of a publication's slot in the segment.
 [[nodiscard]] std::uint64_t slot_offset(const PillarfieldRing& ring, std::uint64_t number);
 
 /// The name for shm_open() of the ring `shm:NAME`. Throws Error unless NAME is 1 to 200 letters,

@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How long a replaced ring may go unnoticed.
+/// Longest time for which a replaced ring may go unnoticed.
 constexpr RingReader::Time kLongestWait = 50ms;
 
 RingReader::Time now_of_ring() { return std::chrono::steady_clock::now().time_since_epoch(); }
@@ -145,7 +145,7 @@ void RingReader::detach_if_replaced() {
 }
 
 void RingReader::skip_to(std::uint64_t number) {
-  if (number - next_ <= kFarAhead) overrun_ += number - next_;  // else the writer counts anew
+  if (number - next_ <= kFarAhead) overrun_ += number - next_;  // else a new count
   next_ = number;
 }
 
@@ -182,7 +182,7 @@ const std::byte* RingReader::read(Time timeout) {
     }
     const auto signal = load<std::uint32_t>(offsetof(PillarfieldRing, signal));
     const auto published = load<std::uint64_t>(offsetof(PillarfieldRing, published));
-    if (published < next_) next_ = published;  // A new writer counts anew.
+    if (published < next_) next_ = published;  // A new writer restarts the count.
     if (published == next_) {
       if (left <= 0ns) {
         detach_if_replaced();

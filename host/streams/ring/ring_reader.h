@@ -16,7 +16,7 @@ class RingReader {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// What the ring may hold.
+  /// The content that the reader accepts.
   enum class Content : std::uint8_t { any, frames, results };
 
   /// `name` without "shm:". The ring need not exist yet. Throws Error if the name is not allowed.

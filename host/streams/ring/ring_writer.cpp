@@ -156,7 +156,7 @@ bool RingWriter::holds_ring(std::uint64_t bytes) const {
   return is_valid(found, all) && (bytes == sizeof found || bytes == all);
 }
 
-/// Allocates all memory of the segment, of which that of a killed writer may lack some.
+/// Allocates all memory of the segment; the segment of a killed writer may lack some.
 void RingWriter::allocate(std::uint64_t bytes) {
   const int failure = posix_fallocate(segment_.get(), 0, static_cast<off_t>(bytes));
   if (failure != 0) {

@@ -28,7 +28,7 @@ class CutGuard {
   void begin();
   void end();
 
-  /// Whether the memory was replaced.
+  /// True if the memory was replaced.
   [[nodiscard]] bool is_cut() const { return is_cut_ != 0; }
 
  private:

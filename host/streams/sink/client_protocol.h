@@ -12,8 +12,8 @@
 
 namespace pillarfield {
 
-/// What a WebSocketServer says to one client, and what the client asked for. Topics are numbers
-/// that the protocol gives them, below kTopics.
+/// Messages of a WebSocketServer to one client, and the client's requests. Topics are numbers that
+/// the protocol gives them, below kTopics.
 class ClientProtocol {
  public:
   ClientProtocol() = default;
@@ -37,7 +37,7 @@ class ClientProtocol {
                                                          std::uint64_t time_ns) = 0;
 };
 
-/// What a WebSocketServer speaks.
+/// The protocol and the page of a WebSocketServer.
 struct ServerProtocol {
   std::vector<std::string> names;                           ///< subprotocols
   std::function<std::unique_ptr<ClientProtocol>()> create;  ///< for a new client

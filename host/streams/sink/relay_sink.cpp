@@ -18,7 +18,7 @@ PillarfieldReadingType type_in_ring(SenselType type) {
   return type == SenselType::u16 ? PILLARFIELD_U16 : PILLARFIELD_F32;
 }
 
-/// What readers take the frames for: as the plan does, with assumed constants left out.
+/// The constants that readers use for the frames: those of the plan, without assumed ones.
 PillarfieldConstants constants_of(const Skin& skin) {
   PillarfieldConstants constants = {};
   constants.layout = skin.has_pillars() ? PILLARFIELD_PILLARS : PILLARFIELD_SENSELS;

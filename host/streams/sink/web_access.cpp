@@ -22,7 +22,7 @@ std::string_view without_port(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
-/// What follows "http://" or "https://"; none for another origin.
+/// The part after "http://" or "https://"; none for another origin.
 std::optional<std::string_view> host_of_page(std::string_view origin) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (same_name(origin.substr(0, scheme.size()), scheme)) return origin.substr(scheme.size());

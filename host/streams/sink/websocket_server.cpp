@@ -51,7 +51,7 @@ std::string chosen_subprotocol(const http::request<http::empty_body>& request,
   return {};
 }
 
-/// What a client waits for.
+/// A message that waits to be sent to a client.
 struct Outgoing {
   std::vector<std::byte> head;
   std::shared_ptr<const std::vector<std::byte>> data;  // null: text
@@ -62,7 +62,7 @@ struct Outgoing {
 
 class Session;
 
-/// What sessions share; used by the server's thread alone, but for the atomic members.
+/// State that the sessions share; used by the server's thread alone, but for the atomic members.
 struct Hub {
   ServerLimits limits;
   ServerProtocol protocol;
@@ -266,7 +266,7 @@ void Session::refuse() {
   end();
 }
 
-/// Counts a ping or pong, of which a flood of any length comes within one message.
+/// Counts a ping or pong; any number of them may come within one message.
 void Session::count_control() {
   const auto now = std::chrono::steady_clock::now();
   if (now - controls_since_ >= std::chrono::seconds(1)) {

@@ -24,8 +24,7 @@ class ByteParser {
   ByteParser(const ByteParser&) = delete;
   ByteParser& operator=(const ByteParser&) = delete;
 
-  /// Accepts only packets of this shape, that of the last packet, from now on, and allocates no
-  /// more.
+  /// Accepts only packets shaped like the last packet from now on, and allocates no more.
   virtual void prepare(const FrameShape& shape) = 0;
 
   /// Memory for bytes to come, not empty; next() must have returned false, and is_busy() too.
@@ -37,10 +36,10 @@ class ByteParser {
   /// following call of space().
   virtual bool next(Packet& packet) = 0;
 
-  /// Whether next() returned false although it did not look at all bytes.
+  /// True if next() returned false although it did not look at all bytes.
   [[nodiscard]] virtual bool is_busy() const { return false; }
 
-  /// Declares the bytes so far all that there are: next() takes an unfinished packet for rubbish.
+  /// Declares the bytes so far all that there are: next() treats an unfinished packet as invalid.
   virtual void finish() = 0;
 
   /// Runs of bytes that are not a packet.
@@ -48,7 +47,7 @@ class ByteParser {
   virtual void clear_counts() = 0;
   /// Shape of the latest packets that are sound, but of other frames than those of prepare().
   [[nodiscard]] virtual std::optional<FrameShape> other() const { return std::nullopt; }
-  /// Why no packet was found among many bytes, for the user who waits for one; empty: unknown.
+  /// Reason why many bytes held no packet, for the user who waits for one; empty: unknown.
   [[nodiscard]] virtual std::string complaint() const { return {}; }
 };
 

@@ -11,7 +11,7 @@ namespace pillarfield {
 /// Reads of bytes without a packet after which receive() returns, as of /dev/zero.
 inline constexpr int kMostReads = 64;
 
-/// What read_bytes() read: bytes, or why none.
+/// The result of read_bytes(): bytes, or the reason for none.
 struct BytesRead {
   std::size_t bytes = 0;
   bool ended = false;  ///< end of file, or the device is gone

@@ -26,7 +26,7 @@ namespace pillarfield {
 ///   marks, as readings that stand still have. If another chain ended meanwhile, as it does where
 ///   bytes are lost, or the chain of the frames is hardly older, nothing tells the two apart, and
 ///   the frame is not taken.
-/// - Where a mark fails to come, the search begins anew.
+/// - If a mark fails to come, the search starts again.
 ///
 /// The cost is a few instructions a byte, and memory for kProof + 1 frames.
 class FlexitacParser final : public ByteParser {

@@ -98,7 +98,7 @@ bool FrameAssembler::began_anew(const PillarfieldPacket& header, Time arrived) c
          arrived - last_packet_ > longest_gap;
 }
 
-/// Ends the frames of the sensor that began anew.
+/// Ends the frames from before the sensor started again.
 void FrameAssembler::restart() {
   give_up();
   next_.reset();

@@ -59,7 +59,7 @@ class PartHistory {
   /// Notes a part; false if it came before, or its frame is too old to tell.
   bool add(std::uint64_t sequence, std::uint32_t part);
 
-  /// Whether add() can tell.
+  /// True if add() can tell: the frame is not too old.
   [[nodiscard]] bool reaches(std::uint64_t sequence) const;
 
   void clear();
@@ -76,7 +76,7 @@ class PartHistory {
   std::array<Frame, kFrames> frames_;
 };
 
-/// How many frames may be under way at once.
+/// Number of frames that may be under way at once.
 enum class PacketOrder : std::uint8_t {
   kept = 1,      ///< packets arrive as they were sent: a later frame ends an incomplete one
   not_kept = 2,  ///< the frame after the next ends an incomplete one
@@ -101,7 +101,7 @@ class FrameAssembler {
   /// frame's buffer has another size.
   bool pop(StreamedFrame& frame);
 
-  /// When give_up() will give up the oldest frame under way.
+  /// Time at which give_up() will give up the oldest frame under way.
   [[nodiscard]] std::optional<Time> deadline() const;
 
   /// Gives up all frames under way.

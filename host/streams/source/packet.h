@@ -26,7 +26,7 @@ struct FrameShape {
   bool operator==(const FrameShape&) const = default;
 };
 
-/// Whether rows and columns are those of a skin, and no more than PILLARFIELD_MAX_SENSELS in all.
+/// True if rows and columns are those of a skin, and no more than PILLARFIELD_MAX_SENSELS in all.
 [[nodiscard]] bool is_size_allowed(const FrameShape& shape);
 
 /// A packet as received; nothing in it is trusted. `bytes` is valid until the next one is received.
@@ -51,11 +51,10 @@ struct Packet {
 /// The type of readings that a packet or ring names as a PillarfieldReadingType.
 [[nodiscard]] std::optional<SenselType> reading_type(std::uint32_t type);
 
-/// What a user reads of frames that are not those of the stream: "frames are 32 x 32, 40 x 60
-/// expected".
+/// Message about frames that are not those of the stream: "frames are 32 x 32, 40 x 60 expected".
 [[nodiscard]] std::string mismatch_words(const FrameShape& came, const FrameShape& expected);
 
-/// Whether the packet, whose header has a shape, is as long as the header says and has the right
+/// True if the packet, whose header has a shape, is as long as the header says and has the right
 /// checksum.
 [[nodiscard]] bool is_intact(const Packet& packet);
 

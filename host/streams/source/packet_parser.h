@@ -23,7 +23,7 @@ class PacketParser final : public ByteParser {
   void commit(std::size_t bytes, std::chrono::nanoseconds arrived) override;
   bool next(Packet& packet) override;
 
-  /// Whether next() returned false because it had computed checksums of kMostChecked bytes or more.
+  /// True if next() returned false because it had computed checksums of kMostChecked bytes or more.
   [[nodiscard]] bool is_busy() const override { return checked_ >= kMostChecked; }
   static constexpr std::size_t kMostChecked = std::size_t{4} << 20;  ///< about a millisecond
 

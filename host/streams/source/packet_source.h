@@ -16,7 +16,7 @@ namespace pillarfield {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-/// Where packets come from.
+/// A source of packets.
 class PacketSource {
  public:
   PacketSource() = default;
@@ -35,16 +35,16 @@ class PacketSource {
   /// Allocates the memory for frames of this shape; the last packet received stays valid.
   virtual void prepare(const FrameShape& /*shape*/) {}
 
-  /// Whether what waits is as old as its reader lets it be, as in a pipe: it is not outdated.
+  /// True if the sender waits for the reader, as with a pipe: packets that wait are not outdated.
   [[nodiscard]] virtual bool holds_sender_back() const { return false; }
 
-  /// Whether anyone may send to it: then frames of another size need not be the sensor's.
+  /// True if anyone may send to it: then frames of another size need not be the sensor's.
   [[nodiscard]] virtual bool is_open_to_all() const { return false; }
 
-  /// Why no packet came although bytes did, for the user who waits; empty: unknown.
+  /// Reason why bytes but no packet came, for the user who waits; empty: unknown.
   [[nodiscard]] virtual std::string complaint() const { return {}; }
 
-  /// What was received since clear_counts().
+  /// Counts since clear_counts().
   struct Counts {
     std::uint64_t invalid = 0;             ///< no packets
     std::uint64_t overrun = 0;             ///< packets lost because nobody received them in time

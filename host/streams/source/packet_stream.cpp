@@ -48,7 +48,7 @@ class FirstPackets {
   [[nodiscard]] std::vector<KeptPacket> take() { return std::move(packets_); }
   /// Packets that are not kept.
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
-  /// What came instead of frames of the size; empty: nothing.
+  /// Description of frames of another size that came; empty: none.
   [[nodiscard]] const std::string& mismatch() const { return mismatch_; }
 
  private:

@@ -95,7 +95,7 @@ std::unique_ptr<ByteParser> packet_parser(const AddressOptions& options,
   return std::make_unique<PacketParser>();
 }
 
-/// How bytes become frames.
+/// A protocol by which bytes become frames.
 struct Protocol {
   const char* name = nullptr;
   std::unique_ptr<ByteParser> (*parser)(const AddressOptions& options,

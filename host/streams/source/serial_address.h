@@ -7,7 +7,7 @@
 
 namespace pillarfield {
 
-/// What follows `serial:`.
+/// The address after `serial:`.
 struct SerialAddress {
   std::string device;
   std::unique_ptr<ByteParser> parser;  ///< of its protocol

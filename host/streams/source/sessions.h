@@ -12,7 +12,7 @@ class Sessions {
  public:
   enum class Kind : std::uint8_t { current, started, replaced };
 
-  /// What a packet of `session` belongs to. The first session of all is `current`.
+  /// Classifies the session of an arrived packet. The first session of all is `current`.
   Kind classify(std::uint64_t session, std::chrono::nanoseconds arrived);
 
  private:
@@ -33,7 +33,7 @@ class SensorClock {
   /// Time of the next frame, s. `time_ns` 0: the sensor has no clock.
   double seconds(std::uint64_t time_ns, std::chrono::nanoseconds arrived, bool restarted);
 
-  /// How often the clock went back, or ahead of the arrivals by over a second.
+  /// Number of times that the clock went back, or ahead of the arrivals by over a second.
   [[nodiscard]] std::uint64_t jumps() const { return jumps_; }
 
  private:
@@ -44,7 +44,7 @@ class SensorClock {
   std::uint64_t jumps_ = 0;
 };
 
-/// A sequence number that is further back or ahead is that of a sensor that began anew
+/// A sequence number that is further back or ahead is that of a sensor that started again
 /// (docs/stream_format.md).
 inline constexpr std::uint64_t kFarBack = 1000;
 inline constexpr std::uint64_t kFarAhead = 1 << 20;
