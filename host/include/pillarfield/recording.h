@@ -90,8 +90,8 @@ class RecordingWriter {
   void append(const FrameView& frame, double time_s, const ForceField* truth = nullptr);
 
   /// The same for a frame in which the blocks `missing` did not arrive: their sensels are NaN if
-  /// readings are float32, else those of `frame`, about which readers of the file warn.
-  /// Only with Options::missing.
+  /// readings are float32, else they keep the values of `frame`, and readers of the file warn. Only
+  /// with Options::missing.
   void append_incomplete(const FrameView& frame, double time_s,
                          std::span<const SenselBlock> missing);
 
