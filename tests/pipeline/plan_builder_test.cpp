@@ -64,9 +64,9 @@ TEST(ThresholdOfPlans, IsFourDeviationsWhereTheNoiseAloneIsKnown) {
     return given;
   };
   struct Case {
-    const char* name;
-    PlanSources from;
-    double threshold;
+    const char* name = "";
+    PlanSources from = {};
+    double threshold = 0;
   };
   const Case cases[] = {
       {"nothing", {}, 0},

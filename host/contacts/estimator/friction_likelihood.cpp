@@ -97,7 +97,7 @@ PF_WIDE void multiply(Factors& product, std::span<const float* const> cumulative
 /// Calls `use` with the terms of up to kBatch pillars at a time.
 template <class Term, class Pillars, class TermOf, class Use>
 void for_each_batch(const Pillars& pillars, TermOf term_of, Use use) {
-  std::array<Term, kBatch> terms;
+  std::array<Term, kBatch> terms{};
   for (std::size_t first = 0; first < pillars.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, pillars.size() - first);
     for (std::size_t i = 0; i < count; ++i) terms[i] = term_of(pillars[first + i]);
