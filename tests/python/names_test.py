@@ -114,7 +114,9 @@ class Values(unittest.TestCase):
     def test_errors_of_a_region(self):
         simulation = pf.simulate(skins.scene())
         solved = pf.solve(simulation)
-        errors = pf.compare(solved, simulation.truth).loaded
+        found = pf.compare(solved, simulation.truth)
+        errors = found.loaded
+        self.assertLessEqual(found.regions[pf.Region.ONE].rms_n, errors.rms_n)
         error = np.sqrt(sum((getattr(solved, name) - getattr(simulation.truth, name)).astype(float)**2
                             for name in ("shear_x", "shear_y", "normal")))
         true = [getattr(simulation.truth, name).astype(float) for name in ("shear_x", "shear_y", "normal")]
@@ -158,16 +160,15 @@ class Values(unittest.TestCase):
 
     def test_sensels_without_pillars(self):
         skin = pf.Skin(7, 5, layout="sensels", sensel_pitch_mm=2, counts_per_newton=10)
-        self.assertEqual((skin.layout, skin.element_rows, skin.element_cols, skin.element_pitch_mm),
-                         ("sensels", 7, 5, 2))
-        self.assertEqual(pf.Skin(8, 6).element_rows, 4)
+        self.assertEqual((skin.layout, skin.element_rows, skin.element_cols, skin.element_pitch_mm, skin.element_area_mm2),
+                         ("sensels", 7, 5, 2, 4))
+        uneven = pf.Skin(8, 12, layout="sensels", sensel_pitch_mm=(7.62, 5.08))
+        self.assertEqual((uneven.sensel_pitch_mm, uneven.element_area_mm2), ((7.62, 5.08), 7.62 * 5.08))
         frames = np.random.default_rng(3).integers(0, 200, (2, 7, 5)).astype("u1")
-        forces = pf.solve(frames, skin=skin, contacts=True, outputs=["uncertainty"], noise_counts=1)
+        forces = pf.solve(frames, skin=skin, contacts=True, outputs=["uncertainty", "pressure"], noise_counts=1)
         self.assertFalse(forces.has_pillars)
-        np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
         np.testing.assert_allclose(forces.pressure_kpa, frames / 10 / 4 * 1000, rtol=1e-6)
         np.testing.assert_allclose(forces.pressure("psi") * 6.894757, forces.pressure_kpa, rtol=1e-6)
-        np.testing.assert_allclose(forces.pressure("mmHg") * 0.1333224, forces.pressure_kpa, rtol=1e-6)
         with self.assertRaisesRegex(pf.Error, "'bar' is not a unit.*mmHg"):
             forces.pressure("bar")
         for name in ("shear_x", "theta", "region"):
@@ -175,35 +176,14 @@ class Values(unittest.TestCase):
                 getattr(forces, name)
         self.assertIsNone(forces.uncertainty.shear_x)
         self.assertIsNone(forces.intervals.shear_x_low)
-        self.assertTrue((forces.intervals.normal_high >= forces.normal).all())
-        contact = forces.contacts[0][0]
-        self.assertIsNone(contact.shear_x_n)
-        self.assertAlmostEqual(contact.peak_pressure_kpa, float(forces.pressure_kpa[0].max()), 3)
+        self.assertIsNone(forces.contacts[0][0].shear_x_n)
+        WORK.mkdir(parents=True, exist_ok=True)
         forces.save(WORK / "sensels.h5", overwrite=True)
         read = pf.open(WORK / "sensels.h5")[:]
+        self.assertFalse(read.has_pillars)
         np.testing.assert_array_equal(read.normal, forces.normal)
         with h5py.File(WORK / "sensels.h5") as file:
-            self.assertNotIn("pressure", file["force"])
-        pf.solve(frames, skin=skin, outputs=["pressure"]).save(WORK / "pressure.h5", overwrite=True)
-        with h5py.File(WORK / "pressure.h5") as file:
-            stored = file["force/pressure"]
-            self.assertEqual((sorted(file["force"]), stored.attrs["unit"].decode()),
-                             (["normal", "pressure", "status", "time"], "kPa"))
-            np.testing.assert_array_equal(stored, pf.open(WORK / "pressure.h5")[:].pressure_kpa)
-        self.assertFalse(read.has_pillars)
-        self.assertEqual(pf.ForceField(None, None, np.ones((2, 3))).has_pillars, False)
-
-    def test_findings_of_faults(self):
-        frames = np.random.default_rng(2).integers(40, 60, (200, 8, 12)).astype("u1")
-        skin = pf.Skin(8, 12, layout="pillars")
-        tare = pf.calibrate.tare(frames // 10, skin=skin).calibration
-        frames[:, 3, 5] = 50
-        step = pf.calibrate.faults([frames], tare)
-        found = {(each.row, each.col): each for each in step.facts["findings"]}
-        self.assertEqual((found[3, 5].mean_counts, found[3, 5].masked), (50, True))
-        self.assertEqual(found[3, 5].fault, "stuck")
-        unloaded = pf.calibrate.tare(frames // 10, skin=skin).facts["findings"]
-        self.assertIn((3, 5, "stuck"), [(each.row, each.col, each.fault) for each in unloaded])
+            np.testing.assert_array_equal(file["force/pressure"], read.pressure_kpa)
 
 
 if __name__ == "__main__":
