@@ -61,10 +61,5 @@ TEST(Printable, AnyBytesBecomeALineOfUtf8) {
   }
 }
 
-TEST(Printable, ErrorsAre) {
-  const Error error("a\x1b[2J.h5", "two\nlines\twith \xff", "mend\x07it");
-  EXPECT_STREQ(error.what(), "a\\u001b[2J.h5: two lines with \\xff; mend\\u0007it");
-}
-
 }  // namespace
 }  // namespace pillarfield

@@ -27,28 +27,6 @@ std::vector<float> normal_row(const Row& row, std::size_t count) {
   return values;
 }
 
-std::vector<float> many_normals() {
-  std::vector<float> all;
-  for (std::uint32_t row = 0; row < 400; ++row) {
-    const std::vector<float> values = normal_row({5, Stream::noise, 3, row}, 1000);
-    all.insert(all.end(), values.begin(), values.end());
-  }
-  return all;
-}
-
-TEST(Random, NormalVariatesFollowTheNormalDistribution) {
-  std::vector<float> all = many_normals();
-  std::sort(all.begin(), all.end());
-  const auto count = static_cast<double>(all.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double expected = std::erfc(-double{all[i]} / std::numbers::sqrt2) / 2;
-    largest = std::max(largest, std::abs(expected - static_cast<double>(i) / count));
-  }
-  // Kolmogorov and Smirnov: 1.95 / sqrt(n) is passed once in a thousand.
-  EXPECT_LT(largest, 1.95 / std::sqrt(count));
-}
-
 /// The method of Box and Muller in double precision, from the words of philox() one by one.
 TEST(Random, NormalVariatesAreThoseOfTheirWords) {
   constexpr std::uint64_t kFrame = (7ULL << 32) + 5;

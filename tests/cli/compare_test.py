@@ -161,12 +161,15 @@ class Compare(CommandTest):
         self.assertRegex(text, r"Contacts: 7 found, 1 missed \(of at most 1[12][.\d]* N\), 1 extra "
                                r"\(of at most 0.25 N\)")
 
-    def test_no_percentage_above_999(self):
+    def test_errors_of_any_size_keep_their_columns(self):
         self.change(lambda force: force["normal"].write_direct(1e6 * force["normal"][:]))
         text = run("compare", self.forces, self.truth).stdout
         self.assertIn("> 999%", text)
         self.assertLessEqual(max(float(value) for value in re.findall(r"([\d.e+]+)%", text)), 999)
-        self.assertEqual({len(line) for line in text.splitlines() if line.endswith("%")}, {74, 91})
+        lines = text.splitlines()
+        self.assertEqual({len(line) for line in lines if line.endswith("%")}, {74, 91})
+        rows = [line for line in lines if line[:8].strip() in ("1", "2", "3", "4", "loaded")]
+        self.assertEqual((len(rows), {len(row) for row in rows}), (5, {len(lines[3])}), text)
 
 
 if __name__ == "__main__":

@@ -41,26 +41,17 @@ class StrangeText(CommandTest):
             return os.fsencode(self.folder) + b"/" + text
 
         recording, forces, table = name(b"i\xffn.h5"), name(b"f\xfe.h5"), name(b"c\xfd.json")
-        made = json.loads(output_of("simulate", self.scene, "-o", recording, "--json")[0])
-        self.assertTrue(made["output"].endswith("i\ufffdn.h5"))
-        solved = json.loads(output_of("solve", recording, "-o", forces, "--contacts", table,
-                                      "--json")[0])
-        self.assertTrue(solved["input"].endswith("i\ufffdn.h5"))
-        self.assertTrue(solved["contacts_output"].endswith("c\ufffd.json"))
+        calibration = name(b"k\xff.h5")
+        for words in (["simulate", self.scene, "-o", recording], ["solve", recording, "-o", forces, "--contacts", table],
+                      ["info", forces], ["compare", forces, recording],
+                      ["stream", recording, "--rate", "100", "--summary"],
+                      ["calibrate", "tare", recording, "--preloaded", "-o", calibration], ["info", calibration],
+                      ["calibrate", "apply", calibration, recording, "-o", name(b"l\xff.h5")]):
+            said = output_of(*words, "--json")[0]
+            json.loads(said)
+            self.assertTrue(words[0] == "compare" or "\ufffd" in said.decode(), words)
         with open(table, "rb") as file:
             self.assertEqual(json.loads(file.read().decode())["source"], "i\ufffdn.h5")
-        self.assertEqual(json.loads(output_of("info", forces, "--json")[0])["source"],
-                         "i\ufffdn.h5")
-        compared = json.loads(output_of("compare", forces, recording, "--json")[0])
-        self.assertEqual(compared["frames"], 10)
-        streamed = json.loads(output_of("stream", recording, "--rate", "100", "--summary", "--json")[0])
-        self.assertTrue(streamed["summary"]["source"].endswith("i\ufffdn.h5"))
-        calibration = name(b"k\xff.h5")
-        for step, written in ((["tare", recording, "--preloaded"], calibration),
-                              (["apply", calibration, recording], name(b"l\xff.h5"))):
-            report = json.loads(output_of("calibrate", *step, "-o", written, "--json")[0])
-            self.assertIn("\ufffd", report["output"])
-        self.assertIn("i\ufffdn.h5", output_of("info", calibration, "--json")[0].decode())
         for command in (["info", forces], ["info", calibration], ["compare", forces, recording]):
             self.assert_harmless(output_of(*command)[0])
 

@@ -1,6 +1,5 @@
 """`pillarfield stream`: frames of files and of sockets through the solver to files and sockets."""
 
-import itertools
 import json
 import os
 import signal
@@ -8,7 +7,6 @@ import socket
 import stat
 import struct
 import subprocess
-import threading
 import time
 import unittest
 
@@ -198,80 +196,26 @@ class Replay(StreamTest):
         for arguments, names in [
                 (("nothing.h5",), ("nothing.h5",)),
                 ((self.recording, "--to", "nowhere"), ("nowhere", ".mcap")),
-                ((self.recording, "--to", "udp:127.0.0.1:99999"), ("99999",)),
                 ((self.recording, "--control", self.recording), ("not a socket",)),
-                ((self.recording, "--record", self.recording), (str(self.recording),)),
                 ((self.recording, "--follow-baseline", 3), ("--rate",))]:
             self.assert_fails("stream", *arguments, names=names)
 
-
-class Patches(StreamTest):
-    def test_each_patch_has_a_stream(self):
-        sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.addCleanup(sender.close)
-        patches = []
-        for number, side in enumerate((8, 12, 16), start=1):
-            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-                free.bind(("127.0.0.1", 0))
-                address = free.getsockname()
-            forces = self.folder / f"patch{number}.h5"
-            process = self.started(f"udp:{address[0]}:{address[1]}", "--to", forces, "--frames", 20)
-            patches.append((process, address, side, 30 * number, forces))
-        end = time.monotonic() + PATIENCE_S
-        sequence = 0
-        while any(process.poll() is None for process, *_ in patches) and time.monotonic() < end:
-            for _, address, side, reading, _ in patches:
-                readings = bytes([reading]) * side ** 2
-                sender.sendto(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, side, side, 0, sequence,
-                                          time.monotonic_ns(), 0, 1, 0, 0, 0, len(readings))
-                              + readings, address)
-            sequence += 1
-            time.sleep(0.01)
-        for process, _, side, reading, forces in patches:
-            process.communicate(timeout=PATIENCE_S)
-            self.assertEqual(process.returncode, 0)
-            with h5py.File(forces) as file:
-                normal = file["force/normal"][:]
-                self.assertEqual(normal.shape, (20, side, side))
-                np.testing.assert_allclose(normal, reading / 320, rtol=1e-6)
+    def test_a_busy_port_names_the_way(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            other.bind(("127.0.0.1", 0))
+            self.assert_fails("stream", f"udp:127.0.0.1:{other.getsockname()[1]}", "-q", names=("--relay shm:NAME",))
 
 
 class Network(StreamTest):
     def test_frames_of_another_size_are_named_once(self):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-            probe.bind(("127.0.0.1", 0))
-            address = probe.getsockname()
-        rows, done = [8], threading.Event()
-
-        def send():
-            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
-                for number in itertools.count():
-                    size = 16 * rows[0]
-                    out.sendto(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, rows[0], 16, 0, number, 0, 0,
-                                           1, 0, 0, 0, size) + bytes(size), address)
-                    if done.wait(0.01):
-                        return
-
-        sender = threading.Thread(target=send)
-        calibration = self.folder / "skin.h5"
-        np.save(self.folder / "idle.npy", np.random.default_rng(1).integers(0, 3, (20, 12, 16), np.uint8))
-        run("calibrate", "tare", self.folder / "idle.npy", "-o", calibration)
-        process = self.started(f"udp:127.0.0.1:{address[1]}", "--calibration", calibration, "--json",
-                               "--health-interval", 0.1)
-        sender.start()
-        self.addCleanup(lambda: (done.set(), sender.join()))
-        self.assertEqual(process.stderr.readline(), f"Waiting for frames from udp:127.0.0.1:{address[1]}\n")
-        self.assertIn("frames are 8 x 16, 12 x 16 expected", process.stderr.readline())
-        rows[0] = 12
-        while json.loads(process.stdout.readline())["health"]["solved"] < 3:
-            pass
-        rows[0] = 20
-        for _ in range(5):
-            while "mismatch" not in json.loads(process.stdout.readline())["health"]:
-                pass
-        process.send_signal(signal.SIGINT)
-        errors = process.communicate(timeout=PATIENCE_S)[1]
-        self.assertEqual((process.returncode, errors.count("20 x 16, 12 x 16 expected")), (0, 1))
+        process = self.started("-", "--json", "--health-interval", 0.1, stdin=subprocess.PIPE)
+        for number in range(60):
+            process.stdin.buffer.write(packet(40, number, side=8 if number < 10 else 12))
+            process.stdin.flush()
+            time.sleep(0.01)
+        output, errors = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual((process.returncode, errors.count("frames are 12 x 12, 8 x 8 expected")), (0, 1), errors)
+        self.assertIn('"mismatch"', output)
 
     def test_one_line_tells_what_is_assumed(self):
         frames = b"".join(struct.pack("<4sHHIIQQQ6I", b"PFR1", 0, 1, 4, 6, 0, number, number * 10**7, 0, 1, 0, 0,
@@ -349,17 +293,6 @@ class FirstFrames(StreamTest):
         self.assertEqual(process.returncode, 1)
         self.assertRegex(errors, r" kB came, no packet: a FlexiTac board\? 'serial:/dev/pts/\d+\?protocol=flexitac")
 
-    def test_the_first_frames_are_solved(self):
-        host, port = self.udp()
-        process = self.started(f"udp:{host}:{port}", "--end-when-idle", 3, "--json")
-        wait_for(lambda: f":{port:04X} " in open("/proc/net/udp").read(), "the socket")
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
-            for number in range(100):
-                out.sendto(packet(40, number), (host, port))
-                time.sleep(0.002)
-        summary = json.loads(process.communicate(timeout=PATIENCE_S)[0].splitlines()[-1])["summary"]
-        self.assertEqual((summary["solved"], summary["lost"]), (100, 0))
-
     def test_an_untared_array_is_named_once(self):
         process = self.started("-", "--json", "--health-interval", 0.1, stdin=subprocess.PIPE)
         number, coverage = 0, None
@@ -407,17 +340,6 @@ class ControlLines(StreamTest):
         self.ended(process)
         self.assertFalse(self.socket.exists())
 
-    def test_a_new_tare_takes_the_load_away(self):
-        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json",
-                               "--threshold", 5)
-        control = self.control()
-        self.assertGreater(wait_for(lambda: control.say("health")["health"]["contacts"],
-                                    "a contact"), 0)
-        self.assertTrue(control.say("tare 0.2 preloaded")["ok"])
-        wait_for(lambda: control.say("health")["health"]["contacts"] == 0, "an idle skin")
-        control.say("quit")
-        self.ended(process)
-
     def test_an_answer_comes_after_the_client_closed_its_sending_side(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
         self.control().say("health")
@@ -441,13 +363,7 @@ class ControlLines(StreamTest):
 
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
         wait_for(self.socket.exists, "the control socket")
-        self.assertGreaterEqual(control("health")["health"]["frames"], 0)
         self.assertEqual(control("pause"), {"ok": True, "done": "pause"})
-        control("resume")
-        self.assertIn("touched", control("tare", 0.1, expect=1)["error"])
-        answer = control("tare", 0.1, "preloaded")
-        self.assertEqual((answer["ok"], answer["done"]), (True, "tare"))
-        self.assertIn("counts are usable", answer["note"])
         control("record", "a copy.h5", cwd=self.folder)
         control("record", "stop")
         self.assertTrue((self.folder / "a copy.h5").exists())
@@ -490,10 +406,9 @@ class ControlLines(StreamTest):
         for other in others[:2]:
             other.close()
 
-    def test_a_socket_in_use_is_refused_and_a_left_one_replaced(self):
+    def test_a_left_socket_is_replaced(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
         self.control().say("health")
-        self.assert_fails("stream", self.recording, "--control", self.socket, names=("listens",))
         process.kill()
         process.wait()
         self.assertTrue(self.socket.exists())

@@ -156,15 +156,6 @@ TEST(Comparison, NothingAddedIsNoError) {
   EXPECT_EQ(errors.p95_n, 0);
 }
 
-TEST(Comparison, APerfectSolutionHasNoError) {
-  const Frames frames = random_frames(8);
-  Comparison comparison;
-  comparison.add(frames.truth.view(), frames.truth.view());
-  EXPECT_EQ(comparison.loaded().rms_n, 0);
-  EXPECT_EQ(comparison.loaded().p95_relative, 0);
-  EXPECT_EQ(comparison.loaded().phi_rms_rad, 0);
-}
-
 TEST(Comparison, PhiIsComparedAroundTheCircle) {
   ForceField truth(1, 1);
   ForceField solved(1, 1);

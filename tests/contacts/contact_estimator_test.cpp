@@ -173,51 +173,6 @@ TEST_F(OneFrame, ChangesNothingButAmbiguousPillars) {
   EXPECT_GE(changed, 10);
 }
 
-/// The force stays on the segment: the readings of the usable sensels are explained.
-TEST_F(OneFrame, ExplainsTheReadings) {
-  for (std::size_t i = 0; i < direct_.elements(); ++i) {
-    if (!is_ambiguous_pair(direct_.status[i])) continue;
-    const bool vertical = (direct_.status[i] & 15) == 3 || (direct_.status[i] & 15) == 12;
-    const auto& fixed = vertical ? &ForceField::shear_x : &ForceField::shear_y;
-    const auto& moving = vertical ? &ForceField::shear_y : &ForceField::shear_x;
-    EXPECT_EQ((contact_.*fixed)[i], (direct_.*fixed)[i]);
-    EXPECT_NEAR(std::abs((contact_.*moving)[i]) + std::sqrt(2.0) * contact_.normal[i],
-                std::abs((direct_.*moving)[i]) + std::sqrt(2.0) * direct_.normal[i], 1e-5);
-    EXPECT_GT(contact_.normal[i], 0);
-  }
-}
-
-TEST_F(OneFrame, HasTheSameBitsWithAnyNumberOfThreads) {
-  Scene scene = scene_;
-  scene.indenters.push_back(scene.indenters[0]);
-  for (auto& key : scene.indenters[1].path) key.y_mm += 11;
-  const Simulator simulator(scene);
-  FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
-  ForceField truth(26, 26);
-  std::vector<ContactEstimator> estimators;
-  for (const std::size_t threads : {1U, 2U, 5U}) {
-    estimators.emplace_back(plan_of(scene, Estimator::contact), threads);
-  }
-  for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
-    simulator.render(frame, raw, truth);
-    const ForceField direct = solve_on_host(plan_of(scene, Estimator::direct), raw.view());
-    std::vector<ForceField> solved;
-    for (ContactEstimator& estimator : estimators) {
-      solved.push_back(direct);
-      estimator.resolve(solved.back());
-    }
-    for (const ForceField& other : solved) {
-      EXPECT_EQ(other.normal, solved[0].normal);
-      EXPECT_EQ(other.shear_x, solved[0].shear_x);
-      EXPECT_EQ(other.status, solved[0].status);
-      for (std::size_t plane = 0; plane < kUncertaintyPlanes; ++plane) {
-        const auto which = static_cast<Uncertainty>(plane);
-        EXPECT_EQ(other.uncertainty[which], solved[0].uncertainty[which]);
-      }
-    }
-  }
-}
-
 /// Forces of any size: the same scene in other units.
 TEST_F(OneFrame, ScalesWithTheForces) {
   ForceField scaled = direct_;

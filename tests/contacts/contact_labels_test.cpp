@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "pillarfield/status.h"
-#include "solve/idle_blocks.h"
 #include "tests/base/message.h"
 
 namespace pillarfield {
@@ -192,68 +191,6 @@ TEST(ContactLabels, EveryStatusByteCountsByItsUsableAndSaturatedBits) {
   }
 }
 
-/// Idle flags of blocks of `pillars` pillars without a loaded one.
-struct Marks {
-  Marks(const Mask& mask, std::uint32_t pillars)
-      : stride(mask.cols / pillars + 2), size(pillars), marks(mask.rows * stride) {
-    for (std::uint32_t row = 0; row < mask.rows; ++row) {
-      const std::size_t first = std::size_t{row} * mask.cols;
-      const std::size_t blocks = (first + mask.cols - 1) / size - first / size + 1;
-      std::fill_n(marks.begin() + static_cast<std::ptrdiff_t>(row * stride), blocks,
-                  std::uint8_t{1});
-      for (std::uint32_t col = 0; col < mask.cols; ++col) {
-        if (mask.loaded(row, col)) marks[row * stride + (first + col) / size - first / size] = 0;
-      }
-    }
-  }
-
-  [[nodiscard]] IdleBlocks view() const { return {marks, stride, size}; }
-
-  std::size_t stride;
-  std::uint32_t size;
-  std::vector<std::uint8_t> marks;
-};
-
-TEST(ContactLabels, DoesNotDependOnIdleBlocks) {
-  std::uint64_t random = 1;
-  for (const std::uint32_t cols : {1U, 3U, 7U, 8U, 15U, 16U, 17U, 50U, 200U, 1100U}) {
-    for (const std::uint32_t pillars : {1U, 2U, 8U, 16U}) {
-      for (const std::uint32_t one_in : {2U, 20U, 400U}) {
-        Mask mask(23, cols);
-        for (std::uint32_t row = 0; row < mask.rows; ++row) {
-          for (std::uint32_t col = 0; col < cols; ++col) {
-            random = random * 6364136223846793005U + 1442695040888963407U;
-            mask.set(row, col, (random >> 33) % one_in == 0);
-          }
-        }
-        ContactLabels expected;
-        expected.find(mask.status, mask.rows, mask.cols);
-        ContactLabels actual;
-        actual.find(mask.status, mask.rows, mask.cols, Marks(mask, pillars).view());
-        ASSERT_EQ(actual.contacts(), expected.contacts()) << cols << " in blocks of " << pillars;
-        ASSERT_TRUE(std::ranges::equal(actual.runs(), expected.runs(),
-                                       [](const ContactRun& a, const ContactRun& b) {
-                                         return a.row == b.row && a.first == b.first &&
-                                                a.end == b.end && a.contact == b.contact;
-                                       }));
-      }
-    }
-  }
-}
-
-TEST(ContactLabels, DoesNotReadIdleBlocks) {
-  Mask mask(3, 40);
-  Marks marks(mask, 16);
-  for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);
-  marks.marks[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
-  ContactLabels labels;
-  labels.find(mask.status, 3, 40, marks.view());
-  ASSERT_EQ(labels.runs().size(), 1U);
-  EXPECT_EQ(labels.runs()[0].row, 1U);
-  EXPECT_EQ(labels.runs()[0].first, 8U);
-  EXPECT_EQ(labels.runs()[0].end, 24U);
-}
-
 TEST(ContactLabels, OfNothingIsEmpty) {
   EXPECT_EQ(ContactLabels().contacts(), 0);
   EXPECT_EQ(contacts_of(Mask(0, 0)), 0);
@@ -267,34 +204,6 @@ TEST(ContactLabels, ForgetsTheFrameBefore) {
   expect_as_flooded(random_mask(50, 50, 30, 1), labels);
   EXPECT_EQ(expect_as_flooded(Mask(3, 90), labels), 0);
   EXPECT_TRUE(labels.runs().empty());
-}
-
-TEST(ContactLabels, SingleRowsAndColumns) {
-  EXPECT_EQ(contacts_of(Mask({"##.#.....###################.#"})), 4);
-  EXPECT_EQ(contacts_of(Mask({"#", "#", ".", "#", ".", ".", "#", "#"})), 3);
-  EXPECT_EQ(contacts_of(Mask({"#"})), 1);
-}
-
-/// A square mask with an arm that winds outwards from beside its centre, and where `sign` is -1
-/// that arm turned by half a circle: both lie in between each other and touch nowhere.
-void add_spiral(Mask& mask, int windings, int sign) {
-  const int centre = static_cast<int>(mask.rows) / 2;
-  int x = 1;
-  int y = 0;
-  const auto draw_to = [&](int to_x, int to_y) {
-    const auto draw = [&](int twice_x, int twice_y) {
-      mask.set(static_cast<std::uint32_t>(centre + sign * twice_y),
-               static_cast<std::uint32_t>(centre + sign * twice_x), true);
-    };
-    for (int i = std::min(2 * x, 2 * to_x); i <= std::max(2 * x, 2 * to_x); ++i) draw(i, 2 * y);
-    x = to_x;
-    for (int i = std::min(2 * y, 2 * to_y); i <= std::max(2 * y, 2 * to_y); ++i) draw(2 * x, i);
-    y = to_y;
-  };
-  for (int k = 0; k < windings; ++k) {
-    draw_to(2 * k + 1, 2 * k + 1);
-    draw_to(-(2 * k + 2), -(2 * k + 2));
-  }
 }
 
 TEST(ContactLabels, MissingPillarsDoNotPartAContact) {
@@ -333,37 +242,6 @@ TEST(ContactLabels, MissingPillarsDoNotPartAContact) {
       }
     }
   }
-}
-
-TEST(ContactLabels, InterleavedSpiralsAreTwo) {
-  Mask mask(101, 101);
-  add_spiral(mask, 12, 1);
-  add_spiral(mask, 12, -1);
-  EXPECT_EQ(contacts_of(mask), 2);
-}
-
-TEST(ContactLabels, NumbersFollowTheFirstPillarRowByRow) {
-  const Mask mask({"....##...#", "........#.", "#..#......", "#...#..###", "#.##......"});
-  EXPECT_EQ(contacts_of(mask), 5);
-  ContactLabels labels;
-  labels.find(mask.status, mask.rows, mask.cols);
-  const auto first = [&](std::uint32_t contact) {
-    return std::pair(labels.runs(contact)[0].row, labels.runs(contact)[0].first);
-  };
-  using Place = std::pair<std::uint32_t, std::uint32_t>;
-  EXPECT_EQ(first(0), Place(0, 4));
-  EXPECT_EQ(first(1), Place(0, 9));
-  EXPECT_EQ(first(2), Place(2, 0));
-  EXPECT_EQ(first(3), Place(2, 3));
-  EXPECT_EQ(first(4), Place(3, 7));
-}
-
-TEST(ContactLabels, TenThousandContacts) {
-  Mask mask(200, 200);
-  for (std::uint32_t place = 0; place < 10000; ++place) {
-    mask.set(place / 100 * 2, place % 100 * 2, true);
-  }
-  EXPECT_EQ(contacts_of(mask), 10000);
 }
 
 TEST(ContactLabels, SizesMustAgree) {

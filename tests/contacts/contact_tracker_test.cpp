@@ -65,15 +65,6 @@ Ids ended_ids(const FrameContacts& frame) {
   return ids;
 }
 
-const TrackedContact& by_id(const FrameContacts& frame, std::uint64_t id) {
-  for (const TrackedContact& contact : frame.contacts) {
-    if (contact.track_id == id) return contact;
-  }
-  static const TrackedContact none;
-  ADD_FAILURE() << "no contact " << id;
-  return none;
-}
-
 TEST(ContactTracker, ASlidingContactKeepsItsId) {
   ContactTracker tracker(kPillarPitchMm);
   for (int i = 0; i < 40; ++i) {
@@ -95,15 +86,96 @@ TEST(ContactTracker, AFrameWithContactsNeedsATime) {
       "ContactTracker: a frame with contacts has the time nan; give finite seconds");
 }
 
-TEST(ContactTracker, AContactThatJumpsWithinReachKeepsItsId) {
-  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 8});
-  for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(ids_of(tracker.update(Patch(9, 70).disc(4, 4 + 8 * i, 2).view(), i)), Ids{1}) << i;
+/// A frame and what must come of it: of each contact its id and its parent's, of each that ended
+/// its id and that of the one it merged into; 0: none.
+struct Step {
+  Patch patch;
+  Ids ids;
+  Ids ended = {};
+  Ids parents = {};
+  Ids merged_into = {};
+};
+
+struct Story {
+  const char* name;
+  ContactOptions options;
+  std::vector<Step> steps;
+};
+
+Patch bare() { return {30, 70}; }
+
+const Story kStories[] = {
+    {"a contact that jumps within reach keeps its id",
+     {.reach_mm = 8},
+     {{bare().disc(4, 4, 2), {1}},
+      {bare().disc(4, 12, 2), {1}},
+      {bare().disc(4, 20, 2), {1}},
+      {bare().disc(4, 29, 2), {2}, {1}}}},
+    {"without reach only shared pillars count",
+     {.reach_mm = 0},
+     {{bare().box(4, 4, 1, 2), {1}},
+      {bare().box(4, 5, 1, 2), {1}},
+      {bare().box(4, 7, 1, 2), {2}, {1}}}},
+    {"of a split the larger part keeps the id: the left one",
+     {},
+     {{bare().box(2, 2, 4, 20), {1}},
+      {bare().box(2, 2, 4, 12).box(2, 15, 4, 7), {1, 2}, {}, {0, 1}},
+      {bare().box(2, 2, 4, 12).box(2, 15, 4, 7), {1, 2}, {}, {0, 1}}}},  // The parent stays known.
+    {"of a split the larger part keeps the id: the right one",
+     {},
+     {{bare().box(2, 2, 4, 20), {1}},
+      {bare().box(2, 2, 4, 7).box(2, 10, 4, 12), {2, 1}, {}, {1, 0}}}},
+    {"a merged contact keeps the id that brought most pillars: the left one",
+     {},
+     {{bare().box(2, 2, 4, 12).box(2, 15, 4, 7), {1, 2}},
+      {bare().box(2, 2, 4, 20), {1}, {2}, {}, {1}},
+      {bare().box(2, 2, 4, 20), {1}}}},
+    {"a merged contact keeps the id that brought most pillars: the right one",
+     {},
+     {{bare().box(2, 2, 4, 7).box(2, 10, 4, 12), {1, 2}},
+      {bare().box(2, 2, 4, 20), {2}, {1}, {}, {2}}}},
+    {"one that vanishes and returns is new",
+     {},
+     {{bare().disc(4, 4, 2), {1}}, {bare(), {}, {1}}, {bare().disc(4, 4, 2), {2}}}},
+    {"shared pillars come before distance",  // Of the one at 9, 1 is nearest; 2 shares a column.
+     {},
+     {{bare().box(2, 4, 4, 4).box(2, 12, 4, 4), {1, 2}},
+      {bare().box(2, 15, 4, 4).box(2, 9, 4, 2), {1, 2}}}},
+    {"the nearest goes first",
+     {},
+     {{bare().box(4, 10, 2, 2), {1}}, {bare().box(4, 5, 2, 2).box(4, 14, 2, 2), {2, 1}}}},
+    {"small contacts are not followed",
+     {.minimum_pillars = 4},
+     {{bare().box(1, 1, 1, 3), {}},
+      {bare().box(1, 1, 2, 2), {1}},
+      {bare().box(1, 1, 1, 3), {}, {1}}}},
+};
+
+TEST(ContactTracker, FollowsContactsThatJumpSplitMergeAndVanish) {
+  for (const Story& story : kStories) {
+    SCOPED_TRACE(story.name);
+    ContactTracker tracker(kPillarPitchMm, story.options);
+    std::map<std::uint64_t, double> began;
+    double time_s = 0;
+    for (const Step& step : story.steps) {
+      const FrameContacts& frame = tracker.update(step.patch.view(), ++time_s);
+      EXPECT_EQ(ids_of(frame), step.ids);
+      EXPECT_EQ(ended_ids(frame), step.ended);
+      Ids parents;
+      for (const TrackedContact& contact : frame.contacts) {
+        parents.push_back(contact.parent.value_or(0));
+        EXPECT_EQ(contact.first_time_s, began.emplace(contact.track_id, time_s).first->second);
+      }
+      EXPECT_EQ(parents, step.parents.empty() ? Ids(step.ids.size()) : step.parents);
+      Ids merged_into;
+      for (const EndedContact& contact : frame.ended) {
+        merged_into.push_back(contact.merged_into.value_or(0));
+        EXPECT_EQ(contact.first_time_s, began.at(contact.track_id));
+        EXPECT_EQ(contact.last_time_s, time_s - 1);
+      }
+      EXPECT_EQ(merged_into, step.merged_into.empty() ? Ids(step.ended.size()) : step.merged_into);
+    }
   }
-  const FrameContacts& frame = tracker.update(Patch(9, 70).disc(4, 53, 2).view(), 6);
-  EXPECT_EQ(ids_of(frame), Ids{2});
-  EXPECT_EQ(ended_ids(frame), Ids{1});
-  EXPECT_FALSE(frame.ended[0].merged_into);
 }
 
 TEST(ContactTracker, MayJumpInAnyDirection) {
@@ -120,64 +192,6 @@ TEST(ContactTracker, MayJumpInAnyDirection) {
   }
 }
 
-TEST(ContactTracker, WithoutReachOnlySharedPillarsCount) {
-  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 0});
-  tracker.update(Patch(9, 20).box(4, 4, 1, 2).view(), 0);
-  EXPECT_EQ(ids_of(tracker.update(Patch(9, 20).box(4, 5, 1, 2).view(), 1)), Ids{1});
-  EXPECT_EQ(ids_of(tracker.update(Patch(9, 20).box(4, 7, 1, 2).view(), 2)), Ids{2});
-}
-
-TEST(ContactTracker, OfASplitTheLargerPartKeepsTheId) {
-  for (const bool larger_right : {false, true}) {
-    ContactTracker tracker(kPillarPitchMm);
-    tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 1);
-    const int left = larger_right ? 7 : 12;
-    Patch parts(10, 30);
-    parts.box(2, 2, 4, left).box(2, 3 + left, 4, 19 - left);
-    const FrameContacts& frame = tracker.update(parts.view(), 2);
-    EXPECT_EQ(ids_of(frame), larger_right ? (Ids{2, 1}) : (Ids{1, 2}));
-    EXPECT_EQ(by_id(frame, 2).parent, 1);
-    EXPECT_EQ(by_id(frame, 2).first_time_s, 2);
-    EXPECT_EQ(by_id(frame, 1).first_time_s, 1);
-    EXPECT_FALSE(by_id(frame, 1).parent);
-    EXPECT_TRUE(frame.ended.empty());
-    // The parent stays known.
-    EXPECT_EQ(by_id(tracker.update(parts.view(), 3), 2).parent, 1);
-  }
-}
-
-TEST(ContactTracker, AMergedContactKeepsTheIdThatBroughtMostPillars) {
-  for (const bool larger_right : {false, true}) {
-    ContactTracker tracker(kPillarPitchMm);
-    const int left = larger_right ? 7 : 12;
-    tracker.update(Patch(10, 30).box(2, 2, 4, left).box(2, 3 + left, 4, 19 - left).view(), 1);
-    const FrameContacts& frame = tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 2);
-    const std::uint64_t kept = larger_right ? 2 : 1;
-    EXPECT_EQ(ids_of(frame), Ids{kept});
-    ASSERT_EQ(ended_ids(frame), Ids{3 - kept});
-    EXPECT_EQ(frame.ended[0].merged_into, kept);
-    EXPECT_EQ(frame.ended[0].last_time_s, 1);
-    EXPECT_TRUE(tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 3).ended.empty());
-  }
-}
-
-TEST(ContactTracker, WhatVanishesAndReturnsIsNew) {
-  ContactTracker tracker(kPillarPitchMm);
-  const Patch pressed = Patch(10, 10).disc(4, 4, 2);
-  EXPECT_EQ(ids_of(tracker.update(pressed.view(), 1)), Ids{1});
-  const FrameContacts& gone = tracker.update(Patch(10, 10).view(), 2);
-  EXPECT_TRUE(gone.contacts.empty());
-  EXPECT_EQ(ended_ids(gone), Ids{1});
-  EXPECT_EQ(gone.ended[0].first_time_s, 1);
-  EXPECT_EQ(gone.ended[0].last_time_s, 1);
-  EXPECT_EQ(gone.total.pillars, 0);
-  const FrameContacts& back = tracker.update(pressed.view(), 3);
-  EXPECT_EQ(ids_of(back), Ids{2});
-  EXPECT_EQ(back.contacts[0].first_time_s, 3);
-  EXPECT_FALSE(back.contacts[0].parent);
-  EXPECT_TRUE(back.ended.empty());
-}
-
 /// Side by side, in opposite directions, by pillars that they share and by leaps.
 TEST(ContactTracker, TwoThatPassEachOtherStayThemselves) {
   for (const int step : {1, 3, 6}) {
@@ -187,36 +201,6 @@ TEST(ContactTracker, TwoThatPassEachOtherStayThemselves) {
       EXPECT_EQ(ids_of(tracker.update(patch.view(), i)), (Ids{1, 2})) << step << " " << i;
     }
   }
-}
-
-/// One leaps over to where another was, which moves on: shared pillars come before distance.
-TEST(ContactTracker, SharedPillarsComeBeforeDistance) {
-  ContactTracker tracker(kPillarPitchMm);
-  tracker.update(Patch(12, 40).box(2, 4, 4, 4).box(2, 12, 4, 4).view(), 0);
-  const FrameContacts& frame =
-      tracker.update(Patch(12, 40).box(2, 15, 4, 4).box(2, 9, 4, 2).view(), 1);
-  // 2 shares a column with the one from 15 on; the one at 9 shares none and is nearest to 1.
-  EXPECT_EQ(ids_of(frame), (Ids{1, 2}));
-  EXPECT_EQ(frame.contacts[0].quantities.pillars, 8);
-}
-
-TEST(ContactTracker, TheNearestGoesFirst) {
-  ContactTracker tracker(kPillarPitchMm);
-  tracker.update(Patch(10, 40).box(4, 10, 2, 2).view(), 0);
-  const FrameContacts& frame =
-      tracker.update(Patch(10, 40).box(4, 5, 2, 2).box(4, 14, 2, 2).view(), 1);
-  EXPECT_EQ(ids_of(frame), (Ids{2, 1}));
-  EXPECT_FALSE(frame.contacts[0].parent);
-}
-
-TEST(ContactTracker, SmallContactsAreNotFollowed) {
-  ContactTracker tracker(kPillarPitchMm, {.minimum_pillars = 4});
-  EXPECT_TRUE(tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 0).contacts.empty());
-  EXPECT_EQ(ids_of(tracker.update(Patch(9, 9).box(1, 1, 2, 2).view(), 1)), Ids{1});
-  const FrameContacts& frame = tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 2);
-  EXPECT_EQ(ended_ids(frame), Ids{1});
-  EXPECT_FALSE(frame.ended[0].merged_into);
-  EXPECT_EQ(frame.total.pillars, 3);
 }
 
 TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
@@ -235,23 +219,6 @@ TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
   for (std::size_t i = 1; i < 21; ++i) EXPECT_EQ(split.contacts[i].parent, 1);
 }
 
-TEST(ContactTracker, TenThousandContactsThatMoveAside) {
-  for (const int step : {1, 3}) {
-    ContactTracker tracker(kPillarPitchMm, {.reach_mm = 3});
-    Ids first;
-    for (int i = 0; i < 3; ++i) {
-      Patch patch(820, 820);
-      for (int contact = 0; contact < 10000; ++contact) {
-        patch.box(contact / 100 * 8, contact % 100 * 8 + i * step, 2, 2);
-      }
-      const FrameContacts& frame = tracker.update(patch.view(), i);
-      ASSERT_EQ(frame.contacts.size(), 10000);
-      if (first.empty()) first = ids_of(frame);
-      EXPECT_EQ(ids_of(frame), first) << step;
-    }
-  }
-}
-
 TEST(ContactTracker, IdsAreNeverGivenTwice) {
   ContactTracker tracker(kPillarPitchMm);
   std::map<std::uint64_t, double> ended;
@@ -267,26 +234,6 @@ TEST(ContactTracker, IdsAreNeverGivenTwice) {
       EXPECT_EQ(contact.last_time_s, i - 1);
     }
     for (const std::uint64_t id : ids) EXPECT_FALSE(ended.contains(id));
-  }
-}
-
-TEST(ContactTracker, TakesContactsThatWereFound) {
-  ContactTracker finds(kPillarPitchMm);
-  ContactTracker takes(kPillarPitchMm);
-  for (int step = 0; step < 4; ++step) {
-    Patch patch(40, 60);
-    patch.disc(10 + step, 12, 6).disc(25, 20 + 3 * step, 5).box(33, 40, 4, 9 - step);
-    const FrameContacts& expected = finds.update(patch.view(), step);
-    ContactLabels labels;  // gone when the frame is taken
-    labels.find(patch.view().status, 40, 60);
-    const FrameContacts& actual = takes.update(patch.view(), step, {&labels, {}});
-    labels = {};
-    EXPECT_EQ(ids_of(actual), ids_of(expected));
-    EXPECT_EQ(ended_ids(actual), ended_ids(expected));
-    EXPECT_EQ(actual.total.pillars, expected.total.pillars);
-    EXPECT_EQ(actual.total.torque_nmm, expected.total.torque_nmm);
-    ASSERT_EQ(takes.labels().runs().size(), finds.labels().runs().size());
-    EXPECT_EQ(takes.labels().contacts(), finds.labels().contacts());
   }
 }
 

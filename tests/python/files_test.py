@@ -1,4 +1,4 @@
-"""Files, scenes, simulation, comparison, pictures, points."""
+"""Files, scenes, pictures, points."""
 
 import os
 import pathlib
@@ -13,7 +13,6 @@ import pillarfield as pf
 import skins
 
 WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
-SCENES = pathlib.Path(os.environ["PILLARFIELD_SOURCE"]) / "scenes"
 
 
 def pixels_of(png):
@@ -59,33 +58,22 @@ class Files(unittest.TestCase):
         cls.forces.save(WORK / "forces.h5", overwrite=True)
 
     def test_intervals(self):
-        """Those of the file, whose ambiguous pillars span their segments; kept when saved again."""
+        """Those of the file, kept when saved again."""
         ends = self.forces.intervals
-        names = ("shear_x_low", "shear_x_high", "shear_y_low", "shear_y_high", "normal_low", "normal_high")
         again = pf.open(WORK / "forces.h5")[:]
         again.copy()[1:].save(WORK / "again.h5", overwrite=True)
         for path, first in (("forces.h5", 0), ("again.h5", 1)):
             with h5py.File(WORK / path) as file:
-                for name in names:
+                for name in ("shear_x_low", "shear_x_high", "shear_y_low", "shear_y_high", "normal_low", "normal_high"):
                     np.testing.assert_array_equal(file[f"uncertainty/{name}"], getattr(ends, name)[first:])
-        frame = self.forces[len(self.forces) // 2]
-        np.testing.assert_array_equal(frame.intervals.normal_high, ends.normal_high[len(self.forces) // 2])
-        ambiguous = (self.forces.region == pf.Region.THREE) & (self.forces.normal > 0)
-        self.assertTrue(ambiguous.any())
-        most = self.forces.normal + 1.96 * self.forces.uncertainty.normal
-        simple = pf.ForceField(self.forces.shear_x, self.forces.shear_y, self.forces.normal)
-        self.assertTrue((ends.normal_low[ambiguous] < 0.5 * self.forces.normal[ambiguous]).all())
-        determined = (self.forces.region == pf.Region.ONE)
-        np.testing.assert_allclose(ends.normal_high[determined], most[determined], rtol=1e-6)
+        np.testing.assert_array_equal(self.forces[6].intervals.normal_high, ends.normal_high[6])
         with self.assertRaisesRegex(pf.Error, "uncertainty"):
-            simple.intervals
+            pf.ForceField(self.forces.shear_x, self.forces.shear_y, self.forces.normal).intervals
 
     def test_ranges(self):
-        """Ranges of frames have the bits of all frames where frames leave nothing to the next ones."""
         recording, output = WORK / "press.h5", WORK / "range.h5"
-        normal = [pf.solve_to_file(recording, output, first=first, end=end)[:].normal
-                  for first, end in ((0, 3), (3, 7), (7, None))]
-        np.testing.assert_array_equal(np.concatenate(normal), self.forces.normal)
+        forces = pf.solve_to_file(recording, output, first=3, end=7)[:]
+        np.testing.assert_array_equal(forces.normal, self.forces.normal[3:7])
         with self.assertRaisesRegex(pf.Error, "give frames within 0:"):
             pf.solve_to_file(recording, output, first=3, end=1000)
         with self.assertRaisesRegex(TypeError, "no argument"):
@@ -153,15 +141,6 @@ class Files(unittest.TestCase):
             with self.assertRaises(pf.Error):
                 pf.Calibration(4, 6, **wrong)
 
-    def test_damaged_files(self):
-        for content in (b"", b"\x89HDF\r\n\x1a\n" + bytes(100), os.urandom(5000)):
-            (WORK / "damaged.h5").write_bytes(content)
-            with self.assertRaises(pf.Error):
-                pf.open(WORK / "damaged.h5")
-        for path in ("/", "", "\0", WORK):
-            with self.assertRaises((pf.Error, TypeError)):
-                pf.open(path)
-
 
 class Scenes(unittest.TestCase):
     def test_a_dict_is_the_file_of_the_same_keys(self):
@@ -176,10 +155,6 @@ class Scenes(unittest.TestCase):
         self.assertTrue(np.array_equal(one.frames, other.frames))
         self.assertFalse(np.array_equal(one.frames, pf.simulate(one.scene, seed=2).frames))
         self.assertEqual(len(pf.simulate(one.scene, frames=2).frames), 2)
-
-    def test_every_scene_loads(self):
-        for path in sorted(SCENES.glob("*.toml")):
-            self.assertGreater(pf.scene(path).frames, 0, path)
 
     def test_wrong_scenes(self):
         for wrong in ({}, {"skin": {}}, {"skin": {"pillars": [8, {}]}}, {"skin": {"pillars": None}},
@@ -197,28 +172,6 @@ class Scenes(unittest.TestCase):
         frames.resize((1, 2, 2), refcheck=False)
         with self.assertRaisesRegex(pf.Error, "resized"):
             source.read(0, 1, 40)
-
-    def test_heights_and_times_are_finite_numbers(self):
-        for heights in (np.full((4, 6), np.inf), np.full((4, 6), 2e4), np.zeros((0, 0))):
-            with self.assertRaises(pf.Error):
-                pf.Surface.height_map(heights)
-        timeless = pf.ForceField(*np.ones((3, 4, 6)), status=15 * np.ones((4, 6)), times=np.nan)
-        with self.assertRaisesRegex(pf.Error, "time nan"):
-            pf.Contacts(pf.Plan(pf.Skin(8, 12))).update(timeless)
-
-    def test_comparison_with_the_truth(self):
-        simulation = pf.simulate(skins.scene())
-        exact = pf.compare(simulation.truth, simulation.truth)
-        self.assertEqual(exact.loaded.rms_n, 0)
-        solved = pf.solve(simulation)
-        errors = pf.compare(solved, simulation.truth)
-        one = errors.regions[pf.Region.ONE]
-        chosen = simulation.truth.region == pf.Region.ONE
-        squares = sum((getattr(solved, name) - getattr(simulation.truth, name)) ** 2
-                      for name in ("shear_x", "shear_y", "normal"))
-        self.assertAlmostEqual(one.rms_n, float(np.sqrt(squares[chosen].mean())), delta=0.1 * one.rms_n)
-        with self.assertRaises(pf.Error):
-            pf.compare(solved[:3], simulation.truth)
 
     def test_comparison_of_sensels_with_the_truth(self):
         rng = np.random.default_rng(4)
@@ -288,7 +241,6 @@ class Pictures(unittest.TestCase):
         with self.assertRaises(pf.Error):  # The area is unknown.
             pf.ForceField(None, None, forces.normal, status=forces.status).picture("pressure")
 
-    def test_odd_shapes(self):
         for shape in ((1, 1), (1, 700), (700, 1)):
             forces = pf.ForceField(*np.ones((3, *shape)), status=15 * np.ones(shape))
             self.assertGreater(len(forces.picture()), 100)

@@ -88,21 +88,17 @@ class Columns(unittest.TestCase):
         self.assertEqual((value.dtype, value.shape), (np.dtype(feature["dtype"]), feature["shape"]))
         self.assertEqual(len(feature["names"]), feature["shape"][-1])
 
-    def test_pillars(self):
-        forces = pf.solve(np.stack([READINGS, READINGS // 2]), counts_per_newton=skins.K, layout="pillars")
-        columns, features = forces.to_lerobot("left")
-        column = columns["observation.tactile.left"]
-        self.check(columns, features, column[0])
-        self.assertEqual(features["observation.tactile.left"]["names"], ["shear_x", "shear_y", "normal"])
-        np.testing.assert_allclose(column[0], np.stack([SHEAR_X, SHEAR_Y, NORMAL], -1), atol=1e-6)
-        np.testing.assert_array_equal(forces[1].to_lerobot()[0]["observation.tactile.skin"], column[1])
-
-    def test_without_pillars_there_is_normal_force_alone(self):
-        columns, features = pf.solve(READINGS, counts_per_newton=skins.K).to_lerobot("left")
-        column = columns["observation.tactile.left"]
-        self.check(columns, features, column)
-        self.assertEqual(features["observation.tactile.left"]["names"], ["normal"])
-        np.testing.assert_allclose(column[..., 0], READINGS / skins.K, rtol=1e-6)
+    def test_forces_of_pillars_and_of_sensels(self):
+        for layout, names, expected in (
+                ("pillars", ["shear_x", "shear_y", "normal"], np.stack([SHEAR_X, SHEAR_Y, NORMAL], -1)),
+                ("sensels", ["normal"], READINGS[..., None] / skins.K)):
+            forces = pf.solve(np.stack([READINGS, READINGS // 2]), counts_per_newton=skins.K, layout=layout)
+            columns, features = forces.to_lerobot("left")
+            column = columns["observation.tactile.left"]
+            self.check(columns, features, column[0])
+            self.assertEqual(features["observation.tactile.left"]["names"], names)
+            np.testing.assert_allclose(column[0], expected, atol=1e-6)
+            np.testing.assert_array_equal(forces[1].to_lerobot()[0]["observation.tactile.skin"], column[1])
 
     def test_names_that_lerobot_refuses(self):
         for name in ("", "left/right"):
@@ -119,13 +115,11 @@ class Images(unittest.TestCase):
         self.assertEqual(image.dtype, np.uint8)
         return image
 
-    def test_vectors_as_red_green_blue(self):
-        image = self.see(rendering="vector_rgb", layout="pillars")
+    def test_vectors_as_red_green_blue_and_normal_force_as_grey(self):
         shares = np.clip(np.stack([SHEAR_X, SHEAR_Y, NORMAL], -1) / FULL_SCALE_N, -1, 1)
         self.assertTrue((shares == 1).any() and (shares < 0).any())
+        image = self.see(rendering="vector_rgb", layout="pillars")
         np.testing.assert_allclose(image, 128 + 127 * shares, atol=0.51)
-
-    def test_normal_force_as_grey(self):
         grey = 255 * np.clip(NORMAL / FULL_SCALE_N, 0, 1)
         np.testing.assert_allclose(self.see(layout="pillars"), np.stack([grey] * 3, -1), atol=0.51)
 

@@ -99,22 +99,15 @@ class Live(unittest.TestCase):
                 pf.live_forces(name) as source:
             self.assertIsInstance(source, pf.LiveForces)
             self.assertIsNone(source.receive(0))
-            for _ in range(5):
-                processor.submit(readings)
-                sent = processor.receive().copy()
-                sink.send(sent)
-                got = next(source)
-                self.assertEqual(float(got.times), float(sent.times))
-                for plane in ("shear_x", "shear_y", "normal", "status"):
-                    np.testing.assert_array_equal(getattr(got, plane), getattr(sent, plane))
-                [there], [here] = sent.contacts, got.contacts
-                for quantity in (*sent.contact_records().dtype.names[2:], "age_s"):
-                    if hasattr(there, quantity):
-                        self.assertEqual(getattr(here, quantity), getattr(there, quantity), quantity)
-            self.assertEqual(got.contacts[0].friction, 0.5)
-            self.assertIsNotNone(got.contacts[0].slip_within_0_3_s)
-            self.assertEqual(got.contacts.total.normal_n, sent.contacts.total.normal_n)
-            self.assertEqual((source.health["frames"], source.health["lost"]), (5, 0))
+            processor.submit(readings)
+            sent = processor.receive().copy()
+            sink.send(sent)
+            got = next(source)
+            self.assertEqual(float(got.times), float(sent.times))
+            for plane in ("shear_x", "shear_y", "normal", "status"):
+                np.testing.assert_array_equal(getattr(got, plane), getattr(sent, plane))
+            self.assertEqual((got.contacts[0].friction, got.contacts.total.normal_n), (0.5, sent.contacts.total.normal_n))
+            self.assertEqual((source.health["frames"], source.health["lost"]), (1, 0))
             self.assertEqual((source.skin.rows, source.skin.sensel_pitch_mm), (16, 0.7))
             with self.assertRaisesRegex(pf.Error, "results, not frames"):
                 pf.live(name)

@@ -55,16 +55,6 @@ class Ring(unittest.TestCase):
                 del forces
         self.assertLessEqual(len(places), 2)  # two slots, again and again
 
-    def test_the_callers_buffer_may_change_at_once(self):
-        buffer = np.empty_like(self.simulation.frames[0])
-        with pf.Processor(self.plan, frames_in_flight=2) as processor:
-            for frame in self.simulation.frames[:2]:
-                buffer[:] = frame
-                processor.submit(buffer)
-            buffer[:] = 0
-            self.assertTrue(self.equal(processor.receive(), 0))
-            self.assertTrue(self.equal(processor.receive(), 1))
-
     def test_order_of_calls(self):
         processor = pf.Processor(self.plan, frames_in_flight=1)
         self.assertIsNone(processor.try_receive())
@@ -98,12 +88,6 @@ class Ring(unittest.TestCase):
             list(processor.stream(broken(), ahead=2))
         self.assertEqual(processor.in_flight, 0)
 
-    def test_contacts(self):
-        expected = pf.solve(self.simulation, contacts=True)
-        with pf.Processor(self.plan, contacts=True) as processor:
-            for forces, contacts in zip(processor.stream(self.simulation.frames), expected.contacts):
-                self.assertEqual(forces.contacts[0].normal_n, contacts[0].normal_n)
-
     def test_a_new_tare(self):
         frame = np.full((8, 12), 100, np.uint8)
         skin = pf.Skin(8, 12, counts_per_newton=100)
@@ -121,16 +105,13 @@ class Ring(unittest.TestCase):
                 processor.set_tare(np.full((8, 12), np.nan))
         self.assertEqual(normals, [1.0, 0.5])
 
-    def test_a_new_tare_with_noise_and_threshold(self):
-        random = np.random.default_rng(1)
-        idle = (50 + random.normal(0, 2, (60, 8, 12))).astype(np.float32)
-        skin = pf.Skin(8, 12, counts_per_newton=100, layout="sensels")
+    def test_a_step_brings_its_threshold(self):
+        idle = (50 + np.random.default_rng(1).normal(0, 2, (50, 8, 12))).astype(np.float32)
+        skin = pf.Skin(8, 12, layout="sensels")
         plan = pf.Plan(skin, sensel_type="float32", calibration=pf.Calibration(8, 12, tare=np.zeros((8, 12))))
-        with pf.Processor(plan, contacts=True) as processor:
-            processor.set_tare(pf.calibrate.tare(idle[:50], skin=skin))
+        with pf.Processor(plan) as processor:
+            processor.set_tare(pf.calibrate.tare(idle, skin=skin))
             self.assertAlmostEqual(processor.plan.skin.threshold_counts, 9, delta=2)
-            for forces in processor.stream(idle[50:]):
-                self.assertEqual(len(forces.contacts), 0)
 
     def test_threads_take_turns(self):
         done = []

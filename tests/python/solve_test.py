@@ -31,15 +31,6 @@ def same(one, other, planes=PLANES):
 
 
 class Oracle(unittest.TestCase):
-    def test_four_pressed_sensels_follow_the_paper(self):
-        for kind in (np.uint8, np.uint16, np.float32):
-            frames = RANDOM.integers(100, 120, (7, 16, 24)).astype(kind)
-            forces = pf.solve(frames, counts_per_newton=skins.K, layout="pillars")
-            expected = skins.forces_of_region_one(frames)
-            self.assertTrue((forces.region == pf.Region.ONE).all())
-            for name, plane in zip(("shear_x", "shear_y", "normal"), expected):
-                np.testing.assert_allclose(getattr(forces, name), plane, atol=2e-6, err_msg=name)
-
     def test_the_command_gives_the_same_bits(self):
         simulation = pf.simulate(skins.scene())
         recording, solved = WORK / "press.h5", WORK / "forces.h5"
@@ -57,7 +48,6 @@ class Oracle(unittest.TestCase):
                     np.testing.assert_array_equal(getattr(forces.uncertainty, name),
                                                   file["uncertainty"][name], name)
             self.assertTrue(same(forces, pf.open(solved)[:]))
-
 
     def test_a_scene_gives_command_and_python_the_same_skin(self):
         scene, frames, solved = WORK / "pitch.toml", WORK / "pitch.npy", WORK / "pitch.h5"
@@ -79,12 +69,14 @@ class Frames(unittest.TestCase):
     def test_every_form_of_the_same_frames(self):
         frames = self.frames
         whole = frames.astype(np.uint16)
+        unaligned = np.zeros(frames.size * 4 + 1, np.uint8)[1:].view(np.float32).reshape(frames.shape)
+        unaligned[:] = frames
         np.save(WORK / "frames.npy", frames)
         np.testing.assert_array_equal(pf.solve(WORK / "frames.npy", rate_hz=50).times[1], 0.02)
         forms = {
             "list": frames.tolist(), "tuple": tuple(frames), "int64": frames.astype(np.int64),
             "float64": frames.astype(float), "float16": frames.astype(np.float16),
-            "columns first": np.asfortranarray(frames), "big endian": whole.astype(">u2"),
+            "unaligned": unaligned, "columns first": np.asfortranarray(frames), "big endian": whole.astype(">u2"),
             "reversed twice": frames[::-1][::-1], "sliced": np.repeat(frames, 2, 2)[:, :, ::2],
             "mapped": np.load(WORK / "frames.npy", mmap_mode="r"), "iterator": iter(frames),
             "generator": (frame.astype(float) for frame in frames)}
@@ -105,19 +97,11 @@ class Frames(unittest.TestCase):
         self.assertFalse(np.array_equal(expected.status, self.expected.status))
         self.assertTrue(np.array_equal(pf.solve(np.ma.array(self.frames)).normal, self.expected.normal))
 
-    def test_unaligned_frames(self):
-        memory = np.zeros(self.frames.size * 4 + 1, np.uint8)
-        odd = memory[1:].view(np.float32).reshape(self.frames.shape)
-        odd[:] = self.frames
-        self.assertTrue(np.array_equal(pf.solve(odd).normal, self.expected.normal))
-
     def test_one_frame_has_planes_of_two_axes(self):
         one = pf.solve(self.frames[3])
         self.assertEqual((one.shape, one.times.shape), ((40, 60), ()))
         self.assertTrue(same(one, self.expected[3]))
         self.assertTrue(same(one, pf.solve(self.frames[3].tolist())))
-
-    def test_no_frame(self):
         self.assertEqual(pf.solve(self.frames[:0]).shape, (0, 40, 60))
 
     def test_first_frames_give_the_tare(self):
@@ -138,12 +122,8 @@ class Frames(unittest.TestCase):
         with self.assertRaisesRegex(pf.Error, "an iterator's frames come once"):
             pf.solve(iter(frames), tare_frames=30)
 
-    def test_times(self):
-        self.assertEqual(pf.solve(self.frames, rate_hz=50).times[3], 0.06)
-        times = np.linspace(5, 6, 12)
-        self.assertTrue(np.array_equal(pf.solve(self.frames, times=times).times, times))
-
     def test_times_of_any_strides(self):
+        self.assertEqual(pf.solve(self.frames, rate_hz=50).times[3], 0.06)
         table = np.column_stack([np.arange(12) / 50, np.full(12, 7.0)])
         for times in (table[:, 0], np.arange(24)[::2] / 100, list(np.arange(12) / 50), np.arange(12, dtype="f4") / 50):
             np.testing.assert_allclose(pf.solve(self.frames, times=times).times, np.arange(12) / 50, rtol=1e-6)
@@ -162,21 +142,11 @@ class Frames(unittest.TestCase):
                          [(8, 10), (8, 11), (9, 10), (9, 11)])
 
     def test_contacts_over_time(self):
-        forces = pf.solve(self.simulation, contacts=True, estimator="contact")
-        np.testing.assert_array_equal(forces.times, self.simulation.times)
+        forces = pf.solve(self.simulation, contacts=True)
         again = pf.Contacts(skins.plan_of(self.simulation)).over(pf.solve(self.simulation))
-        for frame, contacts in zip(forces, forces.contacts):
-            total = contacts.total
-            self.assertAlmostEqual(total.normal_n, float(frame.normal.sum()), 3)
-            self.assertEqual(frame.contacts[0].track_id, 1)
-        self.assertEqual([len(contacts) for contacts in again], [len(c) for c in forces.contacts])
-        x = [contacts[0].centre_of_pressure_mm[0] for contacts in forces.contacts]
-        self.assertAlmostEqual(x[-1] - x[0], 10, delta=1.5)  # It slides from -5 to 5 mm in 0.2 s.
-
-    def test_friction_of_a_sliding_ball(self):
-        contact = pf.solve(self.simulation, contacts=True, friction=0.6)[5].contacts[0]
-        self.assertEqual((contact.slip, contact.friction_source), ("sliding", "given"))
-        self.assertLess(abs(contact.slip_margin), 0.05)
+        for frame, contacts, found in zip(forces, forces.contacts, again, strict=True):
+            self.assertAlmostEqual(contacts.total.normal_n, float(frame.normal.sum()), 3)
+            self.assertEqual((frame.contacts[0].track_id, len(found)), (1, len(contacts)))
 
 
 class Memory(unittest.TestCase):
@@ -253,10 +223,8 @@ class Errors(unittest.TestCase):
             (pf.Error, lambda: pf.solve(iter([frames[0], np.ma.array(frames[0], mask=True)]))),
             (pf.Error, lambda: pf.solve(frames, skin=pf.Skin(8, 14))),
             (pf.Error, lambda: pf.solve(frames, times=[1.0])),
-            (pf.Error, lambda: pf.solve(frames, times=[1.0, 0.0], baseline_time_s=3)),
             (pf.Error, lambda: pf.solve(frames, rate_hz=0)),
             (pf.Error, lambda: pf.solve(frames, estimator="field")),
-            (pf.Error, lambda: pf.solve(frames, outputs=["angle"])),
             (pf.Error, lambda: pf.solve(frames, counts_per_newton=-1)),
             (pf.Error, lambda: pf.solve(frames, device="no such device")),
             (pf.Error, lambda: pf.solve(frames, calibration=pf.Calibration(8, 14))),
@@ -264,12 +232,8 @@ class Errors(unittest.TestCase):
             (pf.Error, lambda: pf.solve(iter([]))),
             (pf.Error, lambda: pf.solve(iter([frames[0], frames[0][:4]]))),
             (pf.Error, lambda: pf.solve(iter([frames[0], 300 + frames[0].astype(int)]))),
-            (pf.Error, lambda: pf.solve(frames).theta),
-            (pf.Error, lambda: pf.solve(frames).uncertainty),
             (pf.Error, lambda: pf.solve(frames).contacts),
-            (TypeError, lambda: pf.solve(frames, estimater="direct")),
-            (TypeError, lambda: pf.solve(frames)[0][0]),
-            (IndexError, lambda: pf.solve(frames)[2])]
+            (TypeError, lambda: pf.solve(frames)[0][0])]
         for number, (kind, call) in enumerate(wrong):
             with self.subTest(number), self.assertRaises(kind):
                 call()
@@ -403,25 +367,14 @@ class Warnings(unittest.TestCase):
         for value, words in ((0, "No sensel is in contact"), (32, "there is no tare")):
             self.assertIn(words, self.warnings_of(np.full_like(self.FRAMES, value), counts_per_newton=320))
 
-    def test_files_in_order_of_names_and_two_pitches(self):
+    def test_files_are_in_the_order_of_their_names(self):
         folder, frames = WORK / "frames", RANDOM.integers(100, 120, (3, 8, 12)).astype(np.uint8)
         folder.mkdir(exist_ok=True)
         for number, frame in zip((9, 10, 11), frames):
             np.save(folder / f"{number}.npy", frame)
-        pads = pf.Skin(8, 12, layout="sensels", sensel_pitch_mm=(7.62, 5.08), counts_per_newton=10)
-        self.assertEqual((pads.sensel_pitch_mm, pads.element_area_mm2), ((7.62, 5.08), 7.62 * 5.08))
-        self.assertEqual(pf.Skin(8, 12, sensel_pitch_mm=2).sensel_pitch_mm, 2)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = [pf.solve(files, rate_hz=5, skin=pads, contacts=True)
-                     for files in (folder, sorted(folder.iterdir(), reverse=True))]
-            self.assertEqual(len(pf.Recording([str(folder)], rate_hz=5)), 3)
-        for forces in found:
-            np.testing.assert_allclose(forces.normal, frames / 10, rtol=1e-6)
-            np.testing.assert_allclose(forces.pressure_kpa, frames * 100.0 / (7.62 * 5.08), rtol=1e-6)
-            self.assertAlmostEqual(forces[0].contacts.total.area_mm2, 96 * 7.62 * 5.08, places=3)
-        with self.assertRaisesRegex(pf.Error, "pillars need the same"):
-            pf.Skin(8, 12, sensel_pitch_mm=(7.62, 5.08))
+        skin = pf.Skin(8, 12, layout="sensels", counts_per_newton=10)
+        for files in (folder, sorted(folder.iterdir(), reverse=True)):
+            np.testing.assert_allclose(pf.solve(files, rate_hz=5, skin=skin).normal, frames / 10, rtol=1e-6)
 
     def test_axes_are_given_or_refused_where_doubtful(self):
         time, row, col = np.ogrid[-1:1:80j, -1:1:12j, -1:1:8j]

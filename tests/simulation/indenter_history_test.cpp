@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
 #include "pillarfield/error.h"
 #include "pillarfield/simulator.h"
@@ -47,11 +46,6 @@ ForceField truth_of(const Simulator& simulator, std::uint64_t index) {
   ForceField truth(skin.pillar_rows(), skin.pillar_cols());
   simulator.render(index, raw, truth);
   return truth;
-}
-
-bool is_same(const ForceField& a, const ForceField& b) {
-  return a.normal == b.normal && a.shear_x == b.shear_x && a.shear_y == b.shear_y &&
-         a.status == b.status;
 }
 
 struct Resultant {
@@ -172,29 +166,6 @@ TEST(IndenterHistory, TurningTheWholeSceneTurnsTheTruth) {
       }
     }
     EXPECT_LT(most, 2e-5) << "newtons, frame " << frame;
-  }
-}
-
-TEST(IndenterHistory, OrderAndThreadsDoNotMatter) {
-  const Simulator forwards(scene_of(fingertip()));
-  std::vector<ForceField> expected;
-  for (std::uint64_t frame = 0; frame < 8; ++frame) expected.push_back(truth_of(forwards, frame));
-  const Simulator backwards(scene_of(fingertip()));
-  for (const std::uint64_t frame : {7U, 2U, 0U, 5U, 7U}) {
-    EXPECT_TRUE(is_same(truth_of(backwards, frame), expected[frame])) << frame;
-  }
-  const Simulator shared(scene_of(fingertip()));
-  std::vector<ForceField> found(8, ForceField(26, 26));
-  const auto render = [&](std::size_t part) {
-    for (std::size_t frame = part; frame < 8; frame += 3) found[frame] = truth_of(shared, frame);
-  };
-  std::thread one(render, 0);
-  std::thread two(render, 1);
-  render(2);
-  one.join();
-  two.join();
-  for (std::size_t frame = 0; frame < 8; ++frame) {
-    EXPECT_TRUE(is_same(found[frame], expected[frame])) << frame;
   }
 }
 

@@ -63,19 +63,6 @@ TEST(SenselLeakOfAScene, AddsTheSumOfItsFractionsInsideAndLosesWhatLeavesTheArra
   EXPECT_NEAR(v[9 * 7 - 1], 10.4, 1e-12);  // an odd last row and column have no pillar
 }
 
-TEST(SenselLeakOfAScene, SpreadsReadingsOfCompressionOnly) {
-  Scene scene = sensels(2, 2);
-  scene.skin.counts_per_newton = 100;
-  scene.load = DirectionSweep{1, 1, 0, {0.5}};
-  scene.sensor.leak_inside = 0.1;
-  scene.sensor.leak_across = 0.3 - 0.2;
-  scene.sensor.tare_counts = 7;
-  FrameBuffer raw(SenselType::f32, 2, 2);
-  ForceField truth(1, 1);
-  Simulator(scene).render(0, raw, truth);
-  for (const float reading : raw.readings<float>()) EXPECT_NEAR(reading, 7 + 50 * 1.2, 1e-4);
-}
-
 /// What a sensel reads whose V follows `loads`, one frame each.
 std::vector<double> readings_of(const SensorModel& model, double rate_hz,
                                 const std::vector<double>& loads) {
@@ -145,37 +132,6 @@ TEST(Creep, DoesNotDependOnTheFrameRate) {
   const double coarse = readings_of(model, 2, std::vector<double>(21, 50.0)).back();
   const double fine = readings_of(model, 200, std::vector<double>(2001, 50.0)).back();
   EXPECT_NEAR(coarse, fine, 1e-3);
-}
-
-TEST(SceneWithMemory, HasTheSameFramesInAnyOrder) {
-  Scene scene = sensels(24, 20);
-  scene.frames = 6;
-  scene.sensor.hysteresis = 0.1;
-  scene.sensor.creep_per_decade = 0.1;
-  scene.sensor.noise_counts = 0.5;
-  ClosedFormContact ball;
-  ball.contact_radius_mm = 3;
-  ball.reference_load_n = 10;
-  ball.path = {{0, -2, 0, 10}, {0.03, 2, 1, 20}, {0.06, 0, 0, 0}};
-  scene.load = std::vector{ball};
-  const auto render = [&](const Simulator& simulator, std::uint64_t index) {
-    FrameBuffer raw(SenselType::f32, 24, 20);
-    ForceField truth(12, 10);
-    simulator.render(index, raw, truth);
-    std::vector<float> all(raw.readings<float>().begin(), raw.readings<float>().end());
-    all.insert(all.end(), truth.normal.begin(), truth.normal.end());
-    return all;
-  };
-  const Simulator forwards(scene);
-  std::vector<std::vector<float>> frames;
-  for (std::uint64_t i = 0; i < 6; ++i) frames.push_back(render(forwards, i));
-  const Simulator jumping(scene);
-  for (const std::uint64_t i : {5U, 0U, 3U, 3U, 2U, 5U}) {
-    EXPECT_EQ(render(jumping, i), frames[i]) << i;
-  }
-  scene.sensor.hysteresis = scene.sensor.creep_per_decade = 0;
-  EXPECT_NE(render(Simulator(scene), 5), frames[5]);
-  EXPECT_TRUE(forwards.calibration().effects.empty());
 }
 
 /// Solves A x = b by elimination with partial pivoting.
@@ -267,32 +223,24 @@ TEST(WireNetwork, WithoutResistanceChangesNothing) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(readings[i], before[i], 1e-12);
 }
 
-TEST(WireNetwork, OfASceneReadsThroughItsOhms) {
+/// 50 of 200 counts are 40 kΩ, and two of them are a row of 20 kΩ behind 30 Ω.
+TEST(WireNetwork, OfASceneReadsThroughItsOhmsAndMayLieBeforeTheTare) {
   Scene scene = sensels(2, 2);
   scene.skin.counts_per_newton = 100;
   scene.skin.full_scale_counts = 200;
   scene.load = DirectionSweep{1, 1, 0, {0.5}};
-  scene.sensor.wires = Wires{2, 2, 30, 0, 1e4};
-  FrameBuffer raw(SenselType::f32, 2, 2);
-  ForceField truth(1, 1);
-  const Simulator simulator(scene);
-  simulator.render(0, raw, truth);
-  // 50 of 200 counts are 40 kΩ, and two of them are a row of 20 kΩ behind 30 Ω.
-  for (const float reading : raw.readings<float>()) EXPECT_NEAR(reading, 50 / 1.0015, 1e-4);
-  EXPECT_NEAR(simulator.calibration().effects.wires->row_per_count, 30 / (1e4 * 200), 1e-12);
-}
-
-TEST(WireNetwork, OfASceneMayLieBeforeTheTare) {
-  Scene scene = sensels(2, 2);
-  scene.skin.counts_per_newton = 100;
-  scene.skin.full_scale_counts = 200;
-  scene.load = DirectionSweep{1, 1, 0, {0.5}};
-  scene.sensor.tare_counts = 60;
   scene.sensor.wires = Wires{2, 2, 30, 0, 1e4, TareOrigin::offset};
   FrameBuffer raw(SenselType::f32, 2, 2);
   ForceField truth(1, 1);
-  Simulator(scene).render(0, raw, truth);
-  for (const float reading : raw.readings<float>()) EXPECT_NEAR(reading, 60 + 50 / 1.0015, 1e-4);
+  for (const float tare : {0.0F, 60.0F}) {
+    scene.sensor.tare_counts = tare;
+    const Simulator simulator(scene);
+    simulator.render(0, raw, truth);
+    for (const float reading : raw.readings<float>()) {
+      EXPECT_NEAR(reading, tare + 50 / 1.0015, 1e-4);
+    }
+    EXPECT_NEAR(simulator.calibration().effects.wires->row_per_count, 30 / (1e4 * 200), 1e-12);
+  }
 }
 
 /// Every stage of [sensor] and [surface], composed here in the documented order.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace pillarfield {
@@ -138,47 +139,45 @@ TEST(Sensor, DeadSenselsHaveTheirShareAndReadZero) {
   EXPECT_EQ(std::ranges::max(reading_of(80, scene_with(model)).readings<float>()), 0);
 }
 
-TEST(Sensor, TheDeadZoneSwallowsItsCounts) {
-  SensorModel model;
-  model.dead_zone_counts = 2.5;
-  EXPECT_EQ(reading_of(10, scene_with(model)).readings<float>()[0], 7.5F);
-  EXPECT_EQ(reading_of(2.5, scene_with(model)).readings<float>()[0], 0);
-  EXPECT_EQ(reading_of(1, scene_with(model)).readings<float>()[0], 0);
+/// The first sensel's reading of V, whatever its type.
+double first_reading(double v, const Scene& scene) {
+  const FrameBuffer raw = reading_of(v, scene);
+  switch (raw.view().type) {
+    case SenselType::u8:
+      return raw.readings<std::uint8_t>()[0];
+    case SenselType::u16:
+      return raw.readings<std::uint16_t>()[0];
+    case SenselType::f32:
+      break;
+  }
+  return raw.readings<float>()[0];
 }
 
-TEST(Sensor, APowerLawBendsAfterTheDeadZone) {
-  SensorModel model;
-  model.dead_zone_counts = 2;
-  Scene scene = scene_with(model);
-  scene.skin.power_law = {1.25, 64};
-  EXPECT_FLOAT_EQ(reading_of(66, scene).readings<float>()[0], 64);
-  const float read = reading_of(18, scene).readings<float>()[0];
-  EXPECT_NEAR(64 * std::pow(read / 64, 1.25), 16, 1e-4);
-  EXPECT_EQ(reading_of(1, scene).readings<float>()[0], 0);
-}
-
-TEST(Sensor, AConverterRoundsAndClips) {
-  SensorModel model;
-  model.adc_bits = 8;
-  const Scene scene = scene_with(model);
-  const auto read = [&](double v) { return int(reading_of(v, scene).readings<std::uint8_t>()[0]); };
-  EXPECT_EQ(read(0), 0);
-  EXPECT_EQ(read(0.49), 0);
-  EXPECT_EQ(read(0.51), 1);
-  EXPECT_EQ(read(99.5), 100);
-  EXPECT_EQ(read(254.6), 255);
-  EXPECT_EQ(read(1e9), 255);
-}
-
-TEST(Sensor, MoreThanEightBitsAreSixteen) {
-  SensorModel model;
-  model.adc_bits = 12;
-  const Scene scene = scene_with(model);
-  EXPECT_EQ(Sensor(scene).sensel_type(), SenselType::u16);
-  EXPECT_EQ(reading_of(1e9, scene).readings<std::uint16_t>()[kSize], 4095);
-  EXPECT_EQ(reading_of(1234.4, scene).readings<std::uint16_t>()[kSize], 1234);
-  model.adc_bits = 1;
-  EXPECT_EQ(reading_of(7, scene_with(model)).readings<std::uint8_t>()[0], 1);
+TEST(Sensor, ReadsOneForceThroughDeadZonePowerLawAndConverter) {
+  const PowerLaw law = {1.25, 64};
+  const struct {
+    double dead_zone_counts;
+    std::optional<PowerLaw> power_law;
+    std::optional<int> adc_bits;
+    double v;
+    double expected;
+  } cases[] = {
+      {2.5, {}, {}, 10, 7.5},    {2.5, {}, {}, 2.5, 0},
+      {2.5, {}, {}, 1, 0},       {2, law, {}, 66, 64},
+      {2, law, {}, 1, 0},        {2, law, {}, 18, 64 * std::pow(16.0 / 64, 1 / 1.25)},
+      {0, {}, 8, 0.49, 0},       {0, {}, 8, 0.51, 1},
+      {0, {}, 8, 99.5, 100},     {0, {}, 8, 254.6, 255},
+      {0, {}, 8, 1e9, 255},      {0, {}, 12, 1e9, 4095},
+      {0, {}, 12, 1234.4, 1234}, {0, {}, 1, 7, 1},
+  };
+  for (const auto& each : cases) {
+    SensorModel model;
+    model.dead_zone_counts = each.dead_zone_counts;
+    model.adc_bits = each.adc_bits;
+    Scene scene = scene_with(model);
+    scene.skin.power_law = each.power_law;
+    EXPECT_NEAR(first_reading(each.v, scene), each.expected, 1e-5) << each.v;
+  }
 }
 
 TEST(Sensor, WithoutAConverterOnlyAFullScaleClips) {

@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -94,22 +93,6 @@ TEST(Simulator, OrderAndOldContentsDoNotMatter) {
   }
 }
 
-TEST(Simulator, SeveralThreadsMakeTheSameFrames) {
-  const Simulator simulator(noisy_scene(4));
-  std::vector<Rendered> frames;
-  frames.reserve(16);
-  for (int i = 0; i < 16; ++i) frames.emplace_back(simulator);
-  const auto render_part = [&](std::size_t part) {
-    for (std::size_t i = part; i < frames.size(); i += 2) {
-      simulator.render(i, frames[i].raw, frames[i].truth);
-    }
-  };
-  std::thread other(render_part, 1);
-  render_part(0);
-  other.join();
-  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(frames[i], render(simulator, i)) << i;
-}
-
 /// Readings and truth of frames rendered together.
 std::vector<Rendered> render_all(const Simulator& simulator, std::uint64_t first,
                                  std::uint64_t count, unsigned threads) {
@@ -142,24 +125,20 @@ void expect_same_frames(const Scene& scene, std::uint64_t frames) {
   }
 }
 
-TEST(Simulator, ThreadsAndSplitsMakeTheSameFrames) { expect_same_frames(noisy_scene(4), 23); }
-
-TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfASensorWithAMemory) {
-  Scene scene = noisy_scene(4);
-  scene.sensor.hysteresis = 0.1;
-  scene.sensor.creep_per_decade = 0.05;
-  scene.sensor.leak_inside = 0.03;
-  expect_same_frames(scene, 11);
-}
-
-TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfAnIndenter) {
-  Scene scene = noisy_scene(4);
-  scene.load = std::vector<ClosedFormContact>();
+TEST(Simulator, ThreadsAndSplitsMakeTheSameFrames) {
+  expect_same_frames(noisy_scene(4), 23);
+  Scene with_memory = noisy_scene(4);
+  with_memory.sensor.hysteresis = 0.1;
+  with_memory.sensor.creep_per_decade = 0.05;
+  with_memory.sensor.leak_inside = 0.03;
+  expect_same_frames(with_memory, 11);
+  Scene pressed = noisy_scene(4);
+  pressed.load = std::vector<ClosedFormContact>();
   Indenter ball;
   ball.path = {{0, -1, 0, 0, 2}, {0.05, 1, 0, 10, 3}};
-  scene.indenters = {ball, ball};
-  scene.indenters.back().path = {{0, 5, 5, 0, 2}, {0.05, 4, 5, 0, 1}};
-  expect_same_frames(scene, 6);
+  pressed.indenters = {ball, ball};
+  pressed.indenters.back().path = {{0, 5, 5, 0, 2}, {0.05, 4, 5, 0, 1}};
+  expect_same_frames(pressed, 6);
 }
 
 TEST(Simulator, WhatTakingAFrameThrowsEndsTheRendering) {

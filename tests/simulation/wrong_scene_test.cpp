@@ -192,17 +192,15 @@ TEST(WrongScene, Contacts) {
 }
 
 TEST(WrongScene, TextThatIsNotToml) {
-  for (const char* text : {"[skin", "a = ", "a = 1\na = 2", "\xff\xfe", "x = [1, 2", "\"",
-                           "a = 99999999999999999999999", "[a]\n[a]"}) {
-    const std::string message = message_of(text);
+  for (const std::string& text :
+       {std::string("[skin"), std::string("a = "), std::string("a = 1\na = 2"),
+        std::string("\xff\xfe"), std::string("x = [1, 2"), std::string("\""),
+        std::string("a = 99999999999999999999999"), std::string("[a]\n[a]"),
+        "a = " + std::string(100000, '[')}) {
+    const std::string message = message_of(text).substr(0, 200);
     EXPECT_EQ(message.find("s.toml:"), 0U) << message;
     EXPECT_NE(message.find("is not TOML"), std::string::npos) << message;
   }
-}
-
-TEST(WrongScene, DeepNestingIsRefused) {
-  const std::string message = message_of("a = " + std::string(100000, '['));
-  EXPECT_NE(message.find("is not TOML"), std::string::npos) << message.substr(0, 200);
 }
 
 std::string repeated(std::size_t times, const std::string& part) {

@@ -111,11 +111,5 @@ TEST(Skin, SenselTypesHaveSizesAndNames) {
   EXPECT_STREQ(name_of(SenselType::f32), "float32");
 }
 
-TEST(Error, IsOneLineOfThreeParts) {
-  EXPECT_STREQ(Error("a.toml:3", "key 'x' is\nunknown", "allowed: y").what(),
-               "a.toml:3: key 'x' is unknown; allowed: y");
-  EXPECT_STREQ(Error("", "it failed").what(), "it failed");
-}
-
 }  // namespace
 }  // namespace pillarfield

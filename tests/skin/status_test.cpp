@@ -55,22 +55,6 @@ Force force_from(double theta, double phi) {
           double{static_cast<float>(std::cos(theta))}};
 }
 
-TEST(IdealReadings, AreThoseOfThePapersEquation) {
-  for (int row = 0; row < 22; ++row) {
-    const double theta = 0.07 * row;
-    for (int col = 0; col < 55; ++col) {
-      const double phi = -3 + 0.11 * col;
-      const auto v = ideal_readings(force_from(theta, phi), 300);
-      const double readings[] = {v.v1, v.v2, v.v3, v.v4};
-      for (int n = 1; n <= 4; ++n) {
-        const double angle = std::numbers::pi / 4 * (2 * n - 1) - phi;
-        const double expected = 300 * (std::cos(theta) - std::sin(theta) * std::cos(angle));
-        EXPECT_NEAR(readings[n - 1], std::max(0.0, expected), 1e-3) << theta << " " << phi;
-      }
-    }
-  }
-}
-
 TEST(IdealReadings, AForceOnABoundaryHasTheFewerReadings) {
   using std::numbers::pi;
   // Along a diagonal in the plane one sensel reads, along an axis two adjacent ones.

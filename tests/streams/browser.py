@@ -10,8 +10,6 @@ PROGRAM = shutil.which("chromium")
 
 
 class Browser:
-    """A Chromium for which foreign.example is this computer."""
-
     def __init__(self):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_browser, self.output = os.pipe()
@@ -19,7 +17,6 @@ class Browser:
         self.process = subprocess.Popen(
             ["sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", PROGRAM,
              "--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
-             "--host-resolver-rules=MAP foreign.example 127.0.0.1",
              f"--user-data-dir={self.folder.name}", "--window-size=1280,900"],
             pass_fds=(to_browser, from_browser), stderr=subprocess.DEVNULL)
         os.close(to_browser)

@@ -116,12 +116,6 @@ position_mm = [{10 * (i % 5) - 20}, {10 * (i // 5) - 15}]
         # Each refusal is known one datagram later.
         self.assertLessEqual(abs(result["dropped"] - sequence), 1)
 
-    def test_wrong_addresses(self):
-        for target in ("udp:127.0.0.1", "udp:127.0.0.1:0", "udp:127.0.0.1:65536", "udp:x.y:80",
-                       "udp:127.0.0.1:9x", "udp:", "udp::"):
-            with self.assertRaisesRegex(AssertionError, "sink_driver: udp:"):
-                self.start("--to", target)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,9 +1,7 @@
 """The page of the sink web in a real Chromium, where one is installed."""
 
-import http.server
 import re
 import sys
-import threading
 import time
 import unittest
 
@@ -11,15 +9,6 @@ import h5py
 import numpy as np
 from browser import PROGRAM, Browser
 from sink_process import SinkTest
-
-
-class OtherPages(http.server.BaseHTTPRequestHandler):
-    def do_GET(self):
-        self.send_response(200)
-        self.end_headers()
-
-    def log_message(self, *_):
-        pass
 
 
 class PageTest(SinkTest):
@@ -82,21 +71,6 @@ class PageTest(SinkTest):
         self.assertEqual(reds, sorted(reds))
         self.assertGreater(len(set(reds)), 20)
         self.assertEqual(page.value("performance.getEntriesByType('resource').length"), 0)
-
-    def test_a_foreign_page_is_refused(self):
-        other = http.server.ThreadingHTTPServer(("127.0.0.1", 0), OtherPages)
-        self.addCleanup(other.server_close)
-        threading.Thread(target=other.serve_forever, daemon=True).start()
-        self.addCleanup(other.shutdown)
-        connect = f"""new Promise(done => {{
-          const socket = new WebSocket("{self.url.replace("http", "ws")}", "pillarfield.page.v2");
-          socket.onopen = () => done("open");
-          socket.onerror = () => done("refused");
-        }})"""
-        for host, outcome in (("foreign.example", "refused"), ("127.0.0.1", "open")):
-            page = self.browser.open(f"http://{host}:{other.server_port}/")
-            self.wait(page, f"location.hostname === '{host}' && document.readyState === 'complete'")
-            self.assertEqual(page.value(connect), outcome)
 
 
 if __name__ == "__main__":

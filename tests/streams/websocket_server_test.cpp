@@ -243,6 +243,57 @@ TEST_F(WebSocketServerTest, ClientsThatFloodWithPingsAreDisconnected) {
   EXPECT_EQ(statistics().refused, 1u);
 }
 
+std::string repeated(int times, const std::string& bytes) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += bytes;
+  return all;
+}
+
+/// What clients write after they have greeted, or instead; they are disconnected, and another one
+/// loses nothing.
+TEST_F(WebSocketServerTest, HostileClientsAreDisconnected) {
+  serve({.handshake_s = 0.5});
+  RawClient honest(server_->port());
+  honest.greet();
+  subscribe(honest);
+  const std::string no_mask(4, '\0');
+  const struct {
+    const char* name;
+    bool greets;
+    std::string bytes;
+  } attacks[] = {
+      {"a message of 70,000 bytes", true,
+       "\x81\xff" + std::string("\0\0\0\0\0\x01\x11\x70", 8) + no_mask + std::string(70000, 'x')},
+      {"many texts that are no JSON", true, repeated(40, "\x81\x81" + no_mask + "{")},
+      {"many empty messages", true, repeated(40, "\x81\x80" + no_mask)},
+      {"many binary messages", true, repeated(40, "\x82\x81" + no_mask + "x")},
+      {"no frame", true, std::string(100, '\xff')},
+      {"a frame without a mask", true, "\x81\x05hello"},
+      {"a length beyond all", true, "\x81\xff" + std::string(8, '\xff') + no_mask},
+      {"a text that is not UTF-8", true, "\x81\x82" + no_mask + "\xff\xfe"},
+      {"a request of many lines", false, "GET / HTTP/1.1\r\n" + repeated(5000, "X: y\r\n")},
+      {"a request that never ends", false, "GET / HTTP/1.1\r\n"},
+      {"a request for no WebSocket", false, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"},
+  };
+  for (const auto& attack : attacks) {
+    RawClient client(server_->port());
+    if (attack.greets) client.greet();
+    client.write(attack.bytes);
+    EXPECT_TRUE(client.is_closed()) << attack.name;
+  }
+  for (int i = 0; i < 20; ++i) {  // They die amid a message.
+    RawClient client(server_->port());
+    client.greet();
+    client.write(std::string("\x81\xfe\x10\x00mask{", 9));
+  }
+  for (int i = 0; i < 10; ++i) {
+    send(1000);
+    EXPECT_EQ(honest.message().value_or("").size(), 1000 + kMessageDataBytes);
+  }
+  EXPECT_EQ(statistics().dropped, 0u);
+  EXPECT_GT(statistics().refused, 5u);
+}
+
 TEST_F(WebSocketServerTest, DestroyedAtAnyMoment) {
   for (int i = 0; i < 20; ++i) {
     serve({});

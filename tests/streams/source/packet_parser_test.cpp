@@ -111,18 +111,6 @@ TEST(PacketParser, ReadingsMayLookLikeAMagic) {
   EXPECT_EQ(received, 10);
 }
 
-TEST(PacketParser, AcceptsOnlyTheShapeOfTheFirstPacket) {
-  constexpr FrameShape kOther = {SenselType::u8, 18, 15};
-  std::mt19937 random(1);
-  const std::string bytes = frame_packet(kParsed, 1).bytes() + frame_packet(kOther, 2).bytes() +
-                            frame_packet(kParsed, 3).bytes();
-  std::vector<std::uint64_t> received;
-  const std::uint64_t invalid = parse(
-      bytes, random, [&](const Packet& packet) { received.push_back(packet.header.sequence); });
-  EXPECT_EQ(received, (std::vector<std::uint64_t>{1, 3}));
-  EXPECT_EQ(invalid, 1);
-}
-
 TEST(PacketParser, ReturnsBetweenChecksums) {
   constexpr FrameShape kLarge = {SenselType::f32, 256, 256};
   constexpr std::size_t kHeaders = 400;

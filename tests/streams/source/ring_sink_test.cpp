@@ -46,52 +46,10 @@ struct Solved {
   SolvedFrame frame;
 };
 
-template <class T>
-std::vector<T> values_at(const std::byte* place, std::size_t count) {
-  std::vector<T> values(count);
-  std::memcpy(values.data(), place, count * sizeof(T));
-  return values;
-}
-
 PillarfieldResultSlot head_of(const std::byte* slot) {
   PillarfieldResultSlot head;
   std::memcpy(&head, slot, sizeof head);
   return head;
-}
-
-TEST(RingSink, PublishesPlanesTimesAndTotal) {
-  const auto sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
-  EXPECT_EQ(sink->name(), "shm:" + results_name());
-  RingReader reader(results_name(), RingReader::Content::results);
-  for (std::uint64_t sequence = 40; sequence < 60; ++sequence) {
-    Solved solved(sequence);
-    const SenselBlock missing = {0, 1, 0, 10};
-    if (sequence % 2 == 1) solved.frame.missing = {&missing, 1};
-    sink->append(solved.frame);
-    const std::byte* const slot = reader.read(300s);
-    ASSERT_NE(slot, nullptr);
-    const PillarfieldResultSlot head = head_of(slot);
-    EXPECT_EQ(head.sequence, sequence);
-    EXPECT_EQ(head.time_s, solved.frame.time_s);
-    EXPECT_EQ(head.arrived_ns, static_cast<std::uint64_t>(solved.frame.arrived.count()));
-    EXPECT_GE(head.published_ns, head.arrived_ns);
-    const auto real = std::chrono::system_clock::now().time_since_epoch();
-    EXPECT_NEAR(std::chrono::duration<double>(real).count(),
-                1e-9 * static_cast<double>(head.arrived_unix_ns), 1);
-    EXPECT_EQ(head.missing, sequence % 2);
-    EXPECT_EQ(head.contacts, 0);
-    EXPECT_EQ(head.total.normal_n,
-              std::accumulate(solved.field.normal.begin(), solved.field.normal.end(), 0.0));
-    EXPECT_TRUE(std::isnan(head.total.friction));
-    const std::byte* const planes = slot + sizeof head;
-    EXPECT_EQ(values_at<float>(planes, 15), solved.field.shear_x);
-    EXPECT_EQ(values_at<float>(planes + 60, 15), solved.field.shear_y);
-    EXPECT_EQ(values_at<float>(planes + 120, 15), solved.field.normal);
-    EXPECT_EQ(values_at<std::uint8_t>(planes + 180, 15), solved.field.status);
-  }
-  EXPECT_EQ(sink->statistics().frames, 20);
-  sink->finish();
-  EXPECT_FALSE(std::filesystem::exists("/dev/shm/" + results_name()));
 }
 
 TEST(RingSink, KeepsTheStrongestContacts) {
@@ -109,9 +67,16 @@ TEST(RingSink, KeepsTheStrongestContacts) {
   contacts.total.normal_n = 77;
   Solved solved(1);
   solved.frame.contacts = &contacts;
+  const SenselBlock missing = {0, 1, 0, 10};
+  solved.frame.missing = {&missing, 1};
   sink->append(solved.frame);
   RingReader reader(results_name(), RingReader::Content::results);
   const PillarfieldResultSlot head = head_of(reader.read(300s));
+  EXPECT_EQ(head.missing, 1);
+  EXPECT_GE(head.published_ns, head.arrived_ns);
+  const auto real = std::chrono::system_clock::now().time_since_epoch();
+  EXPECT_NEAR(std::chrono::duration<double>(real).count(),
+              1e-9 * static_cast<double>(head.arrived_unix_ns), 60);
   EXPECT_EQ(head.total.normal_n, 77);
   EXPECT_EQ(head.contacts_found, 100);
   ASSERT_EQ(head.contacts, PILLARFIELD_MAX_CONTACTS);
@@ -220,6 +185,7 @@ TEST(ResultStream, GivesWhatWasWritten) {
 TEST(ResultStream, WithoutPillarsHasNoShear) {
   LiveSinkInfo info = info_of_skin(3, 5);
   info.skin.layout = SkinLayout::sensels;
+  info.skin.sensel_pitch_mm = {7.625, 5.08};
   const auto sink = create_live_sink("shm:" + results_name(), info);
   Solved solved(1);
   solved.frame.forces.shear_x = solved.frame.forces.shear_y = {};
@@ -233,20 +199,11 @@ TEST(ResultStream, WithoutPillarsHasNoShear) {
   StreamedResult result;
   ASSERT_TRUE(stream->next(result, 300s));
   EXPECT_FALSE(stream->skin().has_pillars());
+  EXPECT_EQ(stream->skin().sensel_pitch_mm, Pitch(7.625, 5.08));
   EXPECT_TRUE(result.forces.shear_x.empty());
   EXPECT_EQ(result.forces.normal, solved.field.normal);
   EXPECT_FALSE(result.contacts->total.has_shear);
   EXPECT_EQ(result.contacts->total.shear_x_n, 0);
-}
-
-TEST(ResultStream, HasThePitchOfRowsAndThatOfColumns) {
-  LiveSinkInfo info = info_of_skin(6, 10);
-  info.skin.layout = SkinLayout::sensels;
-  info.skin.sensel_pitch_mm = {7.625, 5.08};
-  const auto sink = create_live_sink("shm:" + results_name(), info);
-  const auto stream = open_result_stream("shm:" + results_name(), {});
-  ASSERT_NE(stream, nullptr);
-  EXPECT_EQ(stream->skin().sensel_pitch_mm, Pitch(7.625, 5.08));
 }
 
 TEST(ResultStream, FollowsANewRingOfTheSameLayoutAlone) {
@@ -304,14 +261,20 @@ TEST(RingSink, StopsAtAFrameOfAnotherSize) {
 }
 
 TEST(RingSink, StopsWhenAnotherProgramShortensItsRing) {
-  const auto sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
-  ASSERT_EQ(truncate(("/dev/shm/" + results_name()).c_str(), 0), 0);
-  for (std::uint64_t i = 0; i < 3; ++i) sink->append(Solved(i).frame);
-  EXPECT_EQ(sink->statistics().failure, "another program shortened the shared memory");
+  for (const off_t bytes : {0, 100, 4096}) {
+    const auto sink = create_live_sink("shm:" + results_name(), info_of_skin(6, 10));
+    ASSERT_EQ(truncate(("/dev/shm/" + results_name()).c_str(), bytes), 0);
+    for (std::uint64_t i = 0; i < 5; ++i) sink->append(Solved(i).frame);
+    EXPECT_EQ(sink->statistics().failure, "another program shortened the shared memory") << bytes;
+  }
 }
 
-TEST(LiveSink, AKindWithoutItsTargetIsNone) {
-  for (const char* target : {"shm", "udp", "shm:", "udp:"}) {
+TEST(LiveSink, RefusesWhatIsNoTarget) {
+  for (const char* target :
+       {"", "shm", "udp", "shm:", "udp:", "foo:bar", "a.txt", "a.mcap/", "/nowhere/at/all.mcap",
+        "udp:127.0.0.1", "udp:127.0.0.1:0", "udp:127.0.0.1:65536", "udp:127.0.0.1:9x",
+        "udp::", "foxglove:127.0.0.1", "foxglove:x:1", "foxglove:99999", "foxglove:1.2.3:5",
+        "foxglove:-1"}) {
     EXPECT_THROW((void)create_live_sink(target, info_of_skin(6, 10)), Error) << target;
   }
 }
