@@ -75,21 +75,25 @@ SenselJudge::SenselJudge(std::vector<SenselEvidence> sensels, std::uint32_t fram
   std::vector<double> varying_levels;
   std::vector<double> noises;
   std::size_t varying = 0;
+  std::size_t present = 0;
   for (std::size_t i = 0; i < sensels_.size(); ++i) {
     const SenselEvidence& each = sensels_[i];
+    const bool is_absent = each.is_constant() && absent_ && each.read.lowest == *absent_;
+    present += is_absent || each.read.readings == 0 ? 0U : 1U;
     if (!each.is_constant()) {
       ++varying;
       lowest_ = std::min<double>(lowest_, each.read.lowest);
       highest_ = std::max<double>(highest_, each.read.highest);
     }
     const bool is_excluded = !mask.empty() && mask[i] != 1;
-    if (is_excluded || lacks_readings(each.read, frames_) || is_saturated(each.read)) continue;
-    if (each.is_constant() && absent_ && each.read.lowest == *absent_) continue;
+    if (is_excluded || is_absent || lacks_readings(each.read, frames_)) continue;
+    if (is_saturated(each.read)) continue;
     if (!each.is_constant()) varying_levels.push_back(each.level);
     levels.push_back(each.level);
     noises.push_back(each.noise);
   }
-  vary_share_ = static_cast<double>(varying) / static_cast<double>(sensels_.size());
+  vary_share_ =
+      static_cast<double>(varying) / static_cast<double>(std::max<std::size_t>(1, present));
   typical_.count = levels.size();
   if (levels.empty()) return;
   typical_.level = median(levels);

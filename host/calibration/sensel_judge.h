@@ -16,7 +16,7 @@ namespace pillarfield {
 // in, verdict out, with one set of constants.
 
 /// Multiple of the typical noise above which a sensel is noisy.
-inline constexpr double kNoisy = 8;
+inline constexpr double kNoisy = 5;
 
 /// Evidence of one sensel from raw readings, counts.
 struct SenselEvidence {
@@ -69,7 +69,7 @@ class SenselJudge {
   std::vector<SenselEvidence> sensels_;
   std::uint32_t frames_;
   TypicalSensel typical_;
-  double vary_share_ = 0;                                      ///< share of the sensels that vary
+  double vary_share_ = 0;  ///< share of the present sensels that vary
   double lowest_ = std::numeric_limits<double>::infinity();    ///< of the sensels that vary
   double highest_ = -std::numeric_limits<double>::infinity();  ///< of these
   std::optional<float> absent_;

@@ -23,21 +23,6 @@ constexpr double kPressed = 4;
 
 }  // namespace
 
-Neighbours::Neighbours(const Skin& skin, std::size_t sensel) {
-  constexpr std::array<std::array<int, 2>, 8> kOffsets = {
-      {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {-1, 1}, {1, -1}, {1, 1}}};
-  const auto row = static_cast<int>(sensel / skin.cols);
-  const auto col = static_cast<int>(sensel % skin.cols);
-  for (const auto& [down, right] : kOffsets) {
-    const int r = row + down;
-    const int c = col + right;
-    if (r < 0 || c < 0 || r >= static_cast<int>(skin.rows) || c >= static_cast<int>(skin.cols)) {
-      continue;
-    }
-    all_.at(count_++) = static_cast<std::size_t>(r) * skin.cols + static_cast<std::size_t>(c);
-    if (down == 0 || right == 0) edges_ = count_;
-  }
-}
 std::vector<SenselFinding> unresponsive_sensels(const WeightContacts& all,
                                                 const Calibration& planes) {
   const std::size_t count = all.skin.sensels();

@@ -2,12 +2,12 @@
 
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "calibration/neighbours.h"
 #include "calibration/weight_fit.h"
 #include "pillarfield/calibration.h"
 #include "pillarfield/sensel_finding.h"
@@ -15,20 +15,6 @@
 #include "pillarfield/weight_calibration.h"
 
 namespace pillarfield {
-
-/// What lies beside a sensel: up to eight sensels, those at its edges first.
-class Neighbours {
- public:
-  Neighbours(const Skin& skin, std::size_t sensel);
-
-  [[nodiscard]] std::span<const std::size_t> all() const { return {all_.data(), count_}; }
-  [[nodiscard]] std::span<const std::size_t> edges() const { return {all_.data(), edges_}; }
-
- private:
-  std::array<std::size_t, 8> all_{};
-  std::size_t count_ = 0;
-  std::size_t edges_ = 0;
-};
 
 /// The value of Calibration::mask.
 [[nodiscard]] inline std::uint8_t state_of(const Calibration& planes, std::size_t sensel) {

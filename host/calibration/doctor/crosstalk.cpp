@@ -1,8 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
@@ -18,107 +19,88 @@ constexpr double kLeastSignificance = 4;
 constexpr std::size_t kLeastGhostFrames = 20;
 /// A sensel is loaded from this share of a frame's largest signal; ghosts are below.
 constexpr double kContactShare = 0.25;
+constexpr double kLeastPeak = 0.3;  ///< of a contact, in the usual one
+constexpr double kPeakNoise = 20;   ///< the same in the noise
 
-/// Loaded lines from `first` to `last`, in the order in which they lie.
-struct ContactExtent {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  void include(std::size_t line, bool is_first) {
-    first = is_first ? line : std::min(first, line);
-    last = is_first ? line : std::max(last, line);
+/// A mean over sensels.
+struct SignalMean {
+  double sum = 0;
+  double count = 0;
+
+  void add(double signal) {
+    sum += signal;
+    ++count;
   }
-  /// Whether a line is farther from the contact than the contact is wide.
+  [[nodiscard]] double mean() const { return sum / count; }
+};
+
+/// The rows or columns of a frame: the part that is loaded, and the signals far from it.
+struct ContactLines {
+  explicit ContactLines(std::size_t lines) : first(lines), peaks(lines), ghosts(lines) {}
+
+  std::size_t first;
+  std::size_t last = 0;
+  std::vector<double> peaks;       ///< largest signals of lines
+  std::vector<SignalMean> ghosts;  ///< of lines, far from the contact
+
+  void include(std::size_t line) {
+    first = std::min(first, line);
+    last = std::max(last, line);
+  }
+  /// True if a line is farther from the contact than the contact is wide.
   [[nodiscard]] bool is_far(std::size_t line) const {
     const std::size_t margin = std::max<std::size_t>(last - first + 1, 3);
     return line + margin < first || line > last + margin;
   }
-};
-
-class CrosstalkMeter {
- public:
-  explicit CrosstalkMeter(const Examination& seen) : seen_(seen) {}
-
-  void add(std::uint32_t frame) {
-    signals_ = std::as_const(seen_.kept).frame(frame);
-    if (!find_contact()) return;
-    const std::optional<double> common = common_signal();
-    if (!common) return;
-    add_ghosts(LineAxis::rows, *common);
-    add_ghosts(LineAxis::columns, *common);
-  }
-
-  [[nodiscard]] std::vector<double>& ratios(LineAxis axis) {
-    return axis == LineAxis::rows ? of_rows_ : of_columns_;
-  }
-
- private:
-  bool find_contact() {
-    float peak = 0;
-    for (std::size_t i = 0; i < signals_.size(); ++i) {
-      if (seen_.good[i] != 0) peak = std::max(peak, signals_[i]);
-    }
-    if (peak < 0.3 * seen_.contact_counts || peak < 20 * seen_.typical_noise) return false;
-    bool is_first = true;
-    for (std::size_t row = 0; row < seen_.rows; ++row) {
-      for (std::size_t col = 0; col < seen_.cols; ++col) {
-        const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
-        if (seen_.good[i] == 0 || signals_[i] < kContactShare * peak) continue;
-        rows_.include(row, is_first);
-        cols_.include(col, is_first);
-        is_first = false;
-      }
-    }
-    return true;
-  }
-
-  /// Mean of the sensels far from the contact's rows and columns.
-  [[nodiscard]] std::optional<double> common_signal() {
-    values_.clear();
-    for (std::size_t row = 0; row < seen_.rows; ++row) {
-      if (!rows_.is_far(row)) continue;
-      for (std::size_t col = 0; col < seen_.cols; ++col) {
-        if (cols_.is_far(col) && seen_.good[seen_.sensel(LineAxis::rows, row, col)] != 0) {
-          values_.push_back(signals_[seen_.sensel(LineAxis::rows, row, col)]);
-        }
-      }
-    }
-    if (values_.size() < 8) return std::nullopt;
-    return std::accumulate(values_.begin(), values_.end(), 0.0) /
-           static_cast<double>(values_.size());
-  }
-
-  void add_ghosts(LineAxis axis, double common) {
-    const bool in_rows = axis == LineAxis::rows;
-    const ContactExtent& lines = in_rows ? rows_ : cols_;
-    const ContactExtent& along = in_rows ? cols_ : rows_;
+  /// Ghosts relative to the peaks of their lines; unset: none is far enough.
+  [[nodiscard]] std::optional<double> ratio(double common) const {
     double products = 0;
     double squares = 0;
-    for (std::size_t line = lines.first; line <= lines.last; ++line) {
-      values_.clear();
-      double peak = 0;
-      for (std::size_t place = 0; place < (in_rows ? seen_.cols : seen_.rows); ++place) {
-        const std::size_t i = in_rows ? seen_.sensel(LineAxis::rows, line, place)
-                                      : seen_.sensel(LineAxis::rows, place, line);
-        if (seen_.good[i] == 0) continue;
-        peak = std::max<double>(peak, signals_[i]);
-        if (along.is_far(place)) values_.push_back(signals_[i] - static_cast<float>(common));
-      }
-      if (values_.size() < 2) continue;
-      const double sum = std::accumulate(values_.begin(), values_.end(), 0.0);
-      products += peak * sum / static_cast<double>(values_.size());
-      squares += peak * peak;
+    for (std::size_t line = first; line <= last; ++line) {
+      if (ghosts[line].count < 2) continue;
+      products += peaks[line] * (ghosts[line].mean() - common);
+      squares += peaks[line] * peaks[line];
     }
-    if (squares > 0) ratios(axis).push_back(products / squares);
+    return squares > 0 ? std::optional(products / squares) : std::nullopt;
   }
-
-  const Examination& seen_;
-  std::span<const float> signals_;
-  ContactExtent rows_;
-  ContactExtent cols_;
-  std::vector<float> values_;
-  std::vector<double> of_rows_;
-  std::vector<double> of_columns_;
 };
+
+using GhostRatios = std::array<std::vector<double>, 2>;  ///< along rows, along columns
+
+/// Adds the ghosts of a frame.
+void add_ghosts(const Examination& seen, std::uint32_t frame, GhostRatios& ratios) {
+  const auto signals = std::as_const(seen.kept).frame(frame);
+  ContactLines rows(seen.rows);
+  ContactLines cols(seen.cols);
+  double peak = 0;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (seen.good[i] != 0) peak = std::max<double>(peak, signals[i]);
+  }
+  if (peak < std::max(kLeastPeak * seen.contact_counts, kPeakNoise * seen.typical_noise)) return;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (seen.good[i] == 0) continue;
+    const auto [row, col] = seen.place(i);
+    rows.peaks[row] = std::max<double>(rows.peaks[row], signals[i]);
+    cols.peaks[col] = std::max<double>(cols.peaks[col], signals[i]);
+    if (signals[i] < kContactShare * peak) continue;
+    rows.include(row);
+    cols.include(col);
+  }
+  SignalMean common;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (seen.good[i] == 0) continue;
+    const auto [row, col] = seen.place(i);
+    if (rows.is_far(row) && cols.is_far(col)) common.add(signals[i]);
+    if (cols.is_far(col)) rows.ghosts[row].add(signals[i]);
+    if (rows.is_far(row)) cols.ghosts[col].add(signals[i]);
+  }
+  if (common.count < 8) return;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (const auto ratio = (axis == 0 ? rows : cols).ratio(common.mean())) {
+      ratios.at(axis).push_back(*ratio);
+    }
+  }
+}
 
 void judge_crosstalk(std::vector<double>& ratios, ArrayFault fault, std::optional<double>& percent,
                      Diagnosis& found) {
@@ -139,13 +121,11 @@ void judge_crosstalk(std::vector<double>& ratios, ArrayFault fault, std::optiona
 }  // namespace
 
 void find_crosstalk(Examination& seen, Diagnosis& found) {
-  if (seen.is_out_of_order) return;
-  CrosstalkMeter meter(seen);
-  for (const std::uint32_t frame : seen.contacts) meter.add(frame);
-  judge_crosstalk(meter.ratios(LineAxis::rows), ArrayFault::row_crosstalk,
-                  found.row_crosstalk_percent, found);
-  judge_crosstalk(meter.ratios(LineAxis::columns), ArrayFault::column_crosstalk,
-                  found.column_crosstalk_percent, found);
+  if (seen.is_out_of_order || !seen.was_swept) return;
+  GhostRatios ratios;
+  for (const std::uint32_t frame : seen.contacts) add_ghosts(seen, frame, ratios);
+  judge_crosstalk(ratios[0], ArrayFault::row_crosstalk, found.row_crosstalk_percent, found);
+  judge_crosstalk(ratios[1], ArrayFault::column_crosstalk, found.column_crosstalk_percent, found);
 }
 
 }  // namespace pillarfield

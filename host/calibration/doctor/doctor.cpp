@@ -16,89 +16,38 @@
 namespace pillarfield {
 namespace {
 
-/// Interval, jitter and gaps of frames, one after the other. Memory: 32 kB.
-class FrameTimes {
- public:
-  /// Adds the time of the next frame, s; NaN: it has none.
-  void add(double time_s);
-
-  [[nodiscard]] FrameTiming timing() const;
-
- private:
-  struct Interval {
-    std::uint64_t frame;
-    double time_s;
-    double length_s;
-  };
-  /// Intervals, of which those longer than 1.5 periods are gaps.
-  struct Count {
-    FrameTiming found;
-    std::uint64_t intervals = 0;
-    double mean = 0;
-    double squares = 0;
-
-    void add(const Interval& interval, double period_s);
-  };
-  [[nodiscard]] double period() const;
-
-  std::uint64_t frames_ = 0;
-  double last_s_ = 0;
-  std::vector<Interval> first_;  ///< the first intervals, from which the period follows
-  double period_s_ = 0;          ///< 0: not known yet
-  Count count_;                  ///< once the period is known
-};
-
-constexpr std::size_t kPeriodIntervals = 1024;
+constexpr std::size_t kPeriodIntervals = 1024;  ///< first ones, whose median is the period
 constexpr double kGapPeriods = 1.5;
 constexpr std::size_t kListedGaps = 20;
 
-void FrameTimes::add(double time_s) {
-  const std::uint64_t frame = frames_++;
-  const double length = time_s - last_s_;
-  last_s_ = time_s;
-  if (frame == 0 || !std::isfinite(length)) return;
-  const Interval interval = {frame, time_s, length};
-  if (period_s_ > 0) return count_.add(interval, period_s_);
-  first_.push_back(interval);
-  if (first_.size() < kPeriodIntervals) return;
-  period_s_ = period();
-  for (const Interval& each : first_) count_.add(each, period_s_);
-  first_.clear();
-}
-
-/// Median of the first intervals.
-double FrameTimes::period() const {
-  std::vector<double> lengths;
-  for (const Interval& each : first_) lengths.push_back(each.length_s);
-  return lengths.empty() ? 0 : median(lengths);
-}
-
-void FrameTimes::Count::add(const Interval& interval, double period_s) {
-  if (interval.length_s > kGapPeriods * period_s) {
-    ++found.gap_count;
-    found.lost += static_cast<std::uint64_t>(
-        std::max(1.0, std::min(1e15, std::round(interval.length_s / period_s) - 1)));
-    if (found.gaps.size() < kListedGaps) {
-      found.gaps.push_back({interval.frame, interval.time_s, interval.length_s});
-    }
-    return;
+/// Rate, jitter and gaps of frames at these times, s; NaN: a frame without one.
+FrameTiming timing_of(const std::vector<double>& times) {
+  std::vector<double> first;
+  for (std::size_t i = 1; i < times.size() && first.size() < kPeriodIntervals; ++i) {
+    if (std::isfinite(times[i] - times[i - 1])) first.push_back(times[i] - times[i - 1]);
   }
-  ++intervals;
-  const double step = interval.length_s - mean;
-  mean += step / static_cast<double>(intervals);
-  squares += step * (interval.length_s - mean);
-}
-
-FrameTiming FrameTimes::timing() const {
-  Count count = count_;
-  const double period_s = period_s_ > 0 ? period_s_ : period();
-  if (!(period_s > 0)) return {};
-  for (const Interval& each : first_) count.add(each, period_s);
-  FrameTiming timing = count.found;
+  const double period_s = first.empty() ? 0 : median(first);
+  FrameTiming timing;
+  if (!(period_s > 0)) return timing;
   timing.rate_hz = 1 / period_s;
-  if (count.intervals > 1) {
-    timing.jitter_ms = 1e3 * std::sqrt(count.squares / static_cast<double>(count.intervals - 1));
+  double intervals = 0;
+  double mean = 0;
+  double squares = 0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double length = times[i] - times[i - 1];
+    if (!std::isfinite(length)) continue;
+    if (length > kGapPeriods * period_s) {
+      ++timing.gap_count;
+      timing.lost += static_cast<std::uint64_t>(
+          std::max(1.0, std::min(1e15, std::round(length / period_s) - 1)));
+      if (timing.gaps.size() < kListedGaps) timing.gaps.push_back({i, times[i], length});
+      continue;
+    }
+    const double step = length - mean;
+    mean += step / ++intervals;
+    squares += step * (length - mean);
   }
+  if (intervals > 1) timing.jitter_ms = 1e3 * std::sqrt(squares / (intervals - 1));
   return timing;
 }
 
@@ -164,7 +113,7 @@ struct Doctor::State {
         kept(skin.rows, skin.cols) {}
 
   FrameStatistics statistics;
-  FrameTimes times;
+  std::vector<double> times;  ///< of all frames, s
   KeptFrames kept;
   FrameWatch watch;
 };
@@ -177,7 +126,7 @@ Doctor& Doctor::operator=(Doctor&&) noexcept = default;
 
 void Doctor::add(const FrameView& frame, double time_s) {
   state_->statistics.add(frame);
-  state_->times.add(time_s);
+  state_->times.push_back(time_s);
   state_->kept.add(frame, time_s, state_->watch.add(frame));
 }
 
@@ -192,7 +141,7 @@ Diagnosis Doctor::result() {
   found.type = statistics.type();
   found.frames = statistics.frames();
   found.kept = state_->kept.frames();
-  found.timing = state_->times.timing();
+  found.timing = timing_of(state_->times);
   const FrameWatch& watch = state_->watch;
   Examination seen = {.statistics = statistics, .kept = state_->kept};
   if (!watch.is_frozen()) {
@@ -213,6 +162,7 @@ Diagnosis Doctor::result() {
   }
   seen.idle.resize(skin.sensels());
   seen.noise.resize(skin.sensels());
+  seen.noisy.resize(skin.sensels());
   seen.lowest.resize(skin.sensels());
   seen.highest.resize(skin.sensels());
   seen.touched.resize(skin.sensels());
@@ -221,6 +171,7 @@ Diagnosis Doctor::result() {
   find_odd_frames(seen, watch, found);
   find_signals(seen, found);
   find_odd_readings(seen, found);
+  seen.was_swept = is_swept(seen, LineAxis::rows) || is_swept(seen, LineAxis::columns);
   if (!found.is_no_force()) {
     find_layout(seen, found);
     find_shorts(seen, found);

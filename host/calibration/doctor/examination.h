@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -36,6 +37,7 @@ struct Examination {
   double full_scale = 0;                    ///< counts; infinite: unknown
   std::vector<float> idle = {};             ///< reading without load, of each sensel, counts
   std::vector<float> noise = {};            ///< standard deviation of that, counts
+  std::vector<std::uint8_t> noisy = {};     ///< 1: it varies far more than others
   double typical_noise = 0;                 ///< median, at least that of rounding, counts
   std::vector<float> lowest = {};           ///< of the readings of each sensel but for one, counts
   std::vector<float> highest = {};          ///< counts
@@ -46,6 +48,7 @@ struct Examination {
   std::vector<std::uint32_t> contacts = {};  ///< kept frames in which something touches the array
   double contact_counts = 0;                 ///< median of their largest signals
   std::vector<std::uint32_t> touched = {};   ///< number of contacts in which a sensel is loaded
+  bool was_swept = false;                    ///< small contacts moved over most rows or columns
   bool is_out_of_order = false;              ///< neighbours need not lie beside each other
   std::vector<LinePair> shorted = {};
 
@@ -55,15 +58,21 @@ struct Examination {
   [[nodiscard]] std::size_t sensel(LineAxis axis, std::size_t line, std::size_t along) const {
     return axis == LineAxis::rows ? line * cols + along : along * cols + line;
   }
+  [[nodiscard]] SenselPlace place(std::size_t sensel) const {
+    return {static_cast<std::uint32_t>(sensel / cols), static_cast<std::uint32_t>(sensel % cols)};
+  }
+  /// Noise of a sensel, at least the typical one, counts.
+  [[nodiscard]] double noise_of(std::size_t sensel) const {
+    return std::max<double>(noise[sensel], typical_noise);
+  }
   /// Least signal of a loaded sensel, counts.
   [[nodiscard]] double threshold(std::size_t sensel) const;
-  /// True if a sensel varies, with a noise like that of the others.
+  /// True if a sensel varies, and is not noisy.
   [[nodiscard]] bool is_steady(std::size_t sensel) const;
 };
 
-/// The sensel in the centre of pressure of a contact on few sensels; unset: it is on many.
-[[nodiscard]] std::optional<SenselPlace> centre_of_small_contact(const Examination& seen,
-                                                                 std::uint32_t frame);
+/// True if a contact is on few sensels.
+[[nodiscard]] bool is_small_contact(const Examination& seen, std::uint32_t frame);
 
 /// Whether small contacts moved over most lines.
 [[nodiscard]] bool is_swept(const Examination& seen, LineAxis axis);

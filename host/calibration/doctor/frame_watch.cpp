@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
 #include <utility>
 
 #include "base/quantile.h"
@@ -17,6 +17,8 @@ constexpr std::size_t kLeastChanges = 8;
 constexpr std::uint64_t kLongestLoss = 8;
 constexpr std::size_t kLeastUniform = 4;  ///< sensels of a uniform frame
 
+bool is_same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
 }  // namespace
 
 FrameKind FrameWatch::add(const FrameView& frame) {
@@ -27,21 +29,26 @@ FrameKind FrameWatch::add(const FrameView& frame) {
       current_.push_back(static_cast<float>(readings[col]));
     }
   });
+  numbers_.clear();
+  std::ranges::copy_if(current_, std::back_inserter(numbers_),
+                       [](float each) { return std::isfinite(each); });
+  double mean = 0;
+  for (const float each : numbers_) mean += each / static_cast<double>(current_.size());
+  const float middle = numbers_.empty() ? 0 : median(numbers_);
+  // A sensel that is absent keeps its value in a lost frame.
   std::uint32_t changed = 0;
-  for (std::size_t i = 0; number > 0 && i < current_.size(); ++i) {
-    const bool is_same =
-        current_[i] == before_[i] || (current_[i] != current_[i] && before_[i] != before_[i]);
-    changed += is_same ? 0U : 1U;
+  std::size_t equal = 0;
+  bool is_uniform = true;
+  for (std::size_t i = 0; i < current_.size(); ++i) {
+    const bool has_changed = number > 0 && !is_same(current_[i], before_[i]);
+    changed += has_changed ? 1U : 0U;
+    equal += current_[i] == middle ? 1U : 0U;
+    is_uniform = is_uniform && (current_[i] == middle || (number > 0 && !has_changed));
   }
+  is_uniform = is_uniform && equal >= kLeastUniform && 2 * equal > numbers_.size();
   if (changed > 0) all_equal_ = false;
-  const bool is_repeated = number > 0 && changed == 0;
-  const float first = current_.front();
-  const bool is_uniform = current_.size() >= kLeastUniform &&
-                          std::ranges::all_of(current_, [&](float each) { return each == first; });
-  const bool is_empty =
-      std::ranges::none_of(current_, [](float each) { return std::isfinite(each); });
   before_.swap(current_);
-  if (is_empty) {
+  if (numbers_.empty()) {
     empty_.add(number);
     return FrameKind::empty;
   }
@@ -49,14 +56,13 @@ FrameKind FrameWatch::add(const FrameView& frame) {
     if (has_mean_) {
       run_.add(number);
       uniform_.add(number);
-      value_ = first;
+      value_ = middle;
+      run_mean_ = mean;
     }
     return FrameKind::uniform;
   }
-  double mean = 0;
-  for (const float each : before_) mean += std::isfinite(each) ? each : 0;
-  end_run(mean / static_cast<double>(before_.size()));
-  if (is_repeated) {
+  end_run(mean);
+  if (number > 0 && changed == 0) {
     repeated_.add(number);
     return FrameKind::repeated;
   }
@@ -66,7 +72,7 @@ FrameKind FrameWatch::add(const FrameView& frame) {
 
 void FrameWatch::end_run(double mean) {
   if (run_.frames > 0 && run_.frames <= kLongestLoss &&
-      std::abs(mean - mean_) < std::abs(mean_ - value_) / 2) {
+      std::abs(mean - mean_) < std::abs(mean_ - run_mean_) / 2) {
     if (lost_.frames == 0) lost_.first = run_.first;
     lost_.frames += run_.frames;
   }

@@ -12,7 +12,7 @@ namespace pillarfield {
 enum class FrameKind : std::uint8_t {
   whole,
   empty,     ///< no reading
-  uniform,   ///< one value everywhere
+  uniform,   ///< one value everywhere but where a sensel is absent
   repeated,  ///< equal to the one before
 };
 
@@ -51,13 +51,15 @@ class FrameWatch {
   bool all_equal_ = true;
   std::vector<float> current_;
   std::vector<float> before_;
+  std::vector<float> numbers_;          ///< finite readings of the current frame
   std::vector<std::uint32_t> changes_;  ///< sensels that changed, of whole frames
   Count empty_;
   Count repeated_;
   Count uniform_;
   Count lost_;
-  Count run_;        ///< uniform frames up to now
-  double mean_ = 0;  ///< of the last whole frame
+  Count run_;            ///< uniform frames up to now
+  double run_mean_ = 0;  ///< of these
+  double mean_ = 0;      ///< of the last whole frame
   bool has_mean_ = false;
   float value_ = 0;
 };

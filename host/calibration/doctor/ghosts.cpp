@@ -7,6 +7,7 @@
 
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/finding_text.h"
+#include "calibration/neighbours.h"
 
 namespace pillarfield {
 namespace {
@@ -43,31 +44,25 @@ class GhostSearch {
   }
 
  private:
+  [[nodiscard]] float signal(std::uint32_t frame, std::size_t sensel) const {
+    return seen_.good[sensel] != 0 ? std::as_const(seen_.kept).frame(frame)[sensel] : 0;
+  }
   [[nodiscard]] float signal(std::uint32_t frame, std::uint32_t row, std::uint32_t col) const {
-    const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
-    return seen_.good[i] != 0 ? std::as_const(seen_.kept).frame(frame)[i] : 0;
+    return signal(frame, seen_.sensel(LineAxis::rows, row, col));
   }
 
   /// True if a sensel is loaded more than all around it.
-  [[nodiscard]] bool is_peak(std::uint32_t frame, std::uint32_t row, std::uint32_t col) const {
-    const float here = signal(frame, row, col);
-    for (std::uint32_t r = row == 0 ? 0 : row - 1; r < std::min(row + 2, seen_.rows); ++r) {
-      for (std::uint32_t c = col == 0 ? 0 : col - 1; c < std::min(col + 2, seen_.cols); ++c) {
-        if ((r != row || c != col) && signal(frame, r, c) >= here) return false;
-      }
-    }
-    return true;
+  [[nodiscard]] bool is_peak(std::uint32_t frame, std::size_t sensel) const {
+    const Neighbours around(seen_.statistics.skin(), sensel);
+    return std::ranges::none_of(
+        around.all(), [&](std::size_t i) { return signal(frame, i) >= signal(frame, sensel); });
   }
 
   void add_rectangles(std::uint32_t frame) {
     std::vector<SenselPlace> peaks;
-    for (std::uint32_t row = 0; row < seen_.rows; ++row) {
-      for (std::uint32_t col = 0; col < seen_.cols && peaks.size() <= kMostPeaks; ++col) {
-        if (signal(frame, row, col) > kGhostShare * seen_.contact_counts &&
-            is_peak(frame, row, col)) {
-          peaks.emplace_back(row, col);
-        }
-      }
+    for (std::size_t i = 0; i < seen_.kept.sensels() && peaks.size() <= kMostPeaks; ++i) {
+      const bool reads = signal(frame, i) > kGhostShare * seen_.contact_counts;
+      if (reads && is_peak(frame, i)) peaks.push_back(seen_.place(i));
     }
     if (peaks.size() > kMostPeaks) return;
     for (const auto& [row, col] : peaks) {

@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
@@ -14,61 +16,73 @@ namespace {
 constexpr double kAboveNoise = 4;
 /// Ratios up to which groups share pillars, and from which they do not.
 constexpr double kPillarRatio = 0.4;
-constexpr double kSenselRatio = 0.7;
-constexpr double kLeastGroups = 200;
+constexpr double kSenselRatio = 0.5;
+constexpr std::size_t kLeastGroups = 200;
 constexpr std::size_t kLeastPairs = 4;
 constexpr double kLeastDifferent = 0.05;
+constexpr double kLeastGroupLoad = 0.3;  ///< of a group's most loaded sensel, in the usual peak
 
-/// Squares of the parity of groups of four loaded sensels.
+/// Sums over frames of a group of four sensels: of the squares of its parity, of its load and of
+/// its noise.
 struct GroupParity {
   double squares = 0;
+  double loads = 0;
   double noise = 0;
-  double groups = 0;
-  [[nodiscard]] double power() const { return std::max(0.0, squares - noise) / groups; }
+  std::size_t frames = 0;
 };
 
-/// Adds the groups whose first row and column are `row` and `col` plus multiples of two.
-void add_groups(const Examination& seen, std::uint32_t frame, std::uint32_t row, std::uint32_t col,
-                GroupParity& parity) {
-  const auto signals = std::as_const(seen.kept).frame(frame);
-  const double least = 0.3 * seen.contact_counts;
-  for (std::size_t r = row; r + 1 < seen.rows; r += 2) {
-    for (std::size_t c = col; c + 1 < seen.cols; c += 2) {
-      const std::size_t first = r * seen.cols + c;
-      const std::array<std::size_t, 4> group = {first, first + 1, first + seen.cols + 1,
-                                                first + seen.cols};
-      double sum = 0;
-      double noise = 0;
-      double largest = 0;
-      bool is_good = true;
-      for (std::size_t n = 0; n < 4; ++n) {
-        const std::size_t i = group.at(n);
-        is_good = is_good && seen.good[i] != 0;
-        largest = std::max<double>(largest, signals[i]);
-        sum += n % 2 == 0 ? signals[i] : -signals[i];
-        noise += std::pow(std::max<double>(seen.noise[i], seen.typical_noise), 2);
-      }
-      if (!is_good || largest < least) continue;
-      parity.squares += sum * sum;
-      parity.noise += noise;
-      ++parity.groups;
-    }
+/// Adds a frame to the group of which a sensel is the first one, unless one of it is not good.
+void add_frame(const Examination& seen, std::span<const float> signals, std::size_t first,
+               GroupParity& parity) {
+  double load = 0;
+  double difference = 0;
+  double noise = 0;
+  float largest = 0;
+  for (const std::size_t i : {first, first + 1, first + seen.cols, first + seen.cols + 1}) {
+    if (seen.good[i] == 0) return;
+    const bool is_on_diagonal = i == first || i == first + seen.cols + 1;
+    largest = std::max(largest, signals[i]);
+    load += signals[i];
+    difference += is_on_diagonal ? signals[i] : -signals[i];
+    noise += std::pow(seen.noise_of(i), 2);
   }
+  if (largest < kLeastGroupLoad * seen.contact_counts) return;
+  parity.squares += difference * difference;
+  parity.loads += load * load;
+  parity.noise += noise;
+  ++parity.frames;
 }
 
-/// Parity of groups that may stand under pillars, relative to that of others.
+/// Parity of groups that may stand under pillars, relative to that of others: of medians, since
+/// shorted lines change some groups.
 std::optional<double> parity_ratio(const Examination& seen) {
-  GroupParity aligned;
-  GroupParity others;
+  std::vector<GroupParity> groups(seen.kept.sensels());
   for (const std::uint32_t frame : seen.contacts) {
-    add_groups(seen, frame, 0, 0, aligned);
-    add_groups(seen, frame, 0, 1, others);
-    add_groups(seen, frame, 1, 0, others);
-    add_groups(seen, frame, 1, 1, others);
+    const auto signals = std::as_const(seen.kept).frame(frame);
+    for (std::size_t row = 0; row + 1 < seen.rows; ++row) {
+      for (std::size_t col = 0; col + 1 < seen.cols; ++col) {
+        const std::size_t first = row * seen.cols + col;
+        add_frame(seen, signals, first, groups[first]);
+      }
+    }
   }
-  if (aligned.groups < kLeastGroups || others.groups < kLeastGroups) return std::nullopt;
-  if (others.squares < kAboveNoise * others.noise || others.power() == 0) return std::nullopt;
-  return std::sqrt(aligned.power() / others.power());
+  std::array<std::vector<double>, 2> powers;  // of groups that may be pillars, of others
+  std::array<std::size_t, 2> frames{};
+  GroupParity others;
+  for (std::size_t first = 0; first < groups.size(); ++first) {
+    const GroupParity& parity = groups[first];
+    if (parity.frames == 0) continue;
+    const std::size_t which = first / seen.cols % 2 == 0 && first % seen.cols % 2 == 0 ? 0 : 1;
+    frames.at(which) += parity.frames;
+    powers.at(which).push_back(std::max(0.0, parity.squares - parity.noise) / parity.loads);
+    others.squares += which == 0 ? 0 : parity.squares;
+    others.noise += which == 0 ? 0 : parity.noise;
+  }
+  if (std::ranges::min(frames) < kLeastGroups || others.squares < kAboveNoise * others.noise) {
+    return std::nullopt;
+  }
+  const double usual = median(powers[1]);
+  return usual > 0 ? std::optional(std::sqrt(median(powers[0]) / usual)) : std::nullopt;
 }
 
 /// Difference of lines that may run under the same pillars, relative to that of others.

@@ -39,12 +39,18 @@ constexpr double kOutOfPlace = 0.3;
 /// Median similarity of lines to the one most like them, below which a contact is too narrow.
 constexpr double kLeastSimilar = 0.3;
 
+/// A contact on few sensels.
+struct SmallContact {
+  SenselPlace centre;        ///< of pressure, in whole sensels
+  std::vector<float> loads;  ///< sums of the loaded sensels of each line
+};
+
 /// Sums of the signals of each line, of frames in which a small contact lies on the array.
 struct LineLoads {
   std::vector<std::uint32_t> lines;       ///< those that were visited
   std::vector<std::vector<float>> loads;  ///< of these, [line][frame]
   std::size_t frames = 0;
-  std::size_t places = 0;  ///< different places of their centres of pressure, in whole sensels
+  std::size_t places = 0;  ///< different centres of pressure
 };
 
 /// The largest signal of a frame.
@@ -57,50 +63,58 @@ float peak_of(const Examination& seen, std::uint32_t frame) {
   return most;
 }
 
-/// Sums of the loaded sensels, which ghosts of crosstalk are not.
-std::vector<float> loads_of_frame(const Examination& seen, LineAxis axis, std::uint32_t frame) {
+/// Unset: the contact is on many sensels or lines. Ghosts of crosstalk are not loaded.
+std::optional<SmallContact> small_contact_in(const Examination& seen, LineAxis axis,
+                                             std::uint32_t frame) {
   const auto signals = std::as_const(seen.kept).frame(frame);
-  const float most = peak_of(seen, frame);
-  const std::size_t lines = seen.lines(axis);
-  const std::size_t length = signals.size() / lines;
-  std::vector<float> loads(lines);
-  for (std::size_t line = 0; line < lines; ++line) {
-    for (std::size_t along = 0; along < length; ++along) {
-      const std::size_t i = seen.sensel(axis, line, along);
-      const bool is_loaded = seen.good[i] != 0 && signals[i] > kLoaded * most;
-      loads[line] += is_loaded ? signals[i] : 0;
-    }
+  float most = peak_of(seen, frame);
+  SmallContact contact;
+  contact.loads.resize(seen.lines(axis));
+  double loaded = 0;
+  double sum = 0;
+  double row = 0;
+  double col = 0;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (seen.good[i] == 0 || !(signals[i] > kLoaded * most)) continue;
+    const SenselPlace at = seen.place(i);
+    ++loaded;
+    sum += signals[i];
+    row += static_cast<double>(signals[i]) * at.first;
+    col += static_cast<double>(signals[i]) * at.second;
+    contact.loads[axis == LineAxis::rows ? at.first : at.second] += signals[i];
   }
-  return loads;
+  if (sum == 0 || loaded > kMostLoadedSensels * static_cast<double>(signals.size())) return {};
+  most = std::ranges::max(contact.loads);
+  const auto lines =
+      std::ranges::count_if(contact.loads, [&](float l) { return l > kLoaded * most; });
+  if (static_cast<double>(lines) > kMostLoadedLines * static_cast<double>(seen.lines(axis)))
+    return {};
+  contact.centre = {std::lround(row / sum), std::lround(col / sum)};
+  return contact;
 }
 
 LineLoads find_loads(const Examination& seen, LineAxis axis) {
-  const std::size_t lines = seen.lines(axis);
-  std::vector<std::vector<float>> all(lines);
-  std::vector<std::size_t> visits(lines);
-  std::set<SenselPlace> places;
+  std::vector<SmallContact> contacts;
   for (const std::uint32_t frame : seen.contacts) {
-    const auto centre = centre_of_small_contact(seen, frame);
-    if (!centre) continue;
-    const std::vector<float> loads = loads_of_frame(seen, axis, frame);
-    const float most = *std::ranges::max_element(loads);
-    const auto loaded = std::ranges::count_if(loads, [&](float l) { return l > kLoaded * most; });
-    if (most == 0 || static_cast<double>(loaded) > kMostLoadedLines * static_cast<double>(lines)) {
-      continue;
-    }
-    places.insert(*centre);
-    for (std::size_t line = 0; line < lines; ++line) {
-      all[line].push_back(loads[line]);
-      visits[line] += loads[line] > kVisit * most ? 1U : 0U;
-    }
+    if (auto contact = small_contact_in(seen, axis, frame)) contacts.push_back(std::move(*contact));
   }
   LineLoads result;
-  result.frames = all.front().size();
+  std::set<SenselPlace> places;
+  std::vector<std::size_t> visits(seen.lines(axis));
+  for (const SmallContact& contact : contacts) {
+    places.insert(contact.centre);
+    const float most = std::ranges::max(contact.loads);
+    for (std::size_t line = 0; line < visits.size(); ++line) {
+      visits[line] += contact.loads[line] > kVisit * most ? 1U : 0U;
+    }
+  }
+  result.frames = contacts.size();
   result.places = places.size();
-  for (std::uint32_t line = 0; line < lines; ++line) {
+  for (std::uint32_t line = 0; line < visits.size(); ++line) {
     if (visits[line] < 3) continue;
     result.lines.push_back(line);
-    result.loads.push_back(std::move(all[line]));
+    auto& loads = result.loads.emplace_back();
+    for (const SmallContact& contact : contacts) loads.push_back(contact.loads[line]);
   }
   return result;
 }
@@ -116,18 +130,13 @@ bool shows_order(const Examination& seen, const LineLoads& loads, LineAxis axis)
          loads.places >= std::size_t{seen.rows} + seen.cols;
 }
 
-/// Leaves out shorted lines, which show contacts in two places, but for one of two neighbours.
+/// Leaves out one of two neighbours that are shorted.
 void drop_shorted(const Examination& seen, LineAxis axis, LineLoads& loads) {
-  const auto drop = [&](std::uint32_t line) {
-    const auto at = std::ranges::find(loads.lines, line);
-    if (at == loads.lines.end()) return;
+  for (const LinePair& pair : seen.shorted) {
+    const auto at = std::ranges::find(loads.lines, pair.second);
+    if (pair.axis != axis || at == loads.lines.end()) continue;
     loads.loads.erase(loads.loads.begin() + (at - loads.lines.begin()));
     loads.lines.erase(at);
-  };
-  for (const LinePair& pair : seen.shorted) {
-    if (pair.axis != axis) continue;
-    if (pair.second - pair.first > 1) drop(pair.first);
-    drop(pair.second);
   }
 }
 
@@ -195,27 +204,15 @@ void find_order(Examination& seen, LineAxis axis, Diagnosis& found) {
 
 }  // namespace
 
-std::optional<SenselPlace> centre_of_small_contact(const Examination& seen, std::uint32_t frame) {
+bool is_small_contact(const Examination& seen, std::uint32_t frame) {
   const auto signals = std::as_const(seen.kept).frame(frame);
   const float most = peak_of(seen, frame);
   std::size_t loaded = 0;
-  double sum = 0;
-  double row = 0;
-  double col = 0;
   for (std::size_t i = 0; i < signals.size(); ++i) {
-    if (seen.good[i] == 0 || !(signals[i] > kLoaded * most)) continue;
-    ++loaded;
-    sum += signals[i];
-    const std::size_t at_row = i / seen.cols;
-    const std::size_t at_col = i % seen.cols;
-    row += signals[i] * static_cast<double>(at_row);
-    col += signals[i] * static_cast<double>(at_col);
+    loaded += seen.good[i] != 0 && signals[i] > kLoaded * most ? 1U : 0U;
   }
-  if (sum == 0 ||
-      static_cast<double>(loaded) > kMostLoadedSensels * static_cast<double>(signals.size())) {
-    return std::nullopt;
-  }
-  return SenselPlace{std::lround(row / sum), std::lround(col / sum)};
+  return loaded > 0 &&
+         static_cast<double>(loaded) <= kMostLoadedSensels * static_cast<double>(signals.size());
 }
 
 bool is_swept(const Examination& seen, LineAxis axis) {

@@ -43,35 +43,29 @@ void for_each_varying(const Examination& seen, Use use) {
 
 /// Each frame divided by its largest reading.
 void find_normalised(const Examination& seen, Diagnosis& found) {
-  struct Peak {
-    float reading = -std::numeric_limits<float>::infinity();
-    std::size_t sensel = 0;
-    std::size_t count = 0;
-  };
-  std::vector<Peak> peaks(seen.kept.frames());
-  for_each_varying(seen, [&](std::size_t frame, std::size_t sensel, float reading) {
-    Peak& peak = peaks[frame];
-    if (reading > peak.reading) peak = {reading, sensel, 0};
-    if (reading == peak.reading) ++peak.count;
+  std::vector<float> peaks(seen.kept.frames(), -std::numeric_limits<float>::infinity());
+  for_each_varying(seen, [&](std::size_t frame, std::size_t, float reading) {
+    peaks[frame] = std::max(peaks[frame], reading);
   });
   if (peaks.empty()) return;
-  std::set<std::size_t> places;
-  std::vector<std::size_t> counts;
-  double equal = 0;
-  for (const Peak& peak : peaks) {
-    equal += peak.reading == peaks.front().reading ? 1 : 0;
-    places.insert(peak.sensel);
-    counts.push_back(peak.count);
-  }
-  if (equal < kNearlyAll * static_cast<double>(peaks.size()) || places.size() < kLeastPeaks ||
-      median(counts) > 2) {
+  std::vector<std::size_t> counts(peaks.size());  // of sensels with the largest reading
+  std::vector<std::size_t> places(peaks.size());  // the last of these
+  for_each_varying(seen, [&](std::size_t frame, std::size_t sensel, float reading) {
+    if (reading != peaks[frame]) return;
+    ++counts[frame];
+    places[frame] = sensel;
+  });
+  const auto equal = std::ranges::count(peaks, peaks.front());
+  const std::set<std::size_t> different(places.begin(), places.end());
+  if (static_cast<double>(equal) < kNearlyAll * static_cast<double>(peaks.size()) ||
+      different.size() < kLeastPeaks || median(counts) > 2) {
     return;
   }
   report_odd(
-      found, ArrayFault::normalised, peaks.front().reading,
+      found, ArrayFault::normalised, peaks.front(),
       fmt::format("Normalised: the largest reading of every frame is {}, so that no force can "
                   "be had; record frames that are not scaled",
-                  rounded(peaks.front().reading)));
+                  rounded(peaks.front())));
 }
 
 void find_two_values(const Examination& seen, Diagnosis& found) {
@@ -182,23 +176,20 @@ void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis
                            all));
     return;
   }
-  if (const auto& [count, first] = watch.empty(); count > 0) {
-    report_odd(found, ArrayFault::missing_frames, static_cast<double>(count),
-               fmt::format("Missing: {} of {} have no reading, the first is frame {}",
-                           grouped(count), all, first));
-  }
-  if (const auto& [count, first] = watch.lost(); watch.uniform_are_lost()) {
-    report_odd(found, ArrayFault::missing_frames, static_cast<double>(count),
-               fmt::format("Missing: {} of {} read {} everywhere between others that do not, the "
-                           "first is frame {}",
-                           grouped(count), all, rounded(watch.uniform_value()), first));
-  }
-  if (const auto& [count, first] = watch.repeated(); watch.repeats_are_odd()) {
-    report_odd(found, ArrayFault::repeated_frames, static_cast<double>(count),
-               fmt::format("Repeated: {} of {} equal the one before although readings are noisy, "
-                           "the first is frame {}",
-                           grouped(count), all, first));
-  }
+  const auto report = [&](bool is_odd, const FrameWatch::Count& count, ArrayFault fault,
+                          const char* name, const std::string& words) {
+    if (!is_odd) return;
+    report_odd(found, fault, static_cast<double>(count.frames),
+               fmt::format("{}: {} of {} {}, the first is frame {}", name, grouped(count.frames),
+                           all, words, count.first));
+  };
+  report(watch.empty().frames > 0, watch.empty(), ArrayFault::missing_frames, "Missing",
+         "have no reading");
+  report(
+      watch.uniform_are_lost(), watch.lost(), ArrayFault::missing_frames, "Missing",
+      fmt::format("read {} everywhere between others that do not", rounded(watch.uniform_value())));
+  report(watch.repeats_are_odd(), watch.repeated(), ArrayFault::repeated_frames, "Repeated",
+         "equal the one before although readings are noisy");
   find_normalised(seen, found);
   find_two_values(seen, found);
   find_odd_bits(seen, found);

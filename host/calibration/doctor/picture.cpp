@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/quantile.h"
+#include "calibration/doctor/finding_text.h"
 #include "pillarfield/doctor.h"
 
 namespace pillarfield {
@@ -68,11 +69,6 @@ MarkColour colour_of(ArrayFault fault) {
     default:
       return {0, 255, 255};
   }
-}
-
-bool is_of_rows(ArrayFault fault) {
-  return fault == ArrayFault::dead_row || fault == ArrayFault::shorted_rows ||
-         fault == ArrayFault::row_order;
 }
 
 /// Rectangles and letters; what lies outside of the picture is left out.

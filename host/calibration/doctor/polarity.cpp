@@ -12,6 +12,7 @@ namespace {
 
 /// Ratio of the evidence for one polarity and for the other that decides.
 constexpr double kDecisive = 3;
+constexpr double kDecisiveRest = 1.3;  ///< of sensels that change to the level of those that do not
 /// Share of the largest span from which a change is load: drift is below.
 constexpr double kLoadChange = 0.3;
 /// Share of the sensels ever loaded that is loaded at a time: up to the first contacts move all
@@ -67,16 +68,17 @@ class Changes {
   }
 
   [[nodiscard]] Polarity polarity() const {
-    const bool moves = share_<kMovingShare&& static_cast<double>(ever_)> kMovedOver *
-                       static_cast<double>(middles_.size());
-    const Evidence rest = by_rest();
+    const auto sensels = static_cast<double>(middles_.size());
+    const bool is_local = share_of_ever_ < kMovingShare;
+    const bool moves = is_local && static_cast<double>(ever_) > kMovedOver * sensels;
     for (const Polarity found :
-         {moves ? from_median_.polarity() : Polarity::unknown, rest.polarity(),
-          share_ < kStandingShare ? from_median_.polarity() : Polarity::unknown,
-          by_first_frames().polarity(), rest.polarity(1)}) {
+         {moves ? from_median_.polarity() : Polarity::unknown,
+          by_rest().polarity(has_still() ? kDecisiveRest : kDecisive),
+          share_of_ever_ < kStandingShare ? from_median_.polarity() : Polarity::unknown,
+          by_first_frames().polarity()}) {
       if (found != Polarity::unknown) return found;
     }
-    return Polarity::unknown;
+    return by_rest().polarity(1);
   }
 
  private:
@@ -99,7 +101,13 @@ class Changes {
       frames += count > 0 ? 1 : 0;
     }
     ever_ = static_cast<std::size_t>(std::ranges::count(ever, 1));
-    if (ever_ > 0) share_ = loaded / frames / static_cast<double>(ever_);
+    if (ever_ > 0) share_of_ever_ = loaded / frames / static_cast<double>(ever_);
+  }
+
+  [[nodiscard]] bool has_still() const {
+    const double steady = static_cast<double>(changing_.size() + still_.size());
+    return static_cast<double>(still_.size()) >=
+           std::max<double>(kLeastStill, kStillShare * steady);
   }
 
   /// At rest, sensels that change read as those that do not; if all change, their readings resemble
@@ -113,10 +121,7 @@ class Changes {
     };
     std::vector<double> low = reading(seen_.lowest, changing_);
     std::vector<double> high = reading(seen_.highest, changing_);
-    const double steady = static_cast<double>(changing_.size() + still_.size());
-    if (static_cast<double>(still_.size()) < std::max<double>(kLeastStill, kStillShare * steady)) {
-      return {trimmed_variance(std::move(high)), trimmed_variance(std::move(low))};
-    }
+    if (!has_still()) return {trimmed_variance(std::move(high)), trimmed_variance(std::move(low))};
     std::vector<double> still_low = reading(seen_.lowest, still_);
     std::vector<double> still_high = reading(seen_.highest, still_);
     const double rest_low = median(still_low);
@@ -150,7 +155,7 @@ class Changes {
   std::vector<std::size_t> still_;
   Evidence from_median_;
   std::size_t ever_ = 0;
-  double share_ = 1;
+  double share_of_ever_ = 1;  ///< that changes at a time
 };
 
 }  // namespace

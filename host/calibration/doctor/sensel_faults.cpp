@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
@@ -125,10 +124,11 @@ float LyingSignals::least_beside_peak(std::uint32_t row, std::uint32_t col) cons
 constexpr double kDeadResponse = 0.12;
 constexpr double kDeadCrosstalk = 3;
 constexpr double kMostDeadResponse = 0.42;
-/// The same where no small contact was swept over the array: large ones have edges and holes.
+/// The same where no small contact was swept over the array, of sensels that are never loaded:
+/// large contacts have edges and holes.
 constexpr double kSilentResponse = 0.04;
 /// Load of neighbours that tests a sensel, relative to the usual largest signal and to the noise.
-constexpr double kTestShare = 0.2;
+constexpr double kTestShare = 0.1;
 constexpr double kSweepShare = 0.08;
 constexpr double kTestNoise = 4;
 /// Share of a line's sensels that must be faulty, while none responds, for a dead line.
@@ -162,13 +162,10 @@ ArrayFault finding_of(SenselFault fault) {
 class NeighbourVerdicts {
  public:
   explicit NeighbourVerdicts(Examination& seen)
-      : seen_(seen),
-        was_swept_(is_swept(seen, LineAxis::rows) || is_swept(seen, LineAxis::columns)),
-        responses_(seen.kept.sensels()),
-        in_dead_line_(seen.kept.sensels()) {}
+      : seen_(seen), responses_(seen.kept.sensels()), in_dead_line_(seen.kept.sensels()) {}
 
   void judge(double crosstalk) {
-    dead_response_ = was_swept_
+    dead_response_ = seen_.was_swept
                          ? std::min(kMostDeadResponse, kDeadResponse + kDeadCrosstalk * crosstalk)
                          : kSilentResponse;
     // The second time, dead neighbours do not count.
@@ -185,17 +182,13 @@ class NeighbourVerdicts {
     }
     for (std::size_t i = 0; i < responses_.size(); ++i) {
       if (!seen_.verdicts[i] && seen_.touched[i] == 0 && !is_tested(i)) {
-        found.untouched.push_back(place(i));
+        found.untouched.push_back(seen_.place(i));
       }
     }
     found.verdicts = seen_.verdicts;
   }
 
  private:
-  [[nodiscard]] SenselPlace place(std::size_t sensel) const {
-    return {static_cast<std::uint32_t>(sensel / seen_.cols),
-            static_cast<std::uint32_t>(sensel % seen_.cols)};
-  }
   [[nodiscard]] const SenselStatistics& read(std::size_t sensel) const {
     return seen_.read[sensel];
   }
@@ -209,9 +202,12 @@ class NeighbourVerdicts {
     if (seen_.touched[sensel] > 0 || kWeakTouch * seen_.contact_counts < seen_.threshold(sensel)) {
       return false;
     }
-    return std::ranges::none_of(seen_.contacts, [&](std::uint32_t frame) {
-      return std::as_const(seen_.kept).frame(frame)[sensel] > kSilentNoise * noise(sensel);
-    });
+    for (std::size_t frame = 0; frame < seen_.kept.frames(); ++frame) {
+      if (std::as_const(seen_.kept).frame(frame)[sensel] > kSilentNoise * seen_.noise_of(sensel)) {
+        return false;
+      }
+    }
+    return true;
   }
 
   /// A finger that pressed nearly all sensels of a coarse array, each by itself, pressed the others
@@ -249,12 +245,12 @@ class NeighbourVerdicts {
   }
 
   void judge_responses() {
-    const double least = (was_swept_ ? kSweepShare : kTestShare) * seen_.contact_counts;
+    const double least = (seen_.was_swept ? kSweepShare : kTestShare) * seen_.contact_counts;
     for (std::size_t i = 0; i < responses_.size(); ++i) {
       if (seen_.good[i] != 0) responses_[i] = SenselResponse();
     }
     for (const std::uint32_t frame : seen_.contacts) {
-      if (was_swept_ && !centre_of_small_contact(seen_, frame)) continue;
+      if (seen_.was_swept && !is_small_contact(seen_, frame)) continue;
       add_responses(frame, least);
     }
     for (std::size_t i = 0; i < responses_.size(); ++i) {
@@ -269,23 +265,21 @@ class NeighbourVerdicts {
       for (std::uint32_t col = 0; col < seen_.cols; ++col) {
         const std::size_t i = seen_.sensel(LineAxis::rows, row, col);
         if (seen_.good[i] == 0) continue;
-        const double expected = was_swept_ ? signals.least_under_small_contact(row, col)
-                                           : signals.least_under_contact(row, col);
-        if (expected > std::max(least, kTestNoise * noise(i))) {
+        const double expected = seen_.was_swept ? signals.least_under_small_contact(row, col)
+                                                : signals.least_under_contact(row, col);
+        if (expected > std::max(least, kTestNoise * seen_.noise_of(i))) {
           responses_[i].add(signals.of(i), expected);
         }
       }
     }
   }
 
-  [[nodiscard]] double noise(std::size_t sensel) const {
-    return std::max<double>(seen_.noise[sensel], seen_.typical_noise);
-  }
   [[nodiscard]] bool is_tested(std::size_t sensel) const {
-    return responses_[sensel].is_tested(noise(sensel));
+    return responses_[sensel].is_tested(seen_.noise_of(sensel));
   }
   [[nodiscard]] bool is_dead(std::size_t sensel) const {
-    return responses_[sensel].is_below(dead_response_, noise(sensel));
+    return (seen_.was_swept || seen_.touched[sensel] == 0) &&
+           responses_[sensel].is_below(dead_response_, seen_.noise_of(sensel));
   }
 
   /// The sensels of a line by what was found of them.
@@ -314,7 +308,7 @@ class NeighbourVerdicts {
     line.faulty += is_faulty ? 1U : 0U;
     line.dead += verdict == SenselFault::unresponsive ? 1U : 0U;
     line.silent += is_faulty || seen_.constant[sensel] != 0 ? 1U : 0U;
-    line.sound += !is_faulty && (seen_.touched[sensel] > 0 || is_tested(sensel)) ? 1U : 0U;
+    line.sound += !is_faulty && seen_.touched[sensel] > 0 ? 1U : 0U;
     if (is_tested(sensel)) line.most = std::max(line.most, responses_[sensel].ratio());
   }
 
@@ -346,7 +340,7 @@ class NeighbourVerdicts {
       if (!seen_.verdicts[i] || in_dead_line_[i] != 0 || finding_of(*seen_.verdicts[i]) != fault) {
         continue;
       }
-      finding.sensels.push_back(place(i));
+      finding.sensels.push_back(seen_.place(i));
       means.push_back(read(i).mean);
       noises.push_back(seen_.noise[i]);
       if (is_tested(i)) most = std::max(most, responses_[i].ratio());
@@ -359,7 +353,6 @@ class NeighbourVerdicts {
   }
 
   Examination& seen_;
-  bool was_swept_;
   double dead_response_ = kDeadResponse;
   std::vector<SenselResponse> responses_;
   std::vector<std::uint8_t> in_dead_line_;
@@ -369,7 +362,8 @@ class NeighbourVerdicts {
 
 void find_odd_readings(Examination& seen, const Diagnosis& found) {
   constexpr double kIdleAtFullScale = 0.9;
-  const bool idles_there = found.idle_counts > kIdleAtFullScale * seen.full_scale;
+  const bool idles_there =
+      found.polarity == Polarity::falls || found.idle_counts > kIdleAtFullScale * seen.full_scale;
   std::vector<SenselEvidence> evidence;
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
     evidence.push_back({seen.read[i], seen.idle[i], seen.noise[i]});
@@ -378,6 +372,9 @@ void find_odd_readings(Examination& seen, const Diagnosis& found) {
   const SenselJudge judge(std::move(evidence), seen.frames_with_readings, {});
   for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
     seen.verdicts.push_back(judge.verdict(i));
+    if (seen.verdicts.back() == SenselFault::noisy && seen.noisy[i] == 0) {
+      seen.verdicts.back().reset();
+    }
     seen.good[i] = seen.verdicts.back() ? 0 : 1;
   }
 }

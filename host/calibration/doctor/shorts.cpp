@@ -2,28 +2,26 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
+#include "base/quantile.h"
 #include "calibration/doctor/examination.h"
 #include "calibration/doctor/finding_text.h"
 
 namespace pillarfield {
 namespace {
 
-/// LineDifference of two shorted lines, relative to their signals: of their readings, and, where a
-/// small contact swept over the lines, of what no gains of single sensels explain.
-constexpr double kMostUnequal = 0.03;
-constexpr double kMostGainDifference = 0.5;
-constexpr double kMostUnexplained = 0.1;
-/// Least difference of each from its other neighbours.
-constexpr double kLeastDifference = 0.12;
-constexpr double kShortRatio = 0.3;
+/// Largest difference of two shorted lines, relative to their signals, where contacts swept over
+/// the lines and where they did not, and relative to the difference from their neighbours.
+constexpr double kMostUnequalSwept = 0.12;
+constexpr double kMostUnequal = 0.04;
+constexpr double kShortRatio = 0.2;
 constexpr std::size_t kLeastShared = 3;  ///< sensels of a line
 constexpr double kLeastPower = 4;        ///< of the signals of loaded sensels, over that of noise
 constexpr double kMostProducts = 4e9;
-constexpr std::size_t kLeastHeaviest = 4;  ///< lines that are the most loaded ones in turn
+/// Lines by which the centre of pressure must move: contacts at rest can load lines equally.
+constexpr double kLeastMove = 0.2;
 
 /// Frames of contacts, thinned so that all pairs of lines can be compared.
 std::vector<std::uint32_t> compared_frames(const Examination& seen, LineAxis axis) {
@@ -38,7 +36,7 @@ std::vector<std::uint32_t> compared_frames(const Examination& seen, LineAxis axi
 
 struct LineDifference {
   double unequal;
-  double unexplained;
+  double unexplained;  ///< by gains of single sensels
 };
 
 /// Signals of contacts as [along, line, frame].
@@ -46,15 +44,13 @@ class LineSignals {
  public:
   LineSignals(const Examination& seen, LineAxis axis)
       : seen_(seen), axis_(axis), frames_(compared_frames(seen, axis)) {
-    signals_.resize(frames_.size() * seen.kept.sensels());
+    signals_.reserve(frames_.size() * seen.kept.sensels());
     const std::size_t lines = seen.lines(axis);
-    const std::size_t length = seen.kept.sensels() / lines;
-    std::size_t at = 0;
-    for (std::size_t along = 0; along < length; ++along) {
+    for (std::size_t along = 0; along < seen.kept.sensels() / lines; ++along) {
       for (std::size_t line = 0; line < lines; ++line) {
         const std::size_t sensel = seen.sensel(axis, line, along);
         for (const std::uint32_t frame : frames_) {
-          signals_[at++] = std::as_const(seen.kept).frame(frame)[sensel];
+          signals_.push_back(std::as_const(seen.kept).frame(frame)[sensel]);
         }
       }
     }
@@ -65,29 +61,39 @@ class LineSignals {
   /// second moments, which no gain of a single sensel changes. Unset: too little signal.
   [[nodiscard]] std::optional<LineDifference> difference(std::size_t a, std::size_t b) const {
     const std::size_t lines = seen_.lines(axis_);
-    const std::size_t length = seen_.kept.sensels() / lines;
     double unequal = 0;
     double unexplained = 0;
     double first_power = 0;
     double second_power = 0;
     double noise = 0;
     std::size_t shared = 0;
-    for (std::size_t along = 0; along < length; ++along) {
+    for (std::size_t along = 0; along < seen_.kept.sensels() / lines; ++along) {
       const std::size_t first = seen_.sensel(axis_, a, along);
       const std::size_t second = seen_.sensel(axis_, b, along);
       if (seen_.good[first] == 0 || seen_.good[second] == 0) continue;
       if (seen_.touched[first] < 3 || seen_.touched[second] < 3) continue;
-      const PairMoments m =
-          moments(along, {a, seen_.threshold(first)}, {b, seen_.threshold(second)});
-      const double half = (m.aa - m.bb) / 2;
-      unequal += (m.aa + m.bb - 2 * m.ab) / 2;
-      unexplained += (m.aa + m.bb) / 2 - std::sqrt(half * half + m.ab * m.ab);
-      first_power += m.aa;
-      second_power += m.bb;
-      noise +=
-          m.frames *
-          std::pow(std::max<double>({seen_.noise[first], seen_.noise[second], seen_.typical_noise}),
-                   2);
+      const float* const x = &signals_[(along * lines + a) * frames_.size()];
+      const float* const y = &signals_[(along * lines + b) * frames_.size()];
+      const auto least_x = static_cast<float>(seen_.threshold(first));
+      const auto least_y = static_cast<float>(seen_.threshold(second));
+      float frames = 0;
+      float xx = 0;
+      float xy = 0;
+      float yy = 0;
+      for (std::size_t i = 0; i < frames_.size(); ++i) {
+        const float weight = x[i] > least_x || y[i] > least_y ? 1 : 0;
+        frames += weight;
+        xx += weight * x[i] * x[i];
+        xy += weight * x[i] * y[i];
+        yy += weight * y[i] * y[i];
+      }
+      unequal += (xx + yy - 2 * xy) / 2;
+      unexplained += (xx + yy) / 2 - std::hypot((xx - yy) / 2, xy);
+      first_power += xx;
+      second_power += yy;
+      const double deviation =
+          std::max<double>({seen_.noise[first], seen_.noise[second], seen_.typical_noise});
+      noise += frames * deviation * deviation;
       ++shared;
     }
     const double power = std::min(first_power, second_power);
@@ -98,95 +104,74 @@ class LineSignals {
     return LineDifference{relative(unequal), relative(unexplained)};
   }
 
- private:
-  /// Second moments of two sensels, of frames in which one of them is loaded.
-  struct PairMoments {
-    float frames = 0;
-    float aa = 0;
-    float ab = 0;
-    float bb = 0;
-  };
-  struct LineThreshold {
-    std::size_t line;
-    double counts;
-  };
-  [[nodiscard]] PairMoments moments(std::size_t along, const LineThreshold& a,
-                                    const LineThreshold& b) const {
-    const std::size_t lines = seen_.lines(axis_);
-    const float* const x = &signals_[(along * lines + a.line) * frames_.size()];
-    const float* const y = &signals_[(along * lines + b.line) * frames_.size()];
-    const auto least_x = static_cast<float>(a.counts);
-    const auto least_y = static_cast<float>(b.counts);
-    PairMoments sum;
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
-      const float weight = x[i] > least_x || y[i] > least_y ? 1 : 0;
-      sum.frames += weight;
-      sum.aa += weight * x[i] * x[i];
-      sum.ab += weight * x[i] * y[i];
-      sum.bb += weight * y[i] * y[i];
+  /// The least difference of line `a` or `b` from its neighbours other than the two.
+  [[nodiscard]] double difference_from_neighbours(std::size_t a, std::size_t b) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t line : {a, b}) {
+      for (const std::size_t other : {line - 1, line + 1}) {
+        if (other >= seen_.lines(axis_) || other == a || other == b) continue;
+        if (const auto found = difference(line, other)) least = std::min(least, found->unequal);
+      }
     }
-    return sum;
+    return least;
   }
 
+ private:
   const Examination& seen_;
   LineAxis axis_;
   std::vector<std::uint32_t> frames_;
   std::vector<float> signals_;
 };
 
-/// The least difference of line `a` or `b` from its neighbours other than the two.
-double neighbours_difference(const LineSignals& signals, std::size_t lines, std::size_t a,
-                             std::size_t b) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::size_t line : {a, b}) {
-    for (const std::size_t other : {line - 1, line + 1}) {
-      if (other >= lines || other == a || other == b) continue;
-      const auto difference = signals.difference(line, other);
-      if (difference) least = std::min(least, difference->unexplained);
-    }
-  }
-  return least;
-}
-
 bool share_pillars(const Diagnosis& found, std::uint32_t a, std::uint32_t b) {
   return may_have_pillars(found) && a % 2 == 0 && b == a + 1;
 }
 
-/// True if loads differ so much that two lines do not resemble each other by chance: many lines
-/// carry the largest load at some time.
-bool are_loads_unlike(const Examination& seen, LineAxis axis) {
-  const std::size_t lines = seen.lines(axis);
-  std::set<std::size_t> heaviest;
-  for (const std::uint32_t frame : seen.contacts) {
-    const auto signals = std::as_const(seen.kept).frame(frame);
-    std::vector<double> loads(lines);
-    for (std::size_t i = 0; i < signals.size(); ++i) {
-      const std::size_t line = axis == LineAxis::rows ? i / seen.cols : i % seen.cols;
-      if (seen.good[i] != 0 && signals[i] > seen.threshold(i)) loads[line] += signals[i];
+/// The loads of lines in frames of contacts, and where their centre of pressure lies.
+class LineCentres {
+ public:
+  LineCentres(const Examination& seen, LineAxis axis) {
+    for (const std::uint32_t frame : seen.contacts) {
+      const auto signals = std::as_const(seen.kept).frame(frame);
+      std::vector<float>& loads = loads_.emplace_back(seen.lines(axis));
+      double sum = 0;
+      double moment = 0;
+      for (std::size_t i = 0; i < signals.size(); ++i) {
+        if (seen.good[i] == 0 || signals[i] < seen.threshold(i)) continue;
+        const std::size_t line = axis == LineAxis::rows ? i / seen.cols : i % seen.cols;
+        loads[line] += signals[i];
+        sum += signals[i];
+        moment += static_cast<double>(signals[i]) * static_cast<double>(line);
+      }
+      centres_.push_back(sum > 0 ? moment / sum : 0);
     }
-    heaviest.insert(static_cast<std::size_t>(std::ranges::max_element(loads) - loads.begin()));
   }
-  return heaviest.size() >= std::min(kLeastHeaviest, lines);
-}
+
+  /// Way of the centre across the lines, but for its ends, while a line is loaded.
+  [[nodiscard]] double way(std::size_t line) const {
+    std::vector<double> centres;
+    for (std::size_t i = 0; i < centres_.size(); ++i) {
+      if (loads_[i][line] > 0) centres.push_back(centres_[i]);
+    }
+    return centres.empty() ? 0 : quantile(centres, 0.95) - quantile(centres, 0.05);
+  }
+
+ private:
+  std::vector<std::vector<float>> loads_;  ///< [frame][line]
+  std::vector<double> centres_;
+};
 
 void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
-  if (!are_loads_unlike(seen, axis)) return;
-  const bool was_swept = is_swept(seen, axis);
+  const LineCentres centres(seen, axis);
+  const double most = is_swept(seen, axis) ? kMostUnequalSwept : kMostUnequal;
   const LineSignals signals(seen, axis);
-  const std::size_t lines = seen.lines(axis);
-  for (std::uint32_t a = 0; a < lines; ++a) {
-    for (std::uint32_t b = a + 1; b < lines; ++b) {
+  for (std::uint32_t a = 0; a < seen.lines(axis); ++a) {
+    for (std::uint32_t b = a + 1; b < seen.lines(axis); ++b) {
+      if (share_pillars(found, a, b)) continue;
       const auto difference = signals.difference(a, b);
-      if (!difference || share_pillars(found, a, b)) continue;
-      const bool is_equal = difference->unequal < kMostUnequal;
-      const bool is_explained = was_swept && difference->unexplained < kMostUnexplained &&
-                                difference->unequal < kMostGainDifference;
-      if (!is_equal && !is_explained) continue;
-      const double others = neighbours_difference(signals, lines, a, b);
-      if (!std::isfinite(others) || others < kLeastDifference ||
-          difference->unexplained > kShortRatio * others) {
-        continue;
-      }
+      if (!difference || difference->unequal > most || centres.way(a) < kLeastMove) continue;
+      const double others = signals.difference_from_neighbours(a, b);
+      if (!std::isfinite(others) || difference->unequal > kShortRatio * others) continue;
       seen.shorted.push_back({axis, a, b});
       const bool are_rows = axis == LineAxis::rows;
       add(found, {.fault = are_rows ? ArrayFault::shorted_rows : ArrayFault::shorted_columns,
@@ -212,6 +197,15 @@ void find_shorts(Examination& seen, Diagnosis& found) {
   if (seen.contacts.size() < 10) return;
   find_shorted_lines(seen, LineAxis::rows, found);
   find_shorted_lines(seen, LineAxis::columns, found);
+  // Lines that lie apart show contacts in two places, of which one is wrong.
+  for (const auto& [axis, first, second] : seen.shorted) {
+    if (second - first == 1) continue;
+    for (const std::uint32_t line : {first, second}) {
+      for (std::size_t along = 0; along < seen.kept.sensels() / seen.lines(axis); ++along) {
+        seen.good[seen.sensel(axis, line, along)] = 0;
+      }
+    }
+  }
 }
 
 }  // namespace pillarfield

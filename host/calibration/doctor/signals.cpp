@@ -5,6 +5,7 @@
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
+#include "calibration/neighbours.h"
 
 namespace pillarfield {
 namespace {
@@ -86,8 +87,7 @@ SenselFigure figure_of(const Examination& seen, const std::vector<float>& values
     if (seen.constant[i] != 0 || distance <= farthest) continue;
     farthest = distance;
     figure.worst = values[i];
-    figure.place = {static_cast<std::uint32_t>(i / seen.cols),
-                    static_cast<std::uint32_t>(i % seen.cols)};
+    figure.place = seen.place(i);
   }
   return figure;
 }
@@ -117,6 +117,19 @@ double seconds_per_frame(const KeptFrames& kept) {
   return seconds > 0 ? seconds : 0;
 }
 
+/// Sensels that are noisier than most and than those around them, which load moves, too.
+void find_noisy(Examination& seen) {
+  std::vector<float> around;
+  for (std::size_t i = 0; i < seen.noise.size(); ++i) {
+    if (seen.noise[i] <= kNoisy * seen.typical_noise) continue;
+    around.clear();
+    for (const std::size_t n : Neighbours(seen.statistics.skin(), i).all()) {
+      if (seen.constant[n] == 0) around.push_back(seen.noise[n]);
+    }
+    seen.noisy[i] = around.empty() || seen.noise[i] > kNoisy * median(around) ? 1 : 0;
+  }
+}
+
 /// Noise of the sensels, and the range of what they read.
 void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   const std::size_t sensels = seen.kept.sensels();
@@ -140,6 +153,7 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   if (seen.statistics.type() != SenselType::f32) {
     seen.typical_noise = std::max(seen.typical_noise, kRounding);
   }
+  find_noisy(seen);
   std::vector<double> spans;
   for (std::size_t i = 0; i < sensels; ++i) {
     if (seen.is_steady(i)) spans.push_back(double{seen.highest[i]} - seen.lowest[i]);
@@ -166,6 +180,7 @@ class Baseline {
   }
 
   [[nodiscard]] double of(std::size_t sensel, std::size_t frame) const {
+    if (seen_.constant[sensel] != 0) return 0;
     const double at = std::clamp(place_of(frame), 0.0, static_cast<double>(windows_ - 1));
     const auto before = static_cast<std::size_t>(at);
     const double next = before + 1 < windows_ ? common_[before + 1] : common_[before];
@@ -377,11 +392,11 @@ void find_contacts(Examination& seen, Diagnosis& found) {
 }  // namespace
 
 double Examination::threshold(std::size_t sensel) const {
-  return kBeyondIdleNoise * std::max<double>(noise[sensel], typical_noise);
+  return kBeyondIdleNoise * noise_of(sensel);
 }
 
 bool Examination::is_steady(std::size_t sensel) const {
-  return constant[sensel] == 0 && noise[sensel] <= kNoisy * typical_noise;
+  return constant[sensel] == 0 && noisy[sensel] == 0;
 }
 
 void find_signals(Examination& seen, Diagnosis& found) {
