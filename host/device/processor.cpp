@@ -18,7 +18,6 @@
 #include "device/kernel_source.h"
 #include "device/lane_slot.h"
 #include "device/opencl_slot.h"
-#include "device/scalar_slot.h"
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
@@ -113,20 +112,18 @@ std::size_t threads_beside(const Device::State& device) {
   return std::max<std::size_t>(threads, 1);
 }
 
-/// How the host solves a plan with vectors; nothing on an OpenCL device, or for a skin with a
-/// single column of pillars.
+/// The program of the host for a plan; nothing on an OpenCL device.
 std::optional<LaneSettings> lane_settings(const Device& device, const SolverPlan& plan, int lanes) {
   if (!device.state().is_host()) return std::nullopt;
-  const int most = lanes != 0 ? lanes : device.info().lanes;
-  const LaneProgram* const program = lane_program(quad_cols(plan.skin), most);
-  if (program == nullptr) return std::nullopt;
-  return LaneSettings(plan, *program);
+  return LaneSettings(plan, lanes != 0 ? lanes : device.info().lanes);
 }
 
-std::vector<CalibrationPlane> planes_of(const std::optional<LaneSettings>& lanes,
-                                        const SolverPlan& plan, const SpeedPaths& paths) {
-  if (lanes) return lane_planes(plan, *lanes);
-  return calibration_planes(plan, paths.skip_idle && has_activation_plane(plan));
+DeviceCalibration calibration_of(const Device& device, const std::optional<LaneSettings>& lanes,
+                                 const SolverPlan& plan, const SpeedPaths& paths) {
+  if (lanes) return {{}, lane_calibration(plan, *lanes)};
+  const bool has_activation = paths.skip_idle && has_activation_plane(plan);
+  return {device.state().context,
+          {plan, calibration_planes(plan, has_activation), plan.sensel_type}};
 }
 
 }  // namespace
@@ -141,17 +138,11 @@ struct Processor::State {
         shares_memory(decide_sharing(options.memory, opened)),
         paths(decide_paths(opened, wanted, options, tuning)),
         lanes(lane_settings(opened, wanted, tuning.lanes)),
-        calibration(opened.state().context, wanted, planes_of(lanes, wanted, paths)),
+        calibration(calibration_of(opened, lanes, wanted, paths)),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
     begin_states(wanted);
     if (lanes) {
       add_lane_slots(wanted, options.frames_in_flight);
-    } else if (device.state().is_host()) {
-      const auto sequence =
-          std::make_shared<ScalarSlot::Sequence>(ScalarSlot::Sequence{wanted, {}});
-      for (int i = 0; i < options.frames_in_flight; ++i) {
-        slots.push_back(std::make_shared<ScalarSlot>(sequence, calibration, order));
-      }
     } else {
       add_opencl_slots(wanted, options.frames_in_flight, tuning);
       warm_up();
@@ -182,7 +173,8 @@ struct Processor::State {
       pool = std::make_unique<ThreadPool>(threads_beside(device.state()));
     }
     for (int i = 0; i < count; ++i) {
-      slots.push_back(std::make_shared<LaneSlot>(plan, *lanes, calibration, order, pool.get()));
+      slots.push_back(
+          std::make_shared<LaneSlot>(plan, *lanes, calibration.planes(), order, pool.get()));
     }
   }
 
@@ -200,20 +192,17 @@ struct Processor::State {
 
   /// Waits for the frames in flight, whose results stay as they are.
   void set_plan(const SolverPlan& plan) {
-    const bool is_opencl = !device.state().is_host();
-    if (is_opencl) {
+    if (!lanes) {
       settings.program =
           device.state().program(kernel_source(plan, settings.lanes, settings.paths));
     }
     for (const auto& slot : slots) slot->wait();
-    if (lanes) lanes.emplace(plan, *lanes->program);
-    calibration = {device.state().context, plan, planes_of(lanes, plan, paths)};
+    if (lanes) lanes.emplace(plan, lanes->program->lanes);
+    calibration = calibration_of(device, lanes, plan, paths);
     begin_states(plan);
     for (const auto& slot : slots) {
       if (lanes) {
-        static_cast<LaneSlot&>(*slot).set_plan(plan, *lanes, calibration);
-      } else if (!is_opencl) {
-        static_cast<ScalarSlot&>(*slot).set_plan(plan);
+        static_cast<LaneSlot&>(*slot).set_plan(plan, *lanes, calibration.planes());
       } else {
         static_cast<OpenClSlot&>(*slot).set_plan(plan, settings, calibration);
       }
@@ -242,7 +231,7 @@ struct Processor::State {
   std::optional<LaneSettings> lanes;  ///< of the host
   SlotSettings settings;              ///< of an OpenCL device
   std::unique_ptr<ThreadPool> pool;   ///< of the host, for large frames
-  CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
+  DeviceCalibration calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
   std::optional<DriftFollower> drift;          ///< of a followed baseline
@@ -423,7 +412,7 @@ void Processor::set_plan(const SolverPlan& plan) {
   const Skin& skin = state_->skin;
   if (plan.skin.rows != skin.rows || plan.skin.cols != skin.cols ||
       plan.skin.layout != skin.layout || plan.sensel_type != state_->sensel_type ||
-      plan.calibration.tare.empty() || !state_->calibration.has_tare() ||
+      plan.calibration.tare.empty() || !state_->calibration.planes().has_tare() ||
       state_->outputs != std::array{plan.angles, plan.uncertainty}) {
     throw Error(kWhere, "the plan has other frames or outputs, or no tare",
                 "make another processor for it");
@@ -460,9 +449,9 @@ int Processor::pinned() const { return state_ ? static_cast<int>(state_->schedul
 std::vector<float> Processor::tare() const {
   if (!state_) return start_->tare;
   return with_opencl_errors(state_->device.info().name, [&] {
-    if (!state_->calibration.has_tare()) return std::vector<float>();
+    if (!state_->calibration.planes().has_tare()) return std::vector<float>();
     if (state_->order.left() != nullptr) state_->order.left.wait();
-    return state_->calibration.tare();
+    return state_->calibration.tare(state_->skin.rows, state_->skin.cols);
   });
 }
 

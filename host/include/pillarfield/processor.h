@@ -57,9 +57,8 @@ class Device {
 
   /// The device that solves the frames of a plan: this one, if it was named. Else the host for a
   /// skin of up to 16,384 pillars (or 2 x 2 sensels; 65,536 if it solves forces alone from 8-bit
-  /// readings without any correction) and two columns or more, without opening OpenCL, and the best
-  /// OpenCL device for others; the host if there is no such device. Throws Error in the cases of
-  /// list_devices().
+  /// readings without any correction), without opening OpenCL, and the best OpenCL device for
+  /// others; the host if there is no such device. Throws Error in the cases of list_devices().
   [[nodiscard]] Device for_plan(const SolverPlan& plan) const;
 
   /// @cond internal
