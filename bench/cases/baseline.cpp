@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/child_program.h"
 #include "bench/baselines/agreement.h"
 #include "bench/baselines/loop_solver.h"
 #include "bench/baselines/vectorised.h"
@@ -21,6 +20,7 @@
 #include "bench/frames.h"
 #include "bench/timing/solve_timing.h"
 #include "bench/timing/unsuffixed_reporter.h"
+#include "pillarfield/child_program.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/host_solve.h"
