@@ -105,8 +105,8 @@ std::unique_ptr<viewer::FieldProducer> make_producer(const Device& solver, std::
 viewer::RenderSettings settings_of(viewer::FieldProducer& producer, const Pictures::Kind& kind) {
   viewer::Options options;
   options.orbit = kind.orbit;
-  options.arrows = kind.arrows;
-  options.legend = kind.overlay;
+  options.look.arrows = kind.arrows;
+  options.look.legend = kind.overlay;
   viewer::RenderSettings settings = viewer::default_settings(options, producer, 1);
   const viewer::Layout layout = viewer::layout_of(Pictures::kWidth, Pictures::kHeight, settings);
   settings.view = viewer::first_view(options, producer.info(), layout);
