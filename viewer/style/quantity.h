@@ -37,10 +37,10 @@ struct QuantityInfo {
   std::string_view unit;  ///< displayed unit: "N", "°", "counts", ""
   double factor;  ///< displayed number over value: 180/pi for angles, 1/kPa for pressure, else 1
   Scale scale;
+  bool (*is_in)(const SourceInfo& source);  ///< see is_available()
 };
 [[nodiscard]] QuantityInfo info_of(Quantity quantity,
                                    const PressureUnit& unit = kPressureUnits.front());
-[[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
 
 /// Values of `status`; the worst applies.
 enum class StatusClass : std::uint8_t {

@@ -15,8 +15,8 @@
 #include "cli/stream/session.h"
 #include "cli/warnings.h"
 #include "io/file_kind.h"
-#include "io/layout_note.h"
 #include "pillarfield/error.h"
+#include "pillarfield/layout_note.h"
 #include "pillarfield/live.h"
 #include "pillarfield/printable.h"
 

@@ -110,25 +110,16 @@ TEST(Arrows, PointWhereTheShearActs) {
   EXPECT_EQ(drawing.validation_messages(), 0);
 }
 
-TEST(Arrows, AreAsLongAsTheForce) {
+TEST(Arrows, AreAsLongAsTheForceAndHaveALeastLength) {
   Drawing drawing;
-  const MadeUpField full = one_pillar(1, 0);
-  const MadeUpField half = one_pillar(0.5F, 0);
-  const double full_length = shape_of(drawing.draw(full, arrow_look(full), kSide, kSide)).length;
-  const double half_length = shape_of(drawing.draw(half, arrow_look(half), kSide, kSide)).length;
-  EXPECT_NEAR(half_length / full_length, 0.5, 0.02);
-}
-
-TEST(Arrows, HaveALeastLengthAndVanishWithoutForce) {
-  Drawing drawing;
-  const MadeUpField faint = one_pillar(0.02F, 0);
-  const Shape shape = shape_of(drawing.draw(faint, arrow_look(faint), kSide, kSide));
-  EXPECT_GT(shape.length, 8);
-  EXPECT_LT(shape.length, 14);
-  const MadeUpField pressed = one_pillar(0, 0, 0.7F);
-  EXPECT_EQ(shape_of(drawing.draw(pressed, arrow_look(pressed), kSide, kSide)).pixels, 0U);
-  const MadeUpField idle(3, 3, [](auto, auto) { return MadeUpPillar{1, 1, 1, 0}; });
-  EXPECT_EQ(shape_of(drawing.draw(idle, arrow_look(idle), kSide, kSide)).pixels, 0U);
+  const auto length_of = [&](float shear) {
+    const MadeUpField field = one_pillar(shear, 0);
+    return shape_of(drawing.draw(field, arrow_look(field), kSide, kSide)).length;
+  };
+  EXPECT_NEAR(length_of(0.5F) / length_of(1), 0.5, 0.02);
+  EXPECT_GT(length_of(0.02F), 8);
+  EXPECT_LT(length_of(0.02F), 14);
+  EXPECT_EQ(length_of(0), 0);
 }
 
 TEST(Arrows, FromAfarAddWhatLiesUnderTheirCell) {
@@ -148,70 +139,6 @@ TEST(Arrows, FromAfarAddWhatLiesUnderTheirCell) {
   const double cell = 8 * 400 * 0.92 / 96;
   EXPECT_NEAR(mean_length(1.0F), 1.5 * cell, 2.5);
   EXPECT_NEAR(mean_length(-0.5F), 1.5 * cell / 4, 2.5);
-}
-
-TEST(Arrows, AddNothingOfTheNextCell) {
-  // Cells of 3 x 3 pillars, not aligned with words of four statuses. The shears in the two cells
-  // beside the middle one cancel, so they have no arrow despite strong forces.
-  const MadeUpField field(30, 30, [](std::uint32_t row, std::uint32_t col) {
-    if (row < 9 || row >= 12 || col < 6 || col >= 15) return MadeUpPillar{0, 0, 0, 0};
-    const std::array<float, 9> shears{-1, 0, 1, 0.5F, 0.5F, 0.5F, 1, 0, -1};
-    return MadeUpPillar{shears.at(col - 6), 0, 0.1F, 15};
-  });
-  Drawing drawing;
-  RenderSettings settings = arrow_look(field);
-  settings.scale = 1;
-  settings.arrow_cell = 30;
-  EXPECT_EQ(arrow_block_of(settings, {0, 0, kSide, kSide}, 1.0), 3U);
-  const double cell = 3 * 400 * 0.92 / 30;
-  EXPECT_NEAR(shape_of(drawing.draw(field, settings, kSide, kSide)).length, 1.5 * cell / 2, 2.5);
-}
-
-TEST(Arrows, InSpaceAreTheForceThatActsOnTheSkin) {
-  Drawing drawing;
-  struct Case {
-    float shear_x, shear_y, normal;
-  };
-  for (const Case& force : {Case{1, 0, 0.3F}, Case{0, 1, 0.5F}, Case{0, 0, 1},
-                            Case{-0.7F, 0.4F, 0.6F}, Case{0.3F, -0.9F, 0.2F}}) {
-    const MadeUpField field = one_pillar(force.shear_x, force.shear_y, force.normal);
-    RenderSettings settings = arrow_look(field);
-    settings.full_force_n = 3;
-    const SkinSize size = skin_size(field.source());
-    const Viewport plot{0, 0, kSide, kSide};
-    for (const Surface& surface : {Surface{}, Surface{SurfaceKind::cylinder, 2}}) {
-      settings.surface = surface;
-      settings.view = fit_orbit(size, surface, plot);
-      std::get<OrbitView>(settings.view).distance_mm *= 0.4;
-      const double mm = 1.5 / 3;  // Length of 1 N in cells of one pillar, 1 mm wide.
-      const auto tip = project(settings.view, surface, size, plot, {0, 0, 0});
-      const auto tail = project(settings.view, surface, size, plot,
-                                {-mm * force.shear_x, -mm * force.shear_y, mm * force.normal});
-      ASSERT_TRUE(tip && tail);
-      const double direction = std::atan2(tail->y - tip->y, tip->x - tail->x);
-      const double length = std::hypot(tip->x - tail->x, tip->y - tail->y);
-      const Shape shape = shape_of(drawing.draw(field, settings, kSide, kSide));
-      EXPECT_LT(turn_between(shape.direction, direction), 4 * kDegree)
-          << force.shear_x << ' ' << force.shear_y << ' ' << force.normal;
-      EXPECT_NEAR(shape.length, length, 4);
-    }
-  }
-}
-
-TEST(Sectors, SpanTheDirectionsAnAmbiguousPillarMayHave) {
-  Drawing drawing;
-  const auto draw = [&](std::uint8_t status, bool sectors) {
-    const MadeUpField field(3, 3, [=](std::uint32_t row, std::uint32_t col) {
-      const bool middle = row == 1 && col == 1;
-      return MadeUpPillar{middle ? 1.0F : 0.0F, 0, middle ? 0.2F : 0.0F,
-                          static_cast<std::uint8_t>(middle ? status : 0)};
-    });
-    RenderSettings settings = arrow_look(field);
-    settings.sectors = sectors;
-    return drawing.draw(field, settings, kSide, kSide).rgba;
-  };
-  EXPECT_NE(draw(3 | 16, true), draw(3 | 16, false));
-  EXPECT_EQ(draw(15, true), draw(15, false));
 }
 
 }  // namespace

@@ -130,21 +130,5 @@ TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
   EXPECT_EQ(in_place.memory().bytes_copied(), 0U);
 }
 
-TEST(HeatMap, ReadInPlaceFollowsTheMemory) {
-  const MadeUpField field = varied_field();
-  Drawing drawing;
-  if (!drawing.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
-  const RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
-  const Pixels before = drawing.draw(field, settings, kMapWidth, kMapHeight);
-  // A solver writes into the imported memory, without a copy.
-  auto* const normal = const_cast<float*>(field.shown().forces.normal.data());
-  std::fill(normal, normal + field.shown().forces.normal.size(), 1.0F);
-  const Pixels after = drawing.draw(field, settings, kMapWidth, kMapHeight);
-  EXPECT_NE(before.rgba, after.rgba);
-  const PixelPlace place = middle_of(field, settings, kMapWidth, kMapHeight, 3, 3);
-  EXPECT_EQ(colour_at(after, place.x, place.y), table_of(settings.map).back());
-  EXPECT_EQ(drawing.memory().bytes_copied(), 0U);
-}
-
 }  // namespace
 }  // namespace pillarfield::viewer

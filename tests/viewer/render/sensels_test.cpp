@@ -72,24 +72,6 @@ TEST(BareSensels, APressureIsShownInItsUnit) {
   }
 }
 
-TEST(BareSensels, APressureIsTheForceOverTheAreaInKilopascals) {
-  const MadeUpField field(2, 2, [](std::uint32_t row, std::uint32_t) {
-    return MadeUpPillar{0, 0, row == 0 ? 2.0F : 0.5F, status::kSensel1};
-  });
-  for (const double pitch_mm : {1.0, 4.0, 10.0}) {
-    MadeUpField bare = field.without_pillars();
-    Skin skin = bare.source().skin;
-    skin.sensel_pitch_mm = pitch_mm;
-    const double area_mm2 = pitch_mm * pitch_mm;
-    EXPECT_FLOAT_EQ(value_of(Quantity::pressure, bare.shown(), skin, 0, 1),
-                    static_cast<float>(1e3 * 2 / area_mm2));
-    skin = field.source().skin;  // With pillars, of 2 x 2 sensels.
-    skin.sensel_pitch_mm = pitch_mm;
-    EXPECT_FLOAT_EQ(value_of(Quantity::pressure, field.shown(), skin, 1, 1),
-                    static_cast<float>(1e3 * 0.5 / (4 * area_mm2)));
-  }
-}
-
 TEST(BareSensels, AreSharpRectanglesAtAnyZoom) {
   const MadeUpField field = bare_field();
   Drawing drawing;

@@ -121,25 +121,6 @@ TEST(SenselsProducer, ShowsAFileOfTheirForces) {
   EXPECT_FALSE(producer->contacts_of(field).found.total.has_shear);
 }
 
-TEST(SenselsProducer, PlainNumbersAreSenselsUntilPillarsAreAskedFor) {
-  const TemporaryDirectory directory;
-  std::string text;
-  for (std::size_t i = 0; i < bare_skin().sensels(); ++i) {
-    text += std::to_string(bare_reading(0, i)) + ((i + 1) % kBareCols == 0 ? "\n" : ",");
-  }
-  io_test::write_bytes(directory / "one.csv", text);
-  ProducerOptions options;
-  options.read.rate_hz = 10;
-  options.read.counts_per_newton = 50;
-  options.read.threshold_counts = 10;
-  expect_bare_forces(open_producer(directory / "one.csv", options)->produce(0).forces, 0);
-  options.read.layout = SkinLayout::pillars;
-  const auto pillars = open_producer(directory / "one.csv", options);
-  EXPECT_TRUE(pillars->info().skin.has_pillars());
-  EXPECT_EQ(pillars->produce(0).forces.rows, kBareRows / 2);
-  EXPECT_FALSE(pillars->produce(0).forces.phi.empty());
-}
-
 TEST(SenselsPeak, IsTheLargestForceOfEachSensel) {
   const TemporaryDirectory directory;
   write_bare_recording(directory / "r.h5");

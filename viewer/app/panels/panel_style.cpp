@@ -110,13 +110,6 @@ Colour status_colour(std::uint8_t status, bool pillars, Theme theme) {
 
 }  // namespace
 
-Colour region_colour(Region region, Theme theme) {
-  constexpr std::array<Special, kRegions> kSpecial{Special::idle,     Special::region_1,
-                                                   Special::region_2, Special::region_3,
-                                                   Special::region_4, Special::opposite};
-  return colour_of(kSpecial[static_cast<std::size_t>(region)], theme);
-}
-
 void swatch(const PanelStyle& style, ImU32 colour) {
   const double side = std::round(0.66 * style.line);
   const Viewport line = reserve(side, style.line);

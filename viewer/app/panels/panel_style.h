@@ -56,8 +56,6 @@ void faint_text(const PanelStyle& style, const char* words);
 /// The title of a part of a panel, with `further` in the faint colour.
 void heading(const PanelStyle& style, const std::string& words, const std::string& further = {});
 
-[[nodiscard]] Colour region_colour(Region region, Theme theme);
-
 /// The status of a pillar or sensel after a swatch in the colour of its region or fault; "no
 /// sensel" where there is none.
 void status_line(const PanelStyle& style, const AppState& state, PillarIndex pillar,

@@ -88,7 +88,7 @@ std::string source_words(const AppState& state) {
   const Skin& skin = player.info().skin;
   const std::string size =
       fmt::format("{} × {} {}", skin.element_rows(), skin.element_cols(), name_of(skin.layout));
-  if (const LiveControl* const live = player.live()) {
+  if (LiveControl* const live = player.live()) {
     return fmt::format("{}   {}", sensor_words(live->status()), size);
   }
   return fmt::format("{} at {:.6g} Hz   {}", plural(player.state().frames, "frame"),
