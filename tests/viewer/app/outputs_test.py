@@ -70,9 +70,9 @@ class Outputs(unittest.TestCase):
             self.assertEqual(path.read_bytes(), content, path)
 
     def test_only_earlier_tables_are_replaced_without_overwrite(self):
-        self.assert_refused("forces.h5", "--csv", "rec.h5", says="holds a recording")
+        self.assert_refused("forces.h5", "--csv", "rec.h5", says="not an earlier result")
         os.link(self.folder / "rec.h5", self.folder / "rec.png")
-        self.assert_refused("forces.h5", "--png", "rec.png", says="holds a recording")
+        self.assert_refused("forces.h5", "--png", "rec.png", says="not an earlier result")
         notes = self.folder / "notes.csv"
         notes.write_text("mine\n", encoding="utf-8")
         self.assert_refused("forces.h5", "--csv", "notes.csv", says="--overwrite")
