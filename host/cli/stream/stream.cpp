@@ -114,7 +114,6 @@ void stream(const StreamOptions& options) {
   const auto opened = std::chrono::steady_clock::now();
   Processor processor(device, plan,
                       {.frames_in_flight = options.frames_in_flight,
-                       .start_on_host = !options.summary,
                        .on_compiling = terminal_line(options.quiet)});
   // Frames that waited for kernels would count as late.
   const auto prepared = std::chrono::steady_clock::now() - opened;
