@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
-#include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 
-#include "device/host_start.h"
 #include "device/kernel_source.h"
 #include "device/lane_slot.h"
 #include "device/opencl_slot.h"
@@ -32,8 +31,7 @@ namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
 constexpr const char* kSubmit = "Processor::submit";
-constexpr std::chrono::milliseconds kCompileNotice{300};   ///< wait without a message
-constexpr std::chrono::milliseconds kCompiledBefore{150};  ///< wait for the driver's cache
+constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -90,13 +88,30 @@ std::string line_on_compiling(const DeviceInfo& device) {
                      device.kernels_not_kept);
 }
 
-[[noreturn]] void throw_all_in_flight(std::size_t slots) {
-  throw Error(kSubmit, fmt::format("all {} frames are in flight", slots),
-              "receive() one first, or set more frames_in_flight");
-}
+/// Calls a function from its own thread after a delay, unless the object is destroyed before.
+class LateCall {
+ public:
+  /// An empty `function` is not called.
+  LateCall(std::chrono::milliseconds delay, std::function<void()> function) {
+    if (!function) return;
+    thread_.emplace([delay, call = std::move(function)](const std::stop_token& ended) {
+      std::mutex mutex;
+      std::unique_lock lock(mutex);
+      std::condition_variable_any nothing;
+      nothing.wait_for(lock, ended, delay, [] { return false; });
+      if (!ended.stop_requested()) call();
+    });
+  }
+
+ private:
+  std::optional<std::jthread> thread_;  ///< ends with the object
+};
 
 [[noreturn]] void throw_no_slot(const SlotScheduler& scheduler) {
-  if (scheduler.pinned() == 0) throw_all_in_flight(scheduler.slots());
+  if (scheduler.pinned() == 0) {
+    throw Error(kSubmit, fmt::format("all {} frames are in flight", scheduler.slots()),
+                "receive() one first, or set more frames_in_flight");
+  }
   throw Error(kSubmit,
               fmt::format("of {} frames {} are in flight and {} are pinned", scheduler.slots(),
                           scheduler.in_flight(), scheduler.pinned()),
@@ -253,31 +268,6 @@ struct Processor::PinnedResult::State {
   std::size_t slot_index;
 };
 
-/// What serves frames while the kernels are compiled in another thread. Its results outlive that.
-struct Processor::Start {
-  [[nodiscard]] bool is_over() const {
-    return failed || compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  }
-
-  /// Waits for the kernels; throws the Error of their compilation at every call.
-  std::unique_ptr<State> take() {
-    if (failed) std::rethrow_exception(failed);
-    try {
-      return compiled.get();
-    } catch (...) {
-      failed = std::current_exception();
-      throw;
-    }
-  }
-
-  Device device;
-  bool shares_memory;
-  std::vector<float> tare;
-  Processor host;
-  std::future<std::unique_ptr<State>> compiled;
-  std::exception_ptr failed = {};
-};
-
 Processor::PinnedResult::PinnedResult(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Processor::PinnedResult::PinnedResult(PinnedResult&&) noexcept = default;
 Processor::PinnedResult& Processor::PinnedResult::operator=(PinnedResult&&) noexcept = default;
@@ -292,62 +282,14 @@ Processor::Processor(const Device& device, const SolverPlan& plan, const Options
   check_options(options, tuning);
   check(plan, "solver plan");
   const Device chosen = device.for_plan(plan);
-  const auto open = [=] {
-    return with_opencl_errors(
-        chosen.info().name, [&] { return std::make_unique<State>(chosen, plan, options, tuning); });
-  };
-  if (chosen.state().is_host()) {
-    state_ = open();
-    return;
+  std::function<void()> notify;
+  if (options.on_compiling && !chosen.state().is_host()) {
+    notify = [&] { options.on_compiling(line_on_compiling(chosen.info())); };
   }
-  const auto compile = [=] {
-    std::function<void()> notify;
-    if (options.on_compiling) {
-      notify = [&] { options.on_compiling(line_on_compiling(chosen.info())); };
-    }
-    const LateCall notice(kCompileNotice, notify);
-    return open();
-  };
-  if (options.start_on_host && starts_on_host(plan)) {
-    try {
-      Processor host(open_device("host"), plan, {.frames_in_flight = options.frames_in_flight});
-      start_ = std::make_unique<Start>(Start{chosen, decide_sharing(options.memory, chosen),
-                                             plan.calibration.tare, std::move(host),
-                                             std::async(std::launch::async, compile)});
-      start_->compiled.wait_for(kCompiledBefore);
-      end_start();
-      return;
-    } catch (const std::system_error&) {
-      start_.reset();  // The limit of threads is reached.
-    }
-  }
-  state_ = compile();
+  const LateCall notice(kCompileNotice, notify);
+  state_ = with_opencl_errors(
+      chosen.info().name, [&] { return std::make_unique<State>(chosen, plan, options, tuning); });
 }
-
-/// Takes the kernels if they are compiled.
-void Processor::end_start() {
-  if (state_ == nullptr && start_->is_over()) state_ = start_->take();
-}
-
-/// Waits for the kernels.
-void Processor::await_kernels() {
-  if (state_ == nullptr) state_ = start_->take();
-}
-
-/// Solves the frame on the host if the kernels are not compiled yet; false if they are.
-bool Processor::submit_on_host(const FrameView& frame) {
-  if (start_ == nullptr) return false;
-  end_start();
-  const std::size_t slots = start_->host.state_->slots.size();
-  if (start_->host.in_flight() > 0 && static_cast<std::size_t>(in_flight()) == slots) {
-    throw_all_in_flight(slots);
-  }
-  if (state_ != nullptr) return false;
-  start_->host.submit(frame);
-  return true;
-}
-
-bool Processor::is_compiling() const { return start_ != nullptr && !state_ && !start_->is_over(); }
 
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options)
     : Processor(device, plan, options, ProcessorTuning{}) {}
@@ -375,13 +317,11 @@ void Processor::State::submit(const FrameView& frame) {
 }
 
 void Processor::submit(const FrameView& frame) {
-  if (submit_on_host(frame)) return;
   check(frame, state_->skin, state_->sensel_type, kSubmit);
   state_->submit(frame);
 }
 
 ForceFieldView Processor::receive() {
-  if (start_ && start_->host.in_flight() > 0) return start_->host.receive();
   if (in_flight() == 0) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
@@ -397,7 +337,6 @@ ForceFieldView Processor::receive() {
 
 std::optional<ForceFieldView> Processor::try_receive() {
   if (in_flight() == 0) return std::nullopt;
-  if (start_ && start_->host.in_flight() > 0) return receive();
   const bool done = with_opencl_errors(state_->device.info().name, [&] {
     return state_->slots[state_->scheduler.oldest()]->is_done();
   });
@@ -407,7 +346,6 @@ std::optional<ForceFieldView> Processor::try_receive() {
 
 void Processor::set_plan(const SolverPlan& plan) {
   constexpr const char* kWhere = "Processor::set_plan";
-  await_kernels();
   check(plan, kWhere);
   const Skin& skin = state_->skin;
   if (plan.skin.rows != skin.rows || plan.skin.cols != skin.cols ||
@@ -421,7 +359,7 @@ void Processor::set_plan(const SolverPlan& plan) {
 }
 
 Processor::PinnedResult Processor::pin() {
-  const std::optional<std::size_t> slot = state_ ? state_->scheduler.pin() : std::nullopt;
+  const std::optional<std::size_t> slot = state_->scheduler.pin();
   if (!slot) {
     throw Error("Processor::pin", "there is no frame to pin",
                 "call pin() once per frame, after receive() and before its slot is used again");
@@ -431,23 +369,19 @@ Processor::PinnedResult Processor::pin() {
 }
 
 FoundContacts Processor::contacts() const {
-  if (!state_ || state_->last == nullptr) return {};
+  if (state_->last == nullptr) return {};
   return state_->contacts ? state_->contacts->contacts() : state_->last->contacts();
 }
 
 Curvature Processor::curvature() const {
-  return state_ && state_->curvature ? state_->curvature->curvature() : Curvature{};
+  return state_->curvature ? state_->curvature->curvature() : Curvature{};
 }
 
-int Processor::in_flight() const {
-  const std::size_t on_device = state_ ? state_->scheduler.in_flight() : 0;
-  return static_cast<int>(on_device) + (start_ ? start_->host.in_flight() : 0);
-}
+int Processor::in_flight() const { return static_cast<int>(state_->scheduler.in_flight()); }
 
-int Processor::pinned() const { return state_ ? static_cast<int>(state_->scheduler.pinned()) : 0; }
+int Processor::pinned() const { return static_cast<int>(state_->scheduler.pinned()); }
 
 std::vector<float> Processor::tare() const {
-  if (!state_) return start_->tare;
   return with_opencl_errors(state_->device.info().name, [&] {
     if (!state_->calibration.planes().has_tare()) return std::vector<float>();
     if (state_->order.left() != nullptr) state_->order.left.wait();
@@ -455,10 +389,8 @@ std::vector<float> Processor::tare() const {
   });
 }
 
-bool Processor::shares_memory() const {
-  return state_ ? state_->shares_memory : start_->shares_memory;
-}
+bool Processor::shares_memory() const { return state_->shares_memory; }
 
-const Device& Processor::device() const { return state_ ? state_->device : start_->device; }
+const Device& Processor::device() const { return state_->device; }
 
 }  // namespace pillarfield

@@ -113,7 +113,6 @@ void stream(const StreamOptions& options) {
   const Device device = open_device(options.device).for_plan(plan);
   Processor processor(device, plan,
                       {.frames_in_flight = options.frames_in_flight,
-                       .start_on_host = !options.summary,
                        .on_compiling = terminal_line(options.quiet)});
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
   session.run(is_live_source(options.source) ? waited : std::chrono::nanoseconds(0));
