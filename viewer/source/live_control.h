@@ -22,7 +22,7 @@ struct LiveStatus {
 /// "12 frames, 3 dropped, failed: the disk is full".
 [[nodiscard]] std::string recorded_words(const LiveSinkStatistics& recorded);
 
-/// What a user can do with a sensor. Results of another program have no tare and no raw frames:
+/// Actions of a user on a sensor. Results of another program have no tare and no raw frames:
 /// then SourceInfo::has_readings is false.
 class LiveControl {
  public:

@@ -113,7 +113,7 @@ class LivePlayer final : public LiveView, private ForceSink {
   Processor processor_;
   SourceInfo info_;  ///< of the display's thread
   LiveSession session_;
-  // Of the thread.
+  // Members of the thread.
   ContactTracker tracker_;
   ObjectPool<LiveField> fields_;
   bool tracks_ = false;

@@ -50,7 +50,7 @@ class LiveView : public Player, public LiveControl {
   std::atomic<bool> paused_ = false;
   std::atomic<bool> wants_contacts_ = false;
   std::atomic<bool> wants_peak_ = false;
-  // Of the thread.
+  // Members of the thread.
   PeakHold peak_;
   FieldClock clock_;
 

@@ -29,7 +29,7 @@ auto& plane_of(Field& field, std::size_t index) {
   return field.uncertainty[static_cast<Uncertainty>(index - kFirstUncertainty)];
 }
 
-/// Of sensels only the normal force and its deviation exist.
+/// Sensels have only the normal force and its deviation.
 bool has_plane(SkinLayout layout, bool uncertainty, std::size_t index) {
   if (index >= kFirstUncertainty && !uncertainty) return false;
   return layout == SkinLayout::pillars || index == PlaneBlock::kNormal ||

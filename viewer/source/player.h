@@ -115,7 +115,7 @@ class Player {
   /// return.
   void on_new_field(std::function<void()> wake) { newest_.on_new_field(std::move(wake)); }
 
-  /// What a sensor can do besides; null for a file.
+  /// Actions on a sensor; null for a file.
   [[nodiscard]] virtual LiveControl* live() { return nullptr; }
 
  protected:

@@ -13,7 +13,7 @@ namespace {
 
 using ResultTime = std::chrono::nanoseconds;
 
-/// How long a change of what is wanted may go unnoticed while no result comes.
+/// Time that a change of the wanted planes may go unnoticed while no result comes.
 constexpr ResultTime kPatience = std::chrono::milliseconds(50);
 
 ResultTime now_of_results() { return std::chrono::steady_clock::now().time_since_epoch(); }
@@ -75,7 +75,7 @@ class ResultPlayer final : public LiveView {
 
   const std::unique_ptr<ResultStream> stream_;
   const SourceInfo info_;
-  // Of the thread.
+  // Members of the thread.
   StreamedResult result_;
   ShownField shown_;  ///< with the planes of `result_`
   ContactLabels map_;

@@ -97,16 +97,6 @@ class Outputs(unittest.TestCase):
         self.assertEqual(len(set(pictures)), 3)
         self.assert_refused("forces.h5", "--truth", "--png", "x.png", says="are not known")
 
-    def test_wrong_words_are_answered_in_a_line(self):
-        for words, says in ((("--trth",), "'--trth' is not an option; did you mean '--truth'?"),
-                            (("--zoom", "x"), "'x' is not a number from 0.05 to 1000; see 'pillarfield-viewer --help'"),
-                            (("a.h5", "b.h5"), "'b.h5' is one argument too many")):
-            ended = self.view("ball.toml", "--png", "x.png", *words)
-            lines = ended.stderr.splitlines()
-            self.assertEqual((ended.returncode, len(lines)), (2, 1), ended)
-            self.assertTrue(lines[0].startswith("pillarfield-viewer: "), lines)
-            self.assertIn(says, lines[0])
-
     @unittest.skipUnless(shutil.which("ffprobe"), "ffprobe is not installed")
     def test_slow_motion(self):
         for options, pictures, seconds in (((), 8, 0.12), (("--speed", "0.1"), 12, 1.2),

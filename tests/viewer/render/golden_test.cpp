@@ -41,6 +41,7 @@ const std::vector<GoldenPicture>& golden_pictures() {
       {"demo_uncertainty_zoom",
        {"demo.toml", "--frame=31", "--layer=uncertainty", "--zoom=5", "--centre=6,1", "--sectors"}},
       {"demo_contacts", {"demo.toml", "--frame=31", "--contacts", "--no-arrows"}},
+      {"pad_pressure", {"pad.toml", "--frame=71", "--layer=pressure", "--contacts"}},
       {"sliding_shear_x", {"sliding.toml", "--frame=21", "--layer=shear_x"}},
       {"sliding_cylinder",
        {"sliding.toml", "--frame=26", "--layer=shear", "--view=orbit:-45.83662361,28.64788976",
@@ -128,7 +129,7 @@ TEST_P(GoldenColours, WouldShowAnotherColourMap) {
 
 INSTANTIATE_TEST_SUITE_P(Pictures, GoldenColours,
                          testing::Values(golden_pictures().front(), golden_pictures().at(6),
-                                         golden_pictures().at(8)),
+                                         golden_pictures().at(9)),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

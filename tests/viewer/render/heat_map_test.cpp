@@ -130,5 +130,24 @@ TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
   EXPECT_EQ(in_place.memory().bytes_copied(), 0U);
 }
 
+TEST(BareSensels, PlacesWithoutASenselAreBlank) {
+  const MadeUpField field(2, 4, [](std::uint32_t, std::uint32_t) {
+    return MadeUpPillar{0, 0, 0, 0};
+  });
+  MadeUpField bare = field.without_pillars();
+  Drawing drawing;
+  const RenderSettings settings = bare_settings(bare, kMapWidth, kMapHeight);
+  SourceInfo source = bare.source();
+  source.calibration.mask = {1, 1, 2, 2, 1, 0, 2, 1};
+  const Pixels pixels = drawing.draw(bare.shown(), source, settings, kMapWidth, kMapHeight);
+  const Colour idle = colour_of(Special::idle, settings.theme);
+  const Colour paper = background_of(settings.theme);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const PixelPlace place = middle_of(bare, settings, kMapWidth, kMapHeight, i / 4, i % 4);
+    const bool is_absent = source.calibration.mask[i] == kAbsent;
+    EXPECT_EQ(colour_at(pixels, place.x, place.y), is_absent ? paper : idle) << i;
+  }
+}
+
 }  // namespace
 }  // namespace pillarfield::viewer

@@ -149,6 +149,12 @@ TEST(PeakHold, KeepsTheLargestNormalForceOfEachPillar) {
   EXPECT_EQ(held->forces.shear_x[2 * 30 + 12], 0);
   EXPECT_EQ(held->index, 5U);
   EXPECT_NE(held->pages.data(), nullptr);
+  ShownField sensels = rising_field(5);
+  sensels.forces.shear_x = sensels.forces.shear_y = {};
+  PeakHold of_sensels;
+  of_sensels.add(sensels.forces);
+  EXPECT_TRUE(of_sensels.field(sensels)->forces.shear_x.empty());
+  EXPECT_EQ(of_sensels.field(sensels)->forces.status[2 * 30 + 12], status::kSensel1);
   peaks.reset();
   peaks.add(rising_field(1).forces);
   EXPECT_EQ(peaks.field(rising_field(1))->forces.normal[2 * 30 + 12], 2);

@@ -23,7 +23,7 @@ Skin live_skin() {
   return skin;
 }
 
-/// What a test makes its sensor send.
+/// Bytes that a test makes its sensor send.
 struct Wire {
   std::mutex mutex;
   std::condition_variable came;

@@ -126,7 +126,7 @@ class Marker {
   float unit_;
 };
 
-/// Of each contact while contacts are shown, else of the whole skin.
+/// Trails of each contact while contacts are shown, else of the whole skin.
 void draw_trails(const AppState& state, const Marker& marker) {
   for (const Trails::Trail& trail : state.trails.all()) marker.trail(trail.places);
   if (!state.trails.all().empty() || state.curves == nullptr || !state.field) return;

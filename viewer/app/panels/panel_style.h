@@ -34,6 +34,9 @@ inline constexpr Colour kWarningColour = colour_from(0xe69f00);
 
 [[nodiscard]] double width_of(const std::string& text);
 
+/// Writes words at the right end of the room that is left.
+void flush_right(const std::string& words);
+
 /// Alignment of a text to its position.
 enum class Align { left, middle, right };
 

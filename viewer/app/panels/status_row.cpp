@@ -67,7 +67,7 @@ std::string plural(std::uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// What a user wants to know of a sensor.
+/// State of a sensor in words for its user.
 std::string sensor_words(const LiveStatus& status) {
   if (status.ended) return "the source has ended";
   const std::string& mismatch = status.health.stream.mismatch;
