@@ -130,9 +130,6 @@ class LiveFrames {
     return wait_for_next(timeout_s, [&](auto patience) { return next_within(patience); });
   }
   [[nodiscard]] py::dict health() { return stream_->health(); }
-  void discard_waiting() {
-    stream_->use([](FrameStream& stream) { stream.discard_waiting(); });
-  }
   void close() { stream_->close(); }
   [[nodiscard]] const Skin& skin() const { return skin_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
@@ -290,8 +287,6 @@ void bind_live(py::module_& module) {
       .def_property_readonly("health", &LiveFrames::health,
                              "What came and what did not: frames, lost, incomplete, late, ..., "
                              "rate_hz; as mismatch, the size of frames that came instead, or ''.")
-      .def("discard_waiting", &LiveFrames::discard_waiting,
-           "Discards the frames that wait, without counting them as lost.")
       .def("close", &LiveFrames::close, "Closes the source.")
       .def_property_readonly("skin", &LiveFrames::skin,
                              "Skin with the rows and columns of the frames, for a Plan")

@@ -118,28 +118,19 @@ View first_view(const Options& options, const SourceInfo& source, const Layout& 
 }
 
 RenderSettings chosen_settings(const Options& options, const SourceInfo& source, double scale) {
-  require_available(options.quantity, source);
-  RenderSettings settings;
-  settings.quantity = options.quantity;
-  settings.pressure_unit = options.pressure_unit;
-  settings.map = options.map.value_or(default_map(info_of(options.quantity).scale));
-  settings.theme = options.theme;
+  require_available(options.look.quantity, source);
+  RenderSettings settings = options.look;
+  settings.map = options.map.value_or(default_map(info_of(settings.quantity).scale));
   settings.surface = surface_of(options, source);
-  settings.arrows = options.arrows;
-  settings.sectors = options.sectors;
-  settings.hatch = options.hatch;
-  settings.contacts = options.contacts;
-  settings.relief = options.relief;
-  settings.legend = options.legend;
   settings.scale = scale;
   return settings;
 }
 
 RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
   RenderSettings settings = chosen_settings(options, producer.info(), scale);
-  settings.range = options.range
-                       ? in_unit_of(*options.range, options.quantity, options.pressure_unit)
-                       : range_that_fits(producer, options.quantity);
+  settings.range =
+      options.range ? in_unit_of(*options.range, options.look.quantity, options.look.pressure_unit)
+                    : range_that_fits(producer, options.look.quantity);
   settings.relief_full_n = static_cast<double>(range_that_fits(producer, Quantity::normal).high);
   if (!producer.info().skin.has_pillars()) return settings;  // No arrows.
   settings.full_force_n = full_arrow(producer, Quantity::magnitude);

@@ -57,7 +57,7 @@ struct FrameRange {
 FrameRange frames_of(const Options& options, FieldProducer& producer) {
   const SourceInfo& source = producer.info();
   // Peaks are complete in the last frame.
-  const bool peaks = options.quantity == Quantity::peak;
+  const bool peaks = options.look.quantity == Quantity::peak;
   const std::uint64_t first = options.has_frame ? options.first_frame
                               : peaks           ? source.frames - 1
                                                 : most_loaded_frame(producer);
@@ -138,7 +138,7 @@ class VideoPace {
 void tell_written(const Options& options, const std::vector<std::filesystem::path>& pictures,
                   const FrameRange& span, std::uint64_t frames) {
   const auto tell = [](const std::string& words) { fmt::print("Wrote {}\n", printable(words)); };
-  const char* const why = options.quantity == Quantity::peak ? "the last" : "the most loaded";
+  const char* const why = options.look.quantity == Quantity::peak ? "the last" : "the most loaded";
   const std::string which =
       options.has_frame ? "" : fmt::format(": frame {} of {}, {}", span.begin + 1, frames, why);
   if (!options.csv.empty()) tell(options.csv.string() + which);

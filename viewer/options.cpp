@@ -143,10 +143,10 @@ void add_picture(CLI::App& app, Options& options) {
   cli::Group picture(&app, "Picture");
   add("--size", "WIDTHxHEIGHT", "Size of the picture or the window, pixels [1280x720]", take_size);
   picture.choice<Quantity>(
-      "--layer", options.quantity,
+      "--layer", options.look.quantity,
       choices_of<Quantity>(kQuantities, [](Quantity each) { return info_of(each).name; }),
       "Quantity of the heat map [normal]");
-  cli::add_pressure_unit(picture, options.pressure_unit);
+  cli::add_pressure_unit(picture, options.look.pressure_unit);
   add("--range", "LOW:HIGH", "Ends of the colour bar in the displayed unit [fitted to the source]",
       take_range);
   picture.choice<ColourMap>("--map", options.map, choices_of<ColourMap>(kColourMaps, name_of),
@@ -191,16 +191,16 @@ void add_layers(CLI::App& app, Options& options) {
   };
   cli::Group layers(&app, "Layers");
   app.add_flag_callback(
-         "--light", [&] { options.theme = Theme::light; }, "Dark on white")
+         "--light", [&] { options.look.theme = Theme::light; }, "Dark on white")
       ->group("Layers");
-  clear("--no-arrows", options.arrows, "No arrows");
-  layers.flag("--sectors,--fans", options.sectors,
+  clear("--no-arrows", options.look.arrows, "No arrows");
+  layers.flag("--sectors,--fans", options.look.sectors,
               "Uncertainty sectors of ambiguous shear, at large zoom");
-  clear("--no-hatch", options.hatch, "No hatching of ambiguous pillars");
-  layers.flag("--contacts", options.contacts,
+  clear("--no-hatch", options.look.hatch, "No hatching of ambiguous pillars");
+  layers.flag("--contacts", options.look.contacts,
               "Mark contacts: extent, id, force, centre of pressure, shear");
-  layers.flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
-  clear("--no-legend", options.legend, "Only the field, without axes and colour bar");
+  layers.flag("--relief", options.look.relief, "In 3-D, raise the surface by the normal force");
+  clear("--no-legend", options.look.legend, "Only the field, without axes and colour bar");
 }
 
 CLI::Validator png_name() {

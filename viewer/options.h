@@ -28,23 +28,15 @@ struct Options {
   bool paused = false;
   bool statistics = false;  ///< printed when the window closes
 
-  Quantity quantity = Quantity::normal;
-  PressureUnit pressure_unit = kPressureUnits.front();
+  RenderSettings look;         ///< but for what is fitted to the source, and for the next members
   std::optional<Range> range;  ///< unset: fitted to the source
   std::optional<ColourMap> map;
-  Theme theme = Theme::dark;
+  std::optional<Surface> surface;  ///< unset: that of the source
   bool orbit = false;
   std::optional<double> azimuth;    ///< rad
   std::optional<double> elevation;  ///< rad
   double zoom = 1;
   std::optional<Vec2> centre_mm;
-  std::optional<Surface> surface;  ///< unset: that of the source
-  bool arrows = true;
-  bool sectors = false;
-  bool hatch = true;
-  bool contacts = false;
-  bool relief = false;
-  bool legend = true;
 
   std::filesystem::path png;
   std::filesystem::path video;

@@ -5,7 +5,7 @@
 #include "bench/frames.h"
 #include "bench/timing/copy_source.h"
 #include "device/device_state.h"
-#include "device/large_pages.h"
+#include "base/large_pages.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield::bench {

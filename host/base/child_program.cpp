@@ -1,4 +1,4 @@
-#include "base/child_program.h"
+#include "pillarfield/child_program.h"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -13,17 +13,16 @@
 #include "calibration/finding_list.h"
 #include "calibration/sensel_judge.h"
 #include "calibration/steps.h"
+#include "lanes/lane_solver.h"
 #include "pillarfield/doctor.h"
 #include "pillarfield/error.h"
+#include "pillarfield/status.h"
 #include "pillarfield/tuning.h"
 #include "skin/pillar_sensels.h"
 #include "skin/raw_reading.h"
-#include "solve/sensel_reader.h"
 
 namespace pillarfield {
 namespace {
-
-namespace maths = single_precision;
 
 /// The other three sensels of a pillar, for each sensel: two neighbours and the opposite one.
 struct Others {
@@ -32,6 +31,26 @@ struct Others {
   std::size_t opposite;
 };
 constexpr std::array<Others, 4> kOthers = {{{1, 3, 2}, {0, 2, 3}, {1, 3, 0}, {0, 2, 1}}};
+
+/// A plan by which the force on each sensel by itself is its corrected reading, counts; zero where
+/// that is not usable.
+SolverPlan plan_of_sensels(SolverPlan plan) {
+  Skin& skin = plan.skin;
+  Calibration& planes = plan.calibration;
+  for (auto* const plane : {&planes.bend_x, &planes.bend_y, &planes.bend_xy}) plane->clear();
+  planes.effects.shear_coefficient.reset();
+  planes.effects.pillar_leak.reset();
+  planes.effects.arm_mm.reset();
+  if (planes.mask.empty()) planes.mask.assign(skin.sensels(), kGood);
+  for (std::size_t i = 0; skin.has_pillars() && i < planes.mask.size(); ++i) {
+    const bool is_under_one =
+        i / skin.cols / 2 < skin.pillar_rows() && i % skin.cols / 2 < skin.pillar_cols();
+    if (!is_under_one) planes.mask[i] = kAbsent;
+  }
+  skin.layout = SkinLayout::sensels;
+  skin.counts_per_newton = 1;
+  return plan;
+}
 
 [[noreturn]] void refuse_still(const FrameStatistics& statistics) {
   throw Error(statistics.name(),
@@ -52,29 +71,31 @@ FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
   plan_.sensel_type = type;
   apply(calibration, plan_.skin, plan_.calibration);
   plan_.calibration.effects.wires.reset();  // The frames are without their crosstalk.
+  sensels_ = plan_of_sensels(plan_);
 }
 
 void FaultFinder::add(const FrameView& frame) {
   statistics_.add(frame);
-  SenselReader reader(plan_, frame);
-  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) { predict(row, col, reader); });
+  const ForceField corrected = solve_in_lanes(sensels_, frame);
+  for_each_pillar(plan_.skin,
+                  [&](auto, auto, const auto& sensels) { predict(sensels, corrected); });
 }
 
-void FaultFinder::predict(std::size_t row, std::size_t col, SenselReader& reader) {
-  const maths::Pillar pillar = reader.pillar(row, col);
-  const std::array sensels = {pillar.s1, pillar.s2, pillar.s3, pillar.s4};
-  const auto places = pillar_sensels(plan_.skin, row, col);
+void FaultFinder::predict(const std::array<std::size_t, 4>& sensels, const ForceField& corrected) {
+  const auto is_usable = [&](std::size_t i) {
+    return (corrected.status[i] & status::kSensel1) != 0;
+  };
   for (std::size_t n = 0; n < sensels.size(); ++n) {
-    Prediction& prediction = predictions_[places.at(n)];
-    if (sensels.at(n).usable != 0) ++prediction.usable;
-    const auto& [a, b, opposite] = kOthers.at(n);
-    const maths::Sensel& p = sensels.at(a);
-    const maths::Sensel& q = sensels.at(b);
-    const maths::Sensel& r = sensels.at(opposite);
-    if ((p.usable & q.usable & r.usable) == 0) continue;
-    const Range range = range_of(places.at(n));
+    Prediction& prediction = predictions_[sensels.at(n)];
+    if (is_usable(sensels.at(n))) ++prediction.usable;
+    const std::size_t p = sensels.at(kOthers.at(n).neighbour);
+    const std::size_t q = sensels.at(kOthers.at(n).other_neighbour);
+    const std::size_t r = sensels.at(kOthers.at(n).opposite);
+    if (!is_usable(p) || !is_usable(q) || !is_usable(r)) continue;
+    const std::vector<float>& counts = corrected.normal;
+    const Range range = range_of(sensels.at(n));
     const double left =
-        std::clamp(double{p.reading} + q.reading - r.reading, range.least, range.most);
+        std::clamp(double{counts[p]} + counts[q] - counts[r], range.least, range.most);
     ++prediction.frames;
     const double step = left - prediction.mean;
     prediction.mean += step / prediction.frames;

@@ -13,10 +13,10 @@
 #include "cli/json_text.h"
 #include "cli/progress.h"
 #include "cli/warnings.h"
-#include "io/output/png_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/live.h"
+#include "pillarfield/png_file.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/tare.h"
 

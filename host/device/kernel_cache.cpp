@@ -103,7 +103,6 @@ struct ProcessCache {
 }  // namespace
 
 KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary) {
-  remove_left_over_directories();
   KernelCache cache = choose_directory(temporary);
   try {
     std::error_code absent;

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
 #include <string>
 
-#include "device/calibration_memory.h"
+#include "lanes/calibration_memory.h"
 #include "pillarfield/tuning.h"
 #include "skin/quads.h"
 #include "solve/activation_thresholds.h"
@@ -97,6 +98,15 @@ void define_idle_range(const SolverPlan& plan, Definitions& all) {
   all["PF_ACTIVATION_HIGHEST"] = hex_float(range.highest);
   all["PF_ACTIVATION_NEVER"] = hex_float(range.never);
   if (has_offset_tares(plan.calibration.effects)) all["PF_IDLE_LOAD"] = hex_float(idle_load(plan));
+}
+
+/// The macro that holds the plane's index.
+const char* macro_of(CalibrationPlane plane) {
+  static constexpr std::array kMacros = {
+      "PF_TARE_PLANE",    "PF_GAIN_PLANE",       "PF_DEAD_ZONE_PLANE", "PF_NOISE_PLANE",
+      "PF_MASK_PLANE",    "PF_ACTIVATION_PLANE", "PF_BEND_X_PLANE",    "PF_BEND_Y_PLANE",
+      "PF_BEND_XY_PLANE", "PF_MEMORY_PLANE"};
+  return kMacros[static_cast<std::size_t>(plane)];
 }
 
 }  // namespace

@@ -17,11 +17,6 @@ constexpr int block_lanes(int lanes, std::uint32_t pillar_cols) {
   return lanes;
 }
 
-/// Blocks of a pillar row at most, the stride of flags; as in kernels/frame/calibration_planes.h.
-constexpr std::size_t blocks_of_row(std::uint32_t pillar_cols, std::uint32_t lanes) {
-  return pillar_cols / lanes + 2;
-}
-
 /// The OpenCL C type of a reading.
 constexpr const char* sensel_macro(SenselType type) {
   switch (type) {

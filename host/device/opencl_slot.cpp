@@ -46,14 +46,14 @@ constexpr cl_uint kBendX = kRate;
 }  // namespace
 
 OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
-                       const CalibrationMemory& calibration, FrameOrder& order)
+                       const DeviceCalibration& calibration, FrameOrder& order)
     : Slot(plan.skin, order), queue_(device.context, device.device) {
   const Launch solve(quad_rows(plan.skin), quad_cols(plan.skin), settings.lanes,
                      device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
   const SlotLayout slot(plan, {settings.lanes, global_[1], settings.lanes > 1},
-                        settings.paths.skip_idle, calibration);
+                        settings.paths.skip_idle, calibration.planes());
   if (slot.tiles_across > 0) tiles_ = {slot.tiles_across, slot.tiles_down};
   layout_ = slot.layout;
   memory_ = settings.shares_memory ? shared_memory(device.context, slot.results)
@@ -65,7 +65,7 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
 }
 
 void OpenClSlot::make_kernels(const SolverPlan& plan, const SlotSettings& settings,
-                              const CalibrationMemory& calibration) {
+                              const DeviceCalibration& calibration) {
   const auto kernel = [&](const char* name) {
     cl::Kernel made(settings.program, name);
     made.setArg(kCalibration, calibration.buffer());
@@ -85,7 +85,7 @@ void OpenClSlot::make_kernels(const SolverPlan& plan, const SlotSettings& settin
 }
 
 void OpenClSlot::set_plan(const SolverPlan& plan, const SlotSettings& settings,
-                          const CalibrationMemory& calibration) {
+                          const DeviceCalibration& calibration) {
   make_kernels(plan, settings, calibration);
   memory_->clear_flags(queue_);
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "device/device_calibration.h"
 #include "device/device_state.h"
 #include "device/slot.h"
 #include "pillarfield/tuning.h"
@@ -23,12 +24,12 @@ struct SlotSettings {
 class OpenClSlot final : public Slot {
  public:
   OpenClSlot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
-             const CalibrationMemory& calibration, FrameOrder& order);
+             const DeviceCalibration& calibration, FrameOrder& order);
   ~OpenClSlot() override;
 
   /// The next frames are solved by another plan of the same frames and outputs.
   void set_plan(const SolverPlan& plan, const SlotSettings& settings,
-                const CalibrationMemory& calibration);
+                const DeviceCalibration& calibration);
 
   void submit(const FrameView& frame, const std::optional<Curvature>& bent,
               const single_precision::Drift& drift) override;
@@ -38,7 +39,7 @@ class OpenClSlot final : public Slot {
 
  private:
   void make_kernels(const SolverPlan& plan, const SlotSettings& settings,
-                    const CalibrationMemory& calibration);
+                    const DeviceCalibration& calibration);
   FrameView padded(const FrameView& frame);
   /// Starts a kernel on the frame.
   void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,

@@ -5,20 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
-#include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 
-#include "device/host_start.h"
 #include "device/kernel_source.h"
 #include "device/lane_slot.h"
 #include "device/opencl_slot.h"
-#include "device/scalar_slot.h"
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
@@ -33,8 +31,7 @@ namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
 constexpr const char* kSubmit = "Processor::submit";
-constexpr std::chrono::milliseconds kCompileNotice{300};   ///< wait without a message
-constexpr std::chrono::milliseconds kCompiledBefore{150};  ///< wait for the driver's cache
+constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -91,13 +88,30 @@ std::string line_on_compiling(const DeviceInfo& device) {
                      device.kernels_not_kept);
 }
 
-[[noreturn]] void throw_all_in_flight(std::size_t slots) {
-  throw Error(kSubmit, fmt::format("all {} frames are in flight", slots),
-              "receive() one first, or set more frames_in_flight");
-}
+/// Calls a function from its own thread after a delay, unless the object is destroyed before.
+class LateCall {
+ public:
+  /// An empty `function` is not called.
+  LateCall(std::chrono::milliseconds delay, std::function<void()> function) {
+    if (!function) return;
+    thread_.emplace([delay, call = std::move(function)](const std::stop_token& ended) {
+      std::mutex mutex;
+      std::unique_lock lock(mutex);
+      std::condition_variable_any nothing;
+      nothing.wait_for(lock, ended, delay, [] { return false; });
+      if (!ended.stop_requested()) call();
+    });
+  }
+
+ private:
+  std::optional<std::jthread> thread_;  ///< ends with the object
+};
 
 [[noreturn]] void throw_no_slot(const SlotScheduler& scheduler) {
-  if (scheduler.pinned() == 0) throw_all_in_flight(scheduler.slots());
+  if (scheduler.pinned() == 0) {
+    throw Error(kSubmit, fmt::format("all {} frames are in flight", scheduler.slots()),
+                "receive() one first, or set more frames_in_flight");
+  }
   throw Error(kSubmit,
               fmt::format("of {} frames {} are in flight and {} are pinned", scheduler.slots(),
                           scheduler.in_flight(), scheduler.pinned()),
@@ -113,20 +127,18 @@ std::size_t threads_beside(const Device::State& device) {
   return std::max<std::size_t>(threads, 1);
 }
 
-/// How the host solves a plan with vectors; nothing on an OpenCL device, or for a skin with a
-/// single column of pillars.
+/// The program of the host for a plan; nothing on an OpenCL device.
 std::optional<LaneSettings> lane_settings(const Device& device, const SolverPlan& plan, int lanes) {
   if (!device.state().is_host()) return std::nullopt;
-  const int most = lanes != 0 ? lanes : device.info().lanes;
-  const LaneProgram* const program = lane_program(quad_cols(plan.skin), most);
-  if (program == nullptr) return std::nullopt;
-  return LaneSettings(plan, *program);
+  return LaneSettings(plan, lanes != 0 ? lanes : device.info().lanes);
 }
 
-std::vector<CalibrationPlane> planes_of(const std::optional<LaneSettings>& lanes,
-                                        const SolverPlan& plan, const SpeedPaths& paths) {
-  if (lanes) return lane_planes(plan, *lanes);
-  return calibration_planes(plan, paths.skip_idle && has_activation_plane(plan));
+DeviceCalibration calibration_of(const Device& device, const std::optional<LaneSettings>& lanes,
+                                 const SolverPlan& plan, const SpeedPaths& paths) {
+  if (lanes) return {{}, lane_calibration(plan, *lanes)};
+  const bool has_activation = paths.skip_idle && has_activation_plane(plan);
+  return {device.state().context,
+          {plan, calibration_planes(plan, has_activation), plan.sensel_type}};
 }
 
 }  // namespace
@@ -141,17 +153,11 @@ struct Processor::State {
         shares_memory(decide_sharing(options.memory, opened)),
         paths(decide_paths(opened, wanted, options, tuning)),
         lanes(lane_settings(opened, wanted, tuning.lanes)),
-        calibration(opened.state().context, wanted, planes_of(lanes, wanted, paths)),
+        calibration(calibration_of(opened, lanes, wanted, paths)),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
     begin_states(wanted);
     if (lanes) {
       add_lane_slots(wanted, options.frames_in_flight);
-    } else if (device.state().is_host()) {
-      const auto sequence =
-          std::make_shared<ScalarSlot::Sequence>(ScalarSlot::Sequence{wanted, {}});
-      for (int i = 0; i < options.frames_in_flight; ++i) {
-        slots.push_back(std::make_shared<ScalarSlot>(sequence, calibration, order));
-      }
     } else {
       add_opencl_slots(wanted, options.frames_in_flight, tuning);
       warm_up();
@@ -182,7 +188,8 @@ struct Processor::State {
       pool = std::make_unique<ThreadPool>(threads_beside(device.state()));
     }
     for (int i = 0; i < count; ++i) {
-      slots.push_back(std::make_shared<LaneSlot>(plan, *lanes, calibration, order, pool.get()));
+      slots.push_back(
+          std::make_shared<LaneSlot>(plan, *lanes, calibration.planes(), order, pool.get()));
     }
   }
 
@@ -200,20 +207,17 @@ struct Processor::State {
 
   /// Waits for the frames in flight, whose results stay as they are.
   void set_plan(const SolverPlan& plan) {
-    const bool is_opencl = !device.state().is_host();
-    if (is_opencl) {
+    if (!lanes) {
       settings.program =
           device.state().program(kernel_source(plan, settings.lanes, settings.paths));
     }
     for (const auto& slot : slots) slot->wait();
-    if (lanes) lanes.emplace(plan, *lanes->program);
-    calibration = {device.state().context, plan, planes_of(lanes, plan, paths)};
+    if (lanes) lanes.emplace(plan, lanes->program->lanes);
+    calibration = calibration_of(device, lanes, plan, paths);
     begin_states(plan);
     for (const auto& slot : slots) {
       if (lanes) {
-        static_cast<LaneSlot&>(*slot).set_plan(plan, *lanes, calibration);
-      } else if (!is_opencl) {
-        static_cast<ScalarSlot&>(*slot).set_plan(plan);
+        static_cast<LaneSlot&>(*slot).set_plan(plan, *lanes, calibration.planes());
       } else {
         static_cast<OpenClSlot&>(*slot).set_plan(plan, settings, calibration);
       }
@@ -242,7 +246,7 @@ struct Processor::State {
   std::optional<LaneSettings> lanes;  ///< of the host
   SlotSettings settings;              ///< of an OpenCL device
   std::unique_ptr<ThreadPool> pool;   ///< of the host, for large frames
-  CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
+  DeviceCalibration calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
   std::optional<DriftFollower> drift;          ///< of a followed baseline
@@ -264,31 +268,6 @@ struct Processor::PinnedResult::State {
   std::size_t slot_index;
 };
 
-/// What serves frames while the kernels are compiled in another thread. Its results outlive that.
-struct Processor::Start {
-  [[nodiscard]] bool is_over() const {
-    return failed || compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  }
-
-  /// Waits for the kernels; throws the Error of their compilation at every call.
-  std::unique_ptr<State> take() {
-    if (failed) std::rethrow_exception(failed);
-    try {
-      return compiled.get();
-    } catch (...) {
-      failed = std::current_exception();
-      throw;
-    }
-  }
-
-  Device device;
-  bool shares_memory;
-  std::vector<float> tare;
-  Processor host;
-  std::future<std::unique_ptr<State>> compiled;
-  std::exception_ptr failed = {};
-};
-
 Processor::PinnedResult::PinnedResult(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Processor::PinnedResult::PinnedResult(PinnedResult&&) noexcept = default;
 Processor::PinnedResult& Processor::PinnedResult::operator=(PinnedResult&&) noexcept = default;
@@ -303,62 +282,14 @@ Processor::Processor(const Device& device, const SolverPlan& plan, const Options
   check_options(options, tuning);
   check(plan, "solver plan");
   const Device chosen = device.for_plan(plan);
-  const auto open = [=] {
-    return with_opencl_errors(
-        chosen.info().name, [&] { return std::make_unique<State>(chosen, plan, options, tuning); });
-  };
-  if (chosen.state().is_host()) {
-    state_ = open();
-    return;
+  std::function<void()> notify;
+  if (options.on_compiling && !chosen.state().is_host()) {
+    notify = [&] { options.on_compiling(line_on_compiling(chosen.info())); };
   }
-  const auto compile = [=] {
-    std::function<void()> notify;
-    if (options.on_compiling) {
-      notify = [&] { options.on_compiling(line_on_compiling(chosen.info())); };
-    }
-    const LateCall notice(kCompileNotice, notify);
-    return open();
-  };
-  if (options.start_on_host && starts_on_host(plan)) {
-    try {
-      Processor host(open_device("host"), plan, {.frames_in_flight = options.frames_in_flight});
-      start_ = std::make_unique<Start>(Start{chosen, decide_sharing(options.memory, chosen),
-                                             plan.calibration.tare, std::move(host),
-                                             std::async(std::launch::async, compile)});
-      start_->compiled.wait_for(kCompiledBefore);
-      end_start();
-      return;
-    } catch (const std::system_error&) {
-      start_.reset();  // The limit of threads is reached.
-    }
-  }
-  state_ = compile();
+  const LateCall notice(kCompileNotice, notify);
+  state_ = with_opencl_errors(
+      chosen.info().name, [&] { return std::make_unique<State>(chosen, plan, options, tuning); });
 }
-
-/// Takes the kernels if they are compiled.
-void Processor::end_start() {
-  if (state_ == nullptr && start_->is_over()) state_ = start_->take();
-}
-
-/// Waits for the kernels.
-void Processor::await_kernels() {
-  if (state_ == nullptr) state_ = start_->take();
-}
-
-/// Solves the frame on the host if the kernels are not compiled yet; false if they are.
-bool Processor::submit_on_host(const FrameView& frame) {
-  if (start_ == nullptr) return false;
-  end_start();
-  const std::size_t slots = start_->host.state_->slots.size();
-  if (start_->host.in_flight() > 0 && static_cast<std::size_t>(in_flight()) == slots) {
-    throw_all_in_flight(slots);
-  }
-  if (state_ != nullptr) return false;
-  start_->host.submit(frame);
-  return true;
-}
-
-bool Processor::is_compiling() const { return start_ != nullptr && !state_ && !start_->is_over(); }
 
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options)
     : Processor(device, plan, options, ProcessorTuning{}) {}
@@ -386,13 +317,11 @@ void Processor::State::submit(const FrameView& frame) {
 }
 
 void Processor::submit(const FrameView& frame) {
-  if (submit_on_host(frame)) return;
   check(frame, state_->skin, state_->sensel_type, kSubmit);
   state_->submit(frame);
 }
 
 ForceFieldView Processor::receive() {
-  if (start_ && start_->host.in_flight() > 0) return start_->host.receive();
   if (in_flight() == 0) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
@@ -408,7 +337,6 @@ ForceFieldView Processor::receive() {
 
 std::optional<ForceFieldView> Processor::try_receive() {
   if (in_flight() == 0) return std::nullopt;
-  if (start_ && start_->host.in_flight() > 0) return receive();
   const bool done = with_opencl_errors(state_->device.info().name, [&] {
     return state_->slots[state_->scheduler.oldest()]->is_done();
   });
@@ -418,12 +346,11 @@ std::optional<ForceFieldView> Processor::try_receive() {
 
 void Processor::set_plan(const SolverPlan& plan) {
   constexpr const char* kWhere = "Processor::set_plan";
-  await_kernels();
   check(plan, kWhere);
   const Skin& skin = state_->skin;
   if (plan.skin.rows != skin.rows || plan.skin.cols != skin.cols ||
       plan.skin.layout != skin.layout || plan.sensel_type != state_->sensel_type ||
-      plan.calibration.tare.empty() || !state_->calibration.has_tare() ||
+      plan.calibration.tare.empty() || !state_->calibration.planes().has_tare() ||
       state_->outputs != std::array{plan.angles, plan.uncertainty}) {
     throw Error(kWhere, "the plan has other frames or outputs, or no tare",
                 "make another processor for it");
@@ -432,7 +359,7 @@ void Processor::set_plan(const SolverPlan& plan) {
 }
 
 Processor::PinnedResult Processor::pin() {
-  const std::optional<std::size_t> slot = state_ ? state_->scheduler.pin() : std::nullopt;
+  const std::optional<std::size_t> slot = state_->scheduler.pin();
   if (!slot) {
     throw Error("Processor::pin", "there is no frame to pin",
                 "call pin() once per frame, after receive() and before its slot is used again");
@@ -442,34 +369,28 @@ Processor::PinnedResult Processor::pin() {
 }
 
 FoundContacts Processor::contacts() const {
-  if (!state_ || state_->last == nullptr) return {};
+  if (state_->last == nullptr) return {};
   return state_->contacts ? state_->contacts->contacts() : state_->last->contacts();
 }
 
 Curvature Processor::curvature() const {
-  return state_ && state_->curvature ? state_->curvature->curvature() : Curvature{};
+  return state_->curvature ? state_->curvature->curvature() : Curvature{};
 }
 
-int Processor::in_flight() const {
-  const std::size_t on_device = state_ ? state_->scheduler.in_flight() : 0;
-  return static_cast<int>(on_device) + (start_ ? start_->host.in_flight() : 0);
-}
+int Processor::in_flight() const { return static_cast<int>(state_->scheduler.in_flight()); }
 
-int Processor::pinned() const { return state_ ? static_cast<int>(state_->scheduler.pinned()) : 0; }
+int Processor::pinned() const { return static_cast<int>(state_->scheduler.pinned()); }
 
 std::vector<float> Processor::tare() const {
-  if (!state_) return start_->tare;
   return with_opencl_errors(state_->device.info().name, [&] {
-    if (!state_->calibration.has_tare()) return std::vector<float>();
+    if (!state_->calibration.planes().has_tare()) return std::vector<float>();
     if (state_->order.left() != nullptr) state_->order.left.wait();
-    return state_->calibration.tare();
+    return state_->calibration.tare(state_->skin.rows, state_->skin.cols);
   });
 }
 
-bool Processor::shares_memory() const {
-  return state_ ? state_->shares_memory : start_->shares_memory;
-}
+bool Processor::shares_memory() const { return state_->shares_memory; }
 
-const Device& Processor::device() const { return state_ ? state_->device : start_->device; }
+const Device& Processor::device() const { return state_->device; }
 
 }  // namespace pillarfield

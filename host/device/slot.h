@@ -5,31 +5,12 @@
 #include <optional>
 
 #include "contacts/estimator/contact_estimator.h"
-#include "device/calibration_memory.h"
 #include "device/slot_memory.h"
 #include "device/slot_scheduler.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield {
-
-/// How a frame is divided among work-items.
-struct Division {
-  int lanes = 1;          ///< pillars that one solves at once
-  std::size_t bands = 1;  ///< bands of rows
-  bool has_rings = true;  ///< each band keeps the rows around its own: kernels/frame/neighbours.h
-};
-
-/// The memory of a slot: results, idle flags, and scratch memory.
-struct SlotLayout {
-  SlotLayout(const SolverPlan& plan, const Division& division, bool skips_idle,
-             const CalibrationMemory& calibration);
-
-  ResultLayout results;
-  single_precision::Layout layout{};
-  std::size_t tiles_across = 0;  ///< of wires; 0 without their crosstalk
-  std::size_t tiles_down = 0;
-};
 
 /// The estimator `contact` of a processor. Runs on the host, on the planes of a frame after the
 /// direct solve: equal bits on all devices. All slots share it, since frames are resolved in order.
@@ -46,8 +27,6 @@ class ContactStage {
   }
 
  private:
-  std::uint32_t rows_;
-  std::uint32_t cols_;
   ContactEstimator estimator_;
 };
 
@@ -92,23 +71,17 @@ class Slot {
   void resolve(ContactStage& contacts) const { contacts.resolve(memory()); }
 
   /// Results of the frame, after wait().
-  [[nodiscard]] ForceFieldView results() const;
+  [[nodiscard]] ForceFieldView results() const { return memory().forces(); }
 
   /// Where a frame with pillars has no contacts, after wait(), if the host sees that.
   [[nodiscard]] FoundContacts contacts() const;
 
  protected:
-  Slot(const Skin& skin, FrameOrder& order)
-      : rows_(skin.element_rows()),
-        cols_(skin.element_cols()),
-        has_pillars_(skin.has_pillars()),
-        order_(&order) {}
+  Slot(const Skin& skin, FrameOrder& order) : has_pillars_(skin.has_pillars()), order_(&order) {}
 
   [[nodiscard]] FrameOrder& order() const { return *order_; }
 
  private:
-  std::uint32_t rows_;  ///< pillars, or sensels without pillars
-  std::uint32_t cols_;
   bool has_pillars_;
   FrameOrder* order_;
 };

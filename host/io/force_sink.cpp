@@ -99,7 +99,8 @@ const SinkFormat* format_by_extension(const std::filesystem::path& path, OutputK
 
 const SinkFormat* format_by_beginning(std::string_view head) {
   for (const SinkFormat& format : sink_formats()) {
-    if (format.recognises != nullptr && format.recognises(head)) return &format;
+    const bool holds = head.find(format.holds) != std::string_view::npos;
+    if (!format.begins.empty() && head.starts_with(format.begins) && holds) return &format;
   }
   return nullptr;
 }
@@ -149,7 +150,7 @@ std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                              const ForceFileInfo& info, Replace replace) {
   check(info, path.string());
   const SinkFormat& format = format_of(path, OutputKind::forces);
-  if (info.contacts && format.recognises != nullptr) {
+  if (info.contacts && !format.begins.empty()) {
     throw Error(path.string(), "only HDF5 files can hold contacts beside forces",
                 "use .h5, or write the contacts to a separate file");
   }

@@ -15,8 +15,8 @@ struct SinkFormat {
   OutputKind kind = OutputKind::forces;        ///< or `contacts`
   std::array<std::string_view, 2> extensions;  ///< in lower case; the second may be empty
   const char* content = "";                    ///< for messages: "is a table of forces"
-  /// Whether a file with this beginning has the format. Null for HDF5, whose attributes name it.
-  bool (*recognises)(std::string_view head) = nullptr;
+  std::string_view begins = {};                ///< its first bytes; empty for HDF5
+  std::string_view holds = {};                 ///< what its first 1024 bytes hold besides
   /// Creates the sink. ForceFileInfo::contacts enables contacts; sinks of contacts require it.
   std::unique_ptr<ForceSink> (*create)(const std::filesystem::path& path, const ForceFileInfo& info,
                                        Replace replace) = nullptr;

@@ -20,61 +20,50 @@ struct Foreign {
 };
 
 // The largest value of a dictionary, or all that is no dictionary.
-constexpr const char* kPickle =
-    "import pickle; d = pickle.load(open({0}, 'rb')); "
-    "np.save({1}, max(d.values(), key=np.size) if isinstance(d, dict) else d)";
 constexpr const char* kJson =
     "import json; d = json.load(open({0})); "
     "np.save({1}, max(d.values(), key=np.size) if isinstance(d, dict) else d)";
-constexpr const char* kXml =
-    "import xml.etree.ElementTree as et; "
-    "t = [e.text.replace(',', ' ').split() for e in et.parse({0}).iter() if e.text]; "
-    "np.save({1}, np.array([w for w in t if len(w) > 3], float))";
-// The data of a message come last, behind their count.
-constexpr const char* kSqlite =
-    "import sqlite3; b = sqlite3.connect({0}).execute; "
-    "i, k = b('SELECT id, type FROM topics WHERE type LIKE \\'%MultiArray\\'').fetchone(); "
-    "t = np.dtype(k.split('/')[-1][:-10].lower()); s = t.itemsize; "
-    "a = lambda d: next(np.frombuffer(d[-n * s:], t) for n in range(len(d) // s, 0, -1) "
-    "if d[-n * s - 4:-n * s] == n.to_bytes(4, 'little')); np.save({1}, [a(r[0]) for r in "
-    "b('SELECT data FROM messages WHERE topic_id = ? ORDER BY timestamp', (i,))])";
-constexpr const char* kBag =
-    "from pathlib import Path; from rosbags.highlevel import AnyReader; "
-    "r = AnyReader([Path({0})]); r.open(); np.save({1}, [r.deserialize(m, c.msgtype).data "
-    "for c, t, m in r.messages() if c.msgtype.endswith('MultiArray')])";
 constexpr const char* kPictures =
     "import glob; from PIL import Image; "
     "np.save({1}, [np.array(Image.open(f)) for f in sorted(glob.glob({3}))])";
 constexpr const char* kPages =
     "from PIL import Image, ImageSequence as s; "
     "np.save({1}, [np.array(p) for p in s.Iterator(Image.open({0}))])";
-constexpr const char* kParquet =
-    "import pandas as pd; np.save({1}, pd.read_parquet({0}).select_dtypes('number').to_numpy())";
 constexpr const char* kWorkbook =
     "import pandas as pd; np.save({1}, pd.read_excel({0}).select_dtypes('number').to_numpy())";
-constexpr const char* kZarr =
-    "import zarr; z = zarr.open({0}, mode='r'); "
-    "np.save({1}, z[:] if hasattr(z, 'shape') else z[next(iter(z.array_keys()))][:])";
-constexpr const char* kArchive = "import shutil; shutil.unpack_archive({0}, {2})";
-constexpr const char* kGzip = "import gzip; open({4}, 'wb').write(gzip.open({0}).read())";
 
 constexpr std::array kForeign = {
-    Foreign{"\x80\x02", "a pickle of Python", kPickle},
-    Foreign{"\x80\x03", "a pickle of Python", kPickle},
-    Foreign{"\x80\x04", "a pickle of Python", kPickle},
-    Foreign{"\x80\x05", "a pickle of Python", kPickle},
-    Foreign{"SQLite format 3", "a database of SQLite, such as a bag of ROS 2", kSqlite},
-    Foreign{"#ROSBAG V", "a bag of ROS 1", kBag},
+    Foreign{"\x80", "a pickle of Python",
+            "import pickle; d = pickle.load(open({0}, 'rb')); "
+            "np.save({1}, max(d.values(), key=np.size) if isinstance(d, dict) else d)"},
+    // The data of a message come last, behind their count.
+    Foreign{"SQLite format 3", "a database of SQLite, such as a bag of ROS 2",
+            "import sqlite3; b = sqlite3.connect({0}).execute; "
+            "i, k = b('SELECT id, type FROM topics WHERE type LIKE \\'%MultiArray\\'').fetchone(); "
+            "t = np.dtype(k.split('/')[-1][:-10].lower()); s = t.itemsize; "
+            "a = lambda d: next(np.frombuffer(d[-n * s:], t) for n in range(len(d) // s, 0, -1) "
+            "if d[-n * s - 4:-n * s] == n.to_bytes(4, 'little')); np.save({1}, [a(r[0]) for r in "
+            "b('SELECT data FROM messages WHERE topic_id = ? ORDER BY timestamp', (i,))])"},
+    Foreign{"#ROSBAG V", "a bag of ROS 1",
+            "from pathlib import Path; from rosbags.highlevel import AnyReader; "
+            "r = AnyReader([Path({0})]); r.open(); np.save({1}, [r.deserialize(m, c.msgtype).data "
+            "for c, t, m in r.messages() if c.msgtype.endswith('MultiArray')])"},
     Foreign{"\x89PNG\r\n\x1a\n", "a picture (PNG)", kPictures},
     Foreign{"\xff\xd8\xff", "a picture (JPEG)", kPictures},
-    Foreign{std::string_view("II*\0", 4), "a picture (TIFF)", kPages},
+    Foreign{"II*", "a picture (TIFF)", kPages},
     Foreign{std::string_view("MM\0*", 4), "a picture (TIFF)", kPages},
-    Foreign{"PAR1", "a table (Parquet)", kParquet},
+    Foreign{"PAR1", "a table (Parquet)",
+            "import pandas as pd; "
+            "np.save({1}, pd.read_parquet({0}).select_dtypes('number').to_numpy())"},
     Foreign{"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a workbook (XLS)", kWorkbook},
-    Foreign{"\x1f\x8b", "compressed (gzip)", kGzip},
+    Foreign{"\x1f\x8b", "compressed (gzip)",
+            "import gzip; open({4}, 'wb').write(gzip.open({0}).read())"},
     Foreign{"{", "JSON", kJson},
     Foreign{"[", "JSON", kJson},
-    Foreign{"<", "XML", kXml},
+    Foreign{"<", "XML",
+            "import xml.etree.ElementTree as et; "
+            "t = [e.text.replace(',', ' ').split() for e in et.parse({0}).iter() if e.text]; "
+            "np.save({1}, np.array([w for w in t if len(w) > 3], float))"},
 };
 
 std::string quoted(const std::string& text) {
@@ -101,7 +90,10 @@ std::string python_line(std::string_view code, const std::filesystem::path& path
 void refuse_foreign(const std::filesystem::path& path, std::string_view head) {
   std::error_code ignored;
   for (const char* const name : {".zarray", ".zgroup", "zarr.json"}) {
-    if (std::filesystem::exists(path / name, ignored)) refuse_as(path, "a Zarr store", kZarr);
+    if (!std::filesystem::exists(path / name, ignored)) continue;
+    refuse_as(path, "a Zarr store",
+              "import zarr; z = zarr.open({0}, mode='r'); np.save({1}, z[:] if hasattr(z, 'shape') "
+              "else z[next(iter(z.array_keys()))][:])");
   }
   head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
   for (const auto& [bytes, name, code] : kForeign) {
@@ -110,8 +102,9 @@ void refuse_foreign(const std::filesystem::path& path, std::string_view head) {
 }
 
 void refuse_foreign_archive(const std::filesystem::path& path, bool is_workbook) {
-  refuse_as(path, is_workbook ? "a workbook (XLSX)" : "an archive (ZIP) without arrays of NumPy",
-            is_workbook ? kWorkbook : kArchive);
+  if (is_workbook) refuse_as(path, "a workbook (XLSX)", kWorkbook);
+  refuse_as(path, "an archive (ZIP) without arrays of NumPy",
+            "import shutil; shutil.unpack_archive({0}, {2})");
 }
 
 }  // namespace pillarfield

@@ -10,8 +10,8 @@
 
 #include "io/file_kind.h"
 #include "io/frame_source.h"
-#include "io/layout_note.h"
 #include "pillarfield/error.h"
+#include "pillarfield/layout_note.h"
 
 namespace pillarfield {
 namespace {

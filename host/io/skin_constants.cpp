@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "io/layout_note.h"
+#include "pillarfield/layout_note.h"
 
 namespace pillarfield {
 namespace {
@@ -36,15 +36,6 @@ void take_constants(Skin& skin, const StoredSkin& stated, const ReadOptions& opt
   skin.power_law = stated.power_law;
   skin.layout = options.layout.value_or(stated.layout.value_or(SkinLayout::sensels));
   skin.falling = options.falling || stated.falling;
-}
-
-std::vector<std::string> given_constants(const ReadOptions& options) {
-  return names_given({{"--layout", options.layout.has_value()},
-                      {"--pitch-mm", options.sensel_pitch_mm.has_value()},
-                      {"--counts-per-newton", options.counts_per_newton.has_value()},
-                      {"--threshold", options.threshold_counts.has_value()},
-                      {"--full-scale", options.full_scale_counts.has_value()},
-                      {"--falling", options.falling}});
 }
 
 std::vector<std::string> given_file_options(const ReadOptions& options) {

@@ -24,9 +24,6 @@ struct StoredSkin {
 /// stay, but the layout: without a word each sensel is by itself.
 void take_constants(Skin& skin, const StoredSkin& stated, const ReadOptions& options);
 
-/// The options that are constants of the skin and are set, as the command line names them.
-[[nodiscard]] std::vector<std::string> given_constants(const ReadOptions& options);
-
 /// The options about files of frames, which a live source has no use for, and are set.
 [[nodiscard]] std::vector<std::string> given_file_options(const ReadOptions& options);
 

@@ -90,7 +90,7 @@ struct LaneProgram {
 [[nodiscard]] std::span<const LaneProgram* const> lane_programs();
 
 /// The one with the most lanes, but not more than `most` if there is one, that a row of so many
-/// blocks of 2 x 2 sensels fills; null if a row is a single block.
-[[nodiscard]] const LaneProgram* lane_program(std::uint32_t quad_cols, int most);
+/// blocks of 2 x 2 sensels fills; that with the fewest lanes if none does.
+[[nodiscard]] const LaneProgram& lane_program(std::uint32_t quad_cols, int most);
 
 }  // namespace pillarfield

@@ -33,13 +33,12 @@ std::span<const LaneProgram* const> lane_programs() {
   return programs;
 }
 
-const LaneProgram* lane_program(std::uint32_t quad_cols, int most) {
-  const int limit = std::max(most, lane_programs().back()->lanes);
-  for (const LaneProgram* program : lane_programs()) {
-    const bool is_filled = static_cast<std::uint32_t>(program->lanes) <= quad_cols;
-    if (program->lanes <= limit && is_filled) return program;
-  }
-  return nullptr;
+const LaneProgram& lane_program(std::uint32_t quad_cols, int most) {
+  const auto programs = lane_programs();
+  const auto found = std::ranges::find_if(programs, [&](const LaneProgram* program) {
+    return program->lanes <= most && static_cast<std::uint32_t>(program->lanes) <= quad_cols;
+  });
+  return found == programs.end() ? *programs.back() : **found;
 }
 
 }  // namespace pillarfield

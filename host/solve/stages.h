@@ -69,18 +69,4 @@ Stages named_stages(const SolverPlan& plan) {
   return stages;
 }
 
-/// The stages that a plan names, with their constants but for the polynomial of the response curve
-/// and the model of hysteresis and creep.
-template <class Stages>
-Stages plan_constants(const SolverPlan& plan) {
-  auto stages = named_stages<Stages>(plan);
-  const std::vector<StageConstant> constants = stage_constants(plan);
-  std::size_t i = 0;
-#define PF_SET(name, needed, kind, formula) \
-  stages.name = static_cast<decltype(stages.name)>(constants[i++].value);
-  PF_STAGE_CONSTANTS(PF_SET)
-#undef PF_SET
-  return stages;
-}
-
 }  // namespace pillarfield

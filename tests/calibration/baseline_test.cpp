@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "pillarfield/host_solve.h"
+#include "pillarfield/processor.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
 
@@ -51,12 +51,14 @@ class Follower {
         raw_(simulator_.sensel_type(), scene.skin.rows, scene.skin.cols),
         truth_(scene.skin.pillar_rows(), scene.skin.pillar_cols()),
         unloaded_(simulator_.calibration().tare) {
-    plan_.skin = scene.skin;
-    plan_.sensel_type = simulator_.sensel_type();
-    plan_.calibration = simulator_.calibration();
-    plan_.frame_interval_s = 1 / scene.rate_hz;
-    set_baseline(plan_, time_constant_s);
-    if (interval) plan_.baseline_interval = *interval;
+    SolverPlan plan;
+    plan.skin = scene.skin;
+    plan.sensel_type = simulator_.sensel_type();
+    plan.calibration = simulator_.calibration();
+    plan.frame_interval_s = 1 / scene.rate_hz;
+    set_baseline(plan, time_constant_s);
+    if (interval) plan.baseline_interval = *interval;
+    processor_.emplace(open_device("host"), plan);
   }
 
   /// Solves the next frame, to whose readings `drift` is added, counts.
@@ -67,12 +69,11 @@ class Follower {
       readings[i] +=
           static_cast<float>(drift.level + drift.per_col * (static_cast<double>(i % 30) - 14.5));
     }
-    ForceField forces = solve_on_host(plan_, raw_.view());
-    follow_baseline_on_host(plan_, raw_.view(), forces, state_);
-    return forces;
+    processor_->submit(raw_.view());
+    return ForceField(processor_->receive());
   }
 
-  [[nodiscard]] const std::vector<float>& tare() const { return plan_.calibration.tare; }
+  [[nodiscard]] std::vector<float> tare() const { return processor_->tare(); }
   [[nodiscard]] const std::vector<float>& unloaded() const { return unloaded_; }
   [[nodiscard]] const ForceField& truth() const { return truth_; }
 
@@ -81,8 +82,7 @@ class Follower {
   FrameBuffer raw_;
   ForceField truth_;
   std::vector<float> unloaded_;
-  SolverPlan plan_;
-  SensorState state_;
+  std::optional<Processor> processor_;
   std::uint64_t frame_ = 0;
 };
 
@@ -138,12 +138,13 @@ double tracking_error(const Follower& follower, const Scene& scene, int frames) 
   FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
   ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
   simulator.render(static_cast<std::uint64_t>(frames), raw, truth);
+  const std::vector<float> tare = follower.tare();
   double squares = 0;
-  for (std::size_t i = 0; i < follower.tare().size(); ++i) {
-    const double error = follower.tare()[i] - raw.readings<float>()[i];
+  for (std::size_t i = 0; i < tare.size(); ++i) {
+    const double error = tare[i] - raw.readings<float>()[i];
     squares += error * error;
   }
-  return std::sqrt(squares / static_cast<double>(follower.tare().size()));
+  return std::sqrt(squares / static_cast<double>(tare.size()));
 }
 
 TEST(Baseline, FollowsTheDriftOfAnUntouchedSkin) {

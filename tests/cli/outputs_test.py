@@ -142,7 +142,7 @@ class Existing(OutputTest):
         for arguments in (("simulate", self.scene, "-o", recording),
                           ("solve", other, "-o", recording),
                           ("calibrate", "tare", other, "-o", recording)):
-            self.assert_fails(*arguments, names=["rec.h5", "holds a recording", "--overwrite"])
+            self.assert_fails(*arguments, names=["rec.h5", "not an earlier result", "--overwrite"])
         self.assertEqual(recording.read_bytes(), before)
         run("simulate", self.scene, "-o", recording, "--seed", 7, "--overwrite")
         self.assertEqual(content_of(recording), content_of(other))
@@ -159,7 +159,7 @@ class Existing(OutputTest):
             run("solve", recording, "-o", output, "--overwrite")
         notes = self.folder / "notes.toml"
         notes.write_text("[a]\n", encoding="utf-8")
-        self.assert_fails("simulate", self.scene, "-o", notes, names=["notes.toml", "TOML"])
+        self.assert_fails("simulate", self.scene, "-o", notes, names=["notes.toml", "--overwrite"])
 
 class Ends(OutputTest):
     """Signals and limits end in one line and keep flushed frames."""

@@ -135,7 +135,7 @@ class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
     std::deque<ForceField> expected;
     HostReference host(plan);
     const auto expect_next = [&] {
-      expect_same_planes(processor.receive(), expected.front());
+      expect_same_planes(processor.receive(), expected.front().view());
       expected.pop_front();
     };
     for (int index = 0; index < kFrames; ++index) {
@@ -143,7 +143,7 @@ class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
       frames.emplace_back(path.type, path.type == SenselType::u16 ? 16 : 1, noise);
       const FrameView frame = frames.back().frame(index % 8);
       processor.submit(frame);
-      expected.push_back(host.solve(frame));
+      expected.emplace_back(host.solve(frame));
       if (processor.in_flight() == kInFlight) expect_next();
     }
     while (!expected.empty()) expect_next();

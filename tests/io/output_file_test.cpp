@@ -283,7 +283,7 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
     return error;
   };
   write_recording(directory / "a.csv", 3, false);
-  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds 3 frames", "rename it", "--overwrite"}));
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds data", "rename it", "--overwrite"}));
   const PlannedOutput planned = {directory / "a.csv", OutputKind::forces};
   EXPECT_NE(error_of([&] { check_outputs({}, {planned}, Replace::results); }), "");
   check_outputs({}, {planned}, Replace::anything);
@@ -291,9 +291,9 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   EXPECT_EQ(directory.names(), Names{"a.csv"});
   fs::remove(directory / "a.csv");
   write_calibration_file(directory / "a.csv.part", small_calibration());
-  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds a calibration"}));
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds data"}));
   write_bytes(directory / "a.csv.part", "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
-  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "Tekscan"}));
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds data", "remove it"}));
   fs::remove(directory / "a.csv.part");
   write_some_forces(directory / "f.h5", 20);
   fs::rename(directory / "f.h5", directory / "a.csv.part");
@@ -381,7 +381,7 @@ TEST(OutputFile, ALinkAtItsNameStaysAndItsTargetIsWritten) {
   EXPECT_EQ(bytes_of(directory / "far/b.csv"), kTableHead);
   write_recording(directory / "far/b.csv", 1);
   EXPECT_TRUE(has_all(error_of([&] { write_text(directory / "a.csv", "", Replace::results); }),
-                      {"far/b.csv", "holds a recording"}));
+                      {"far/b.csv", "not an earlier result"}));
   fs::create_symlink("loop", directory / "loop");
   EXPECT_NE(error_of([&] { write_text(directory / "loop", "", Replace::anything); }), "");
 }
@@ -437,9 +437,9 @@ TEST(CheckOutputs, TwoOutputsNeverShareAFile) {
 TEST(CheckOutputs, UnwritablePathsAreRefused) {
   const TemporaryDirectory directory;
   const auto refused = [&](const fs::path& path) {
-    return error_of([&] { check_outputs({}, {{path, OutputKind::svg}}, Replace::anything); });
+    return error_of([&] { check_outputs({}, {{path, OutputKind::png}}, Replace::anything); });
   };
-  EXPECT_TRUE(has_all(refused(directory / "none" / "a.svg"), {"none/a.svg", "No such file"}));
+  EXPECT_TRUE(has_all(refused(directory / "none" / "a.png"), {"none/a.png", "No such file"}));
   EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "not a regular file"}));
   EXPECT_TRUE(has_all(refused("-"), {"standard output"}));
   EXPECT_TRUE(has_all(refused(""), {"empty"}));

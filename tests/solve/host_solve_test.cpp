@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pillarfield/error.h"
+#include "pillarfield/processor.h"
 
 namespace pillarfield {
 namespace {
@@ -62,10 +63,10 @@ TEST_F(HostSolve, RefusesFramesAndPlansThatDoNotFit) {
 TEST_F(HostSolve, ABaselineStartsFromZeroWithoutATare) {
   plan_.baseline_rate = 0.25;
   plan_.skin.threshold_counts = 60;  // nothing is usable, so every sensel is untouched
-  SensorState state;
-  follow_baseline_on_host(plan_, frame_, solve_on_host(plan_, frame_), state);
-  EXPECT_EQ(plan_.calibration.tare, std::vector<float>(24, 12.5F));
-  EXPECT_THROW(follow_baseline_on_host(plan_, frame_, ForceField(3, 3), state), Error);
+  Processor processor(open_device("host"), plan_);
+  processor.submit(frame_);
+  static_cast<void>(processor.receive());
+  EXPECT_EQ(processor.tare(), std::vector<float>(24, 12.5F));
 }
 
 }  // namespace

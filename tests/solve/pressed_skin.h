@@ -65,16 +65,10 @@ inline SolverPlan pressed_plan(std::uint32_t pillar_rows, std::uint32_t pillar_c
   return plan;
 }
 
-inline ForceField solve_readings(const SolverPlan& plan, std::span<const double> readings,
-                                 SensorState& state) {
+inline ForceField solve_readings(const SolverPlan& plan, std::span<const double> readings) {
   const std::vector<float> frame(readings.begin(), readings.end());
   return solve_on_host(
-      plan, {frame.data(), SenselType::f32, plan.skin.rows, plan.skin.cols, plan.skin.cols}, state);
-}
-
-inline ForceField solve_readings(const SolverPlan& plan, std::span<const double> readings) {
-  SensorState state;
-  return solve_readings(plan, readings, state);
+      plan, {frame.data(), SenselType::f32, plan.skin.rows, plan.skin.cols, plan.skin.cols});
 }
 
 /// The largest error of a component, counts.

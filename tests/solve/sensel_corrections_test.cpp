@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pillarfield/processor.h"
 #include "pillarfield/status.h"
 #include "pressed_skin.h"
 #include "simulation/effects/sensel_leak.h"
@@ -13,6 +14,23 @@ namespace {
 
 constexpr std::uint32_t kPatchSide = 16;   // pillars
 constexpr std::size_t kPatchSensels = 32;  // of a row
+
+/// Frames in sequence, each with what the frames before it leave.
+class HostSequence {
+ public:
+  explicit HostSequence(const SolverPlan& plan)
+      : skin_(plan.skin), processor_(open_device("host"), plan) {}
+
+  ForceField solve(std::span<const double> readings) {
+    const std::vector<float> frame(readings.begin(), readings.end());
+    processor_.submit({frame.data(), SenselType::f32, skin_.rows, skin_.cols, skin_.cols});
+    return ForceField(processor_.receive());
+  }
+
+ private:
+  Skin skin_;
+  Processor processor_;
+};
 
 // --- Response curve ---
 
@@ -232,10 +250,10 @@ TEST(SenselMemory, LeavesSenselsBelowTheThresholdInactive) {
   SensorEffects effects;
   effects.memory = {{{0, -0.5}}, {{0.01, -0.5}}};
   const SolverPlan plan = pressed_plan(1, 1, effects);
-  SensorState state;
+  HostSequence sequence(plan);
   for (const double reading : {200.0, 200.0, 200.0, 0.4}) {
     const ForceField solved =
-        solve_readings(plan, std::vector<double>{reading, reading, reading, reading}, state);
+        sequence.solve(std::vector<double>{reading, reading, reading, reading});
     EXPECT_EQ(pressed_count(solved), reading > 0.5 ? 1 : 0);
   }
 }
@@ -260,13 +278,12 @@ TEST(SenselMemory, OfAnyHistoryComesBack) {
     SolverPlan plan = pressed_plan(1, 1, effects);
     plan.frame_interval_s = 0.05;
     std::vector<RememberingSensel> sensels(4, {model, plan.frame_interval_s});
-    SensorState state;
+    HostSequence sequence(plan);
     double least_ignored = 0;
     for (const ForceField& truth : random_history(11)) {
       std::vector<double> readings = loads_of(truth);
       for (std::size_t n = 0; n < 4; ++n) readings[n] = sensels[n].reading(readings[n]);
-      EXPECT_LT(largest_error(solve_readings(plan, readings, state), truth),
-                resolution(model, 300) + 2e-3);
+      EXPECT_LT(largest_error(sequence.solve(readings), truth), resolution(model, 300) + 2e-3);
       least_ignored = std::max(
           least_ignored, largest_error(solve_readings(pressed_plan(1, 1, {}), readings), truth));
     }
@@ -284,14 +301,14 @@ TEST(SenselMemory, CreepsByLessThanTheLastBitOfAState) {
   ForceField truth(1, 1);
   truth.normal[0] = 1.5;
   std::vector<RememberingSensel> sensels(4, {model, plan.frame_interval_s});
-  SensorState state;
+  HostSequence sequence(plan);
   double largest = 0;
   double ignored = 0;
   for (int frame = 0; frame < 30000; ++frame) {
     std::vector<double> readings = loads_of(truth);
     for (std::size_t n = 0; n < 4; ++n) readings[n] = sensels[n].reading(readings[n]);
     ignored = readings[0] - loads_of(truth)[0];
-    largest = std::max(largest, largest_error(solve_readings(plan, readings, state), truth));
+    largest = std::max(largest, largest_error(sequence.solve(readings), truth));
   }
   EXPECT_LT(largest, 2 * resolution(model, 150));
   EXPECT_GT(ignored, 14) << "the state has crept";
@@ -321,7 +338,7 @@ TEST(Bending, IsFollowedUnderAContact) {
   const Calibration& planes = plan.calibration;
   std::mt19937 random(23);
   std::normal_distribution<double> noise(0, 0.4);
-  SensorState state;
+  HostSequence sequence(plan);
   for (int frame = 0; frame < 20; ++frame) {
     const Curvature at = {0.02 - 0.001 * frame, 0.001 * frame, -0.01};
     std::vector<double> readings = v;
@@ -329,7 +346,7 @@ TEST(Bending, IsFollowedUnderAContact) {
       readings[i] += planes.tare[i] + at.x * planes.bend_x[i] + at.y * planes.bend_y[i] +
                      at.xy * planes.bend_xy[i] + noise(random);
     }
-    const ForceField solved = solve_readings(plan, readings, state);
+    const ForceField solved = sequence.solve(readings);
     EXPECT_LT(largest_error(solved, truth), 3) << frame;
     EXPECT_LT(pressed_count(solved), pressed_count(truth) + 5) << frame;
   }

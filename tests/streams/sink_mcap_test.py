@@ -124,7 +124,7 @@ class McapTest(SinkTest):
         self.assertEqual(sequences, list(range(len(sequences))))
         self.assertFalse(path.exists())
         # The next writer does not overwrite what cannot be made again.
-        with self.assertRaisesRegex(AssertionError, "holds messages"):
+        with self.assertRaisesRegex(AssertionError, "holds data"):
             self.start("--to", path)
         self.assertEqual(read_stream(part.read_bytes())[0], messages)
 

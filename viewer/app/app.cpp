@@ -34,7 +34,7 @@ Application::Application(const Options& options)
       surface_(window_.make_surface(instance_)),
       device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
       presenter_(instance_, device_, *surface_, scale()) {
-  state_.settings.theme = options.theme;
+  state_.settings.theme = options.look.theme;
 }
 
 void Application::run() {
@@ -155,7 +155,7 @@ void Application::take_newest_field() {
   take_beside();
   if (!held_ || !is_in_step()) return;
   take_field(state_, *std::exchange(held_, std::nullopt));
-  if (follows_load_) follow_load();
+  load_follower_.take_field(state_);
   field_is_new_ = true;
   redraws_.field();
 }

@@ -8,7 +8,7 @@
 #include "viewer/app/named_boxes.h"
 #include "viewer/app/panels/time_window.h"
 #include "viewer/app/trails.h"
-#include "viewer/source/live_player.h"
+#include "viewer/source/live_control.h"
 #include "viewer/source/player.h"
 #include "viewer/source/selection.h"
 #include "viewer/source/survey.h"
@@ -52,42 +52,55 @@ struct DrawStatistics {
   bool in_place = false;         ///< the device reads the solver's memory without a copy
 };
 
-/// The state that panels show and actions change. Single-threaded.
-// There is one; its members stand by what they are about.
-// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
-struct AppState {
+/// The source on display, and a second one beside.
+struct ShownSource {
   Player* player = nullptr;  ///< null: no source is open
   Player* beside = nullptr;  ///< a second source or the truth; null: none
   bool beside_is_truth = false;
-  bool has_truth = false;    ///< the truth can be shown
-  Curves* curves = nullptr;  ///< of the first source
-  Survey* survey = nullptr;  ///< fills `curves`; null for a sensor
-  RenderSettings settings;
+  bool has_truth = false;                  ///< the truth can be shown
+  Curves* curves = nullptr;                ///< of the first source
+  Survey* survey = nullptr;                ///< fills `curves`; null for a sensor
   std::optional<ShownField> field;         ///< field on display
   std::optional<ShownField> beside_field;  ///< of the second source
-  TimeWindow time_window;
-  Trails trails;
-  bool show_trails = false;
+  TimeWindow time_window;                  ///< of the curves
+};
+
+/// The look of the picture.
+struct ShownLook {
+  RenderSettings settings;
+  /// The last range of each quantity shown so far.
+  std::array<std::optional<Range>, kQuantities> ranges;
+  bool fit_each_field = false;     ///< fit the range to every field
+  bool view_is_fitted = true;      ///< the view follows the window's size until the user moves it
+  std::optional<View> other_view;  ///< the hidden one of top view and 3-D view
+};
+
+/// Marks on the skin.
+struct Marks {
+  static constexpr std::size_t kMostPins = 6;
+
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
   std::optional<Selection> selection;
   std::vector<NamedBox> boxes;  ///< at most NamedBoxes::kMost
   bool names_box = false;       ///< the name of the last box takes the keyboard next
+  Trails trails;
+  bool show_trails = false;
+};
+
+/// The window around the picture.
+struct WindowState {
   DrawStatistics draw;
   bool show_help = false;
   Viewport help_place;  ///< in the window, pixels
   bool show_panels = true;
   bool folds_curves = false;
   bool show_counters = false;  ///< times and counts of solving and drawing
-  /// The last range of each quantity shown so far.
-  std::array<std::optional<Range>, kQuantities> ranges;
-  bool fit_each_field = false;     ///< fit the range to every field
-  bool view_is_fitted = true;      ///< the view follows the window's size until the user moves it
-  std::optional<View> other_view;  ///< the hidden one of top view and 3-D view
-  bool writing = false;            ///< a FrameWriter is active
+  bool writing = false;        ///< a FrameWriter is active
   Notice notice;
-
-  static constexpr std::size_t kMostPins = 6;
 };
+
+/// The state that panels show and actions change. Single-threaded.
+struct AppState : ShownSource, ShownLook, Marks, WindowState {};
 
 }  // namespace pillarfield::viewer

@@ -65,7 +65,6 @@ class Application {
   void take_beside();
   [[nodiscard]] bool is_in_step() const;
   [[nodiscard]] std::optional<ShownField> taken_field();
-  void follow_load();
   void take_news();
   void attend_survey();
   void attend_sensor();
@@ -80,6 +79,8 @@ class Application {
 
   void serve();
   void serve_open();
+  [[nodiscard]] std::filesystem::path new_file(const std::string& detail, const char* ending,
+                                               OutputKind kind) const;
   void write_picture();
   void write_table();
   void begin_frames(FrameWriter::Kind kind);
@@ -120,10 +121,7 @@ class Application {
   std::uint64_t live_messages_ = 0;
   std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::optional<RenderSettings> drawn_settings_;
-  bool follows_load_ = false;  ///< ranges of a sensor, until the user sets one
-  LoadRange load_range_;
-  std::optional<Quantity> followed_quantity_;  ///< shown when the range was last as it followed
-  Range followed_range_;
+  LoadFollower load_follower_;
   std::optional<ShownField> held_;  ///< until the second source has its frame
   bool field_is_new_ = false;
   bool beside_is_new_ = false;

@@ -91,35 +91,43 @@ Pixels Application::pixels() {
   return all;
 }
 
+/// A new file of the working folder.
+std::filesystem::path Application::new_file(const std::string& detail, const char* ending,
+                                            OutputKind kind) const {
+  const auto path = free_path(*place_.source, detail, ending);
+  check_outputs({options_.source}, {{path, kind}}, Replace::nothing);
+  return path;
+}
+
 void Application::write_picture() {
   if (!drawn_settings_) return;
-  const auto path = free_path(*place_.source, info_of(state_.settings.quantity).name, ".png");
-  check_outputs({options_.source}, {{path, OutputKind::png}}, Replace::nothing);
+  const auto path = new_file(info_of(state_.settings.quantity).name, ".png", OutputKind::png);
   write_png(path, pixels(), Replace::nothing);
   state_.notice = "wrote " + path.string();
 }
 
 void Application::write_table() {
-  const std::string frame = fmt::format("frame_{}", state_.field->index + 1);
-  const auto path = free_path(*place_.source, frame, ".csv");
-  check_outputs({options_.source}, {{path, OutputKind::forces}}, Replace::nothing);
+  const auto path =
+      new_file(fmt::format("frame_{}", state_.field->index + 1), ".csv", OutputKind::forces);
   write_csv(path, *state_.field, visible_pillars(place_, state_.settings), Replace::nothing);
   state_.notice = "wrote " + path.string();
 }
 
 void Application::begin_frames(FrameWriter::Kind kind) {
   if (writer_ != nullptr) return;
+  const SourceInfo& source = *place_.source;
   if (state_.player->live() != nullptr) {
-    throw Error(place_.source->name, "a sensor has no last frame to write", "record it");
+    throw Error(source.name, "a sensor has no last frame to write", "record it");
   }
   const std::string quantity = info_of(state_.settings.quantity).name;
-  const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
-                                                     : free_sequence_path(*place_.source, quantity);
-  const PlannedOutput first =
-      kind == FrameWriter::Kind::video
-          ? PlannedOutput{path, OutputKind::video}
-          : PlannedOutput{numbered(path, 1, place_.source->frames), OutputKind::png};
-  check_outputs({options_.source}, {first}, Replace::nothing);
+  std::filesystem::path path;
+  if (kind == FrameWriter::Kind::video) {
+    path = new_file(quantity, ".mp4", OutputKind::video);
+  } else {
+    path = free_sequence_path(source, quantity);
+    check_outputs({options_.source}, {{numbered(path, 1, source.frames), OutputKind::png}},
+                  Replace::nothing);
+  }
   const vk::Extent2D size = extent_of(screen_.field);
   writer_ = std::make_unique<FrameWriter>(state_, kind, path, size.width, size.height);
 }

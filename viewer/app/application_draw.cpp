@@ -4,7 +4,7 @@
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/window/style.h"
 
-// What an Application draws, and when.
+// Drawing of an Application: its picture and when one is due.
 
 namespace pillarfield::viewer {
 namespace {

@@ -62,9 +62,7 @@ void Application::show(LoadedSource loaded) {
   next.show_panels = state_.show_panels;
   next.folds_curves = state_.folds_curves;
   next.show_counters = state_.show_counters;
-  follows_load_ = next.player->live() != nullptr && !options_.range;
-  load_range_ = {};
-  followed_quantity_.reset();
+  load_follower_ = LoadFollower(next.player->live() != nullptr && !options_.range);
   next.view_is_fitted = asks_for_whole_skin(options_);
   state_ = std::move(next);
   source_was_shown_ = true;
@@ -124,28 +122,6 @@ void Application::listen() {
   });
 }
 
-/// Ranges of a sensor follow its load until the user sets one.
-void Application::follow_load() {
-  const Skin& skin = place_.source->skin;
-  RenderSettings& settings = state_.settings;
-  const bool same_quantity = followed_quantity_ == settings.quantity;
-  if (same_quantity && followed_range_ != settings.range) follows_load_ = false;
-  const auto load =
-      load_range_.add(state_.field->time_s, largest(Quantity::normal, *state_.field, skin));
-  if (load && follows_load_ && !state_.fit_each_field) {
-    const float most = 1.2F * *load;
-    const Range range = fitting_range(Quantity::normal, most);
-    settings.full_force_n = settings.full_shear_n = static_cast<double>(*load) / 2;
-    settings.relief_full_n = static_cast<double>(range.high);
-    if (settings.quantity == Quantity::normal) set_range(state_, range);
-    if (settings.quantity == Quantity::pressure) {
-      set_range(state_, fitting_range(Quantity::pressure, most * kpa_per_newton(skin)));
-    }
-  }
-  followed_quantity_ = settings.quantity;
-  followed_range_ = settings.range;
-}
-
 /// A sensor that fails leaves its picture; the failure of a file ends the program.
 std::optional<ShownField> Application::taken_field() {
   try {
@@ -186,7 +162,7 @@ void Application::attend_survey() {
 }
 
 void Application::attend_sensor() {
-  const LiveControl* const live = state_.player->live();
+  LiveControl* const live = state_.player->live();
   if (live == nullptr) return;
   const LiveStatus status = live->status();
   if (std::exchange(live_messages_, status.messages) != status.messages && status.messages > 0) {

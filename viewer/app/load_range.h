@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "viewer/app/app_state.h"
+
 namespace pillarfield::viewer {
 
 /// The load that a range of colours is made for: rises at once, and falls only after some seconds
@@ -43,6 +45,21 @@ class LoadRange {
   float lately_ = 0;      ///< largest of the time that is less, N
   double touched_s_ = 0;  ///< of less than half the load
   double last_s_ = 0;
+};
+
+/// Lets the ranges of a sensor follow its load until the user sets one.
+class LoadFollower {
+ public:
+  explicit LoadFollower(bool follows = false) : follows_(follows) {}
+
+  /// Takes the field on display.
+  void take_field(AppState& state);
+
+ private:
+  bool follows_;
+  LoadRange load_;
+  std::optional<Quantity> quantity_;  ///< shown when the range was last as it followed
+  Range range_;
 };
 
 }  // namespace pillarfield::viewer

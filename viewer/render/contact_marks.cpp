@@ -19,7 +19,6 @@ constexpr double kLeastArrowLimit = 16;  ///< pixels at scale 1
 constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< keeps lines visible on any colour
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
 constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< distinct from the arrows of cells
-constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< behind labels
 
 /// Bounding box of points, pixels.
 Viewport box_about(const std::vector<SeenPoint>& points) {
@@ -49,7 +48,7 @@ std::optional<Vec2> tip_of(const ContactQuantities& contact, const Ground& groun
                        {mm_per_newton * contact.shear_x_n, mm_per_newton * contact.shear_y_n});
 }
 
-/// Draws the lines and labels of one picture.
+/// Draws the lines of one picture.
 class Brush {
  public:
   Brush(ImDrawList& list, double scale) : list_(list), unit_(static_cast<float>(scale)) {}
@@ -71,26 +70,7 @@ class Brush {
     list_.AddCircleFilled(centre, 1.6f * unit_, kEdge);
   }
 
-  void words(const Viewport& box, const std::string& words) const {
-    list_.AddRectFilled(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
-                        kGround, 3 * unit_);
-    list_.AddText(to_imgui({box.x + margin(), box.y}), kLine, words.c_str());
-  }
-
-  /// Box of a label with a given lower left corner, moved into the plot.
-  [[nodiscard]] Viewport box_of(const std::string& words, Vec2 corner, const Viewport& plot) const {
-    const ImVec2 size = ImGui::CalcTextSize(words.c_str());
-    const double width = std::ceil(static_cast<double>(size.x) + 2 * margin());
-    const double height = std::ceil(static_cast<double>(size.y));
-    const double right = std::max(plot.x, plot.x + plot.width - width);
-    const double bottom = std::max(plot.y, plot.y + plot.height - height);
-    return {std::round(std::clamp(corner.x, plot.x, right)),
-            std::round(std::clamp(corner.y - height, plot.y, bottom)), width, height};
-  }
-
  private:
-  [[nodiscard]] double margin() const { return std::round(4.0 * static_cast<double>(unit_)); }
-
   /// Enlarged by `more` pixels on all sides.
   void arrow(const Vec2& from, const Vec2& to, double more, ImU32 colour) const {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
@@ -111,23 +91,40 @@ class Brush {
 };
 
 /// Places labels, heaviest contacts first, where they cover no other.
-void write_words(const Brush& brush, const std::vector<ContactMark>& marks, const Viewport& plot,
+void write_words(ImDrawList& list, const std::vector<ContactMark>& marks, const Viewport& plot,
                  double scale) {
   std::vector<Viewport> taken;
   for (const ContactMark& mark : marks) {
     if (mark.centre.hidden && std::ranges::all_of(mark.outline, &SeenPoint::hidden)) continue;
     Viewport box = box_about(mark.outline);
     box.y = std::min(box.y, mark.centre.y - 6 * scale);  // Above its hill.
-    const Viewport label = brush.box_of(mark.words, {box.x, box.y - 3 * scale}, plot);
+    const Viewport label = label_box(mark.words, {box.x, box.y - 3 * scale}, plot, scale);
     if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(label, other); })) {
       continue;
     }
-    brush.words(label, mark.words);
+    draw_label(list, label, mark.words, kLine, scale);
     taken.push_back(label);
   }
 }
 
 }  // namespace
+
+Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot, double scale) {
+  const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+  const double width = std::ceil(static_cast<double>(size.x) + 2 * std::round(4 * scale));
+  const double height = std::ceil(static_cast<double>(size.y));
+  const double right = std::max(plot.x, plot.x + plot.width - width);
+  const double bottom = std::max(plot.y, plot.y + plot.height - height);
+  return {std::round(std::clamp(corner.x, plot.x, right)),
+          std::round(std::clamp(corner.y - height, plot.y, bottom)), width, height};
+}
+
+void draw_label(ImDrawList& list, const Viewport& box, const std::string& words, unsigned colour,
+                double scale) {
+  list.AddRectFilled(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
+                     IM_COL32(8, 10, 14, 190), static_cast<float>(3 * scale));
+  list.AddText(to_imgui({box.x + std::round(4 * scale), box.y}), colour, words.c_str());
+}
 
 std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Ground& ground) {
   std::vector<ContactMark> marks;
@@ -164,11 +161,11 @@ void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const G
                     to_imgui({plot.x + plot.width, plot.y + plot.height}));
   for (const ContactMark& mark : marks) brush.outline(mark);
   for (const ContactMark& mark : marks) brush.force(mark);
-  write_words(brush, marks, plot, scale);
+  write_words(list, marks, plot, scale);
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     const double gap = 4 * scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
-    brush.words(brush.box_of(warning, corner, plot), warning);
+    draw_label(list, label_box(warning, corner, plot, scale), warning, kLine, scale);
   }
   list.PopClipRect();
 }

@@ -34,6 +34,13 @@ struct ContactMark {
 /// "256 of 1031 contacts are drawn, the heaviest"; empty if all are drawn.
 [[nodiscard]] std::string contacts_left_out(const ShownContacts& contacts);
 
+/// Box of a label with a given lower left corner, moved into the plot.
+[[nodiscard]] Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot,
+                                 double scale);
+/// Draws a label on a dark ground.
+void draw_label(ImDrawList& list, const Viewport& box, const std::string& words, unsigned colour,
+                double scale);
+
 /// Draws marks into the plot, as far as no hill hides them; omits a label that would cover that of
 /// a heavier contact.
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const Ground& ground);

@@ -23,7 +23,7 @@ struct SeenPoint : Vec2 {
   bool hidden = false;
 };
 
-/// Where points of the sheet are seen in a picture: in relief they stand on its hills. The
+/// Places of the sheet's points in a picture: in relief they stand on its hills. The
 /// arguments must outlive it; `field` is null for a skin without relief.
 class Ground {
  public:

@@ -1,60 +1,9 @@
 #include "viewer/source/curves.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
 
 namespace pillarfield::viewer {
 namespace {
-
-/// Sums of forces and their first moments about the middle of the skin.
-struct CurveSums {
-  double x = 0, y = 0, normal = 0, first_x = 0, first_y = 0, turn = 0;
-
-  void add(double x_n, double y_n, double normal_n, double x_mm, double y_mm) {
-    if (!std::isfinite(x_n) || !std::isfinite(y_n) || !std::isfinite(normal_n)) return;
-    x += x_n;
-    y += y_n;
-    normal += normal_n;
-    first_x += normal_n * x_mm;
-    first_y += normal_n * y_mm;
-    turn += x_mm * y_n - y_mm * x_n;
-  }
-};
-
-bool is_idle_block(const std::uint8_t* status) {
-  std::uint64_t block = 0;
-  std::memcpy(&block, status, sizeof block);
-  return block == 0;
-}
-
-CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, const Pitch& pitch_mm) {
-  constexpr std::uint32_t kBlock = 8;
-  const bool sheared = has_pillars(forces);
-  CurveSums sums;
-  const std::uint32_t row_end = std::min(rect.row_end, forces.rows);
-  const std::uint32_t col_end = std::min(rect.col_end, forces.cols);
-  for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {
-    const double y_mm = (0.5 * forces.rows - row - 0.5) * pitch_mm.row_mm;
-    const std::size_t first = std::size_t{row} * forces.cols;
-    for (std::uint32_t col = rect.col_begin; col < col_end;) {
-      if (col + kBlock <= col_end && is_idle_block(&forces.status[first + col])) {
-        col += kBlock;
-        continue;
-      }
-      const std::size_t at = first + col;
-      if ((forces.status[at] & status::kUsable) != 0) {
-        const float x_n = sheared ? forces.shear_x[at] : 0;
-        const float y_n = sheared ? forces.shear_y[at] : 0;
-        sums.add(x_n, y_n, forces.normal[at], (col + 0.5 - 0.5 * forces.cols) * pitch_mm.col_mm,
-                 y_mm);
-      }
-      ++col;
-    }
-  }
-  return sums;
-}
 
 std::uint64_t next_index(const std::deque<CurvePoint>& points) {
   return points.empty() ? 0 : points.back().index + 1;
@@ -93,20 +42,16 @@ std::vector<CurvePoint> points_between(const std::deque<CurvePoint>& points, dou
 
 CurvePoint curve_point(const ShownField& field, const PillarRect& rect,
                        const Pitch& element_pitch_mm) {
-  const CurveSums sums = curve_sums(field.forces, rect, element_pitch_mm);
-  const bool loaded = sums.normal > 0;
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const double centre_x = loaded ? sums.first_x / sums.normal : unknown;
-  const double centre_y = loaded ? sums.first_y / sums.normal : unknown;
+  const SelectionSums sums = sums_over(field, rect, element_pitch_mm);
   const auto narrow = [](double value) { return static_cast<float>(value); };
   return {.time_s = field.time_s,
           .index = field.index,
-          .shear_x = narrow(sums.x),
-          .shear_y = narrow(sums.y),
+          .shear_x = narrow(sums.shear_x),
+          .shear_y = narrow(sums.shear_y),
           .normal = narrow(sums.normal),
-          .torque = narrow(sums.turn - (centre_x * sums.y - centre_y * sums.x)),
-          .centre_x_mm = narrow(centre_x),
-          .centre_y_mm = narrow(centre_y)};
+          .torque = narrow(sums.moment_z),
+          .centre_x_mm = narrow(sums.centre_x_mm),
+          .centre_y_mm = narrow(sums.centre_y_mm)};
 }
 
 Curves::Curves(const Pitch& element_pitch_mm, std::size_t most_points)
@@ -128,7 +73,6 @@ void Curves::append(Points& points, const CurvePoint& point) {
   if (!points.empty() && point.index <= points.back().index) return;
   if (points.size() == most_points_) points.pop_front();
   points.push_back(point);
-  ++version_;
 }
 
 void Curves::add(const ShownField& field) {
@@ -156,18 +100,6 @@ bool Curves::wants_total_alone(std::uint64_t index) const {
   return next_index(total_) <= index && std::ranges::all_of(curves_, [&](const Curve& curve) {
            return next_index(curve.points) > index;
          });
-}
-
-void Curves::clear() {
-  const std::scoped_lock lock(mutex_);
-  total_.clear();
-  for (Curve& curve : curves_) curve.points.clear();
-  ++version_;
-}
-
-std::uint64_t Curves::version() const {
-  const std::scoped_lock lock(mutex_);
-  return version_;
 }
 
 std::pair<double, double> Curves::time_span() const {

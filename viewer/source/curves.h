@@ -22,7 +22,7 @@ struct CurvePoint {
   float centre_x_mm = 0, centre_y_mm = 0;  ///< centre of pressure; NaN without load
 };
 
-/// Sums over the part of `rect` inside the field. Idle blocks of 8 pillars cost one comparison.
+/// As sums_over().
 [[nodiscard]] CurvePoint curve_point(const ShownField& field, const PillarRect& rect,
                                      const Pitch& element_pitch_mm);
 
@@ -48,12 +48,6 @@ class Curves {
   /// True if only the curve of the whole skin lacks this frame.
   [[nodiscard]] bool wants_total_alone(std::uint64_t index) const;
 
-  /// Removes the points of all curves.
-  void clear();
-
-  /// Changes with each point.
-  [[nodiscard]] std::uint64_t version() const;
-
   /// The times of the first and the last point of the whole skin; equal without points.
   [[nodiscard]] std::pair<double, double> time_span() const;
 
@@ -77,7 +71,6 @@ class Curves {
   mutable std::mutex mutex_;  ///< guards the members below
   Points total_;
   std::vector<Curve> curves_;
-  std::uint64_t version_ = 0;
 };
 
 }  // namespace pillarfield::viewer

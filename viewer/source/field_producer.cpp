@@ -39,19 +39,6 @@ ProducerOptions options_for_later(ProducerOptions options) {
   return options;
 }
 
-/// Fills in the properties that plan and processor determine.
-void describe(SourceInfo& info, const SolverPlan& plan, const Processor& processor) {
-  info.skin = plan.skin;
-  info.calibration = plan.calibration;
-  info.has_readings = true;
-  info.has_angles = plan.angles;
-  info.has_uncertainty = plan.uncertainty;
-  set_sensor(info.contacts, plan);
-  info.solver =
-      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name) +
-      (processor.shares_memory() ? ", zero copy" : ", staged");
-}
-
 /// Number of frames to simulate of a scene; adds a warning where it is not all.
 std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptions& options,
                                  SourceInfo& info) {
@@ -107,6 +94,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);
   describe(info, plan, processor);
+  info.solver += processor.shares_memory() ? ", zero copy" : ", staged";
   const std::shared_ptr<FrameProvider> provider = simulate_frames(*simulator, frames, progress);
   info.frames = frames;
   auto producer = std::make_unique<SolvedProducer>(info, provider, plan, std::move(processor));
@@ -160,6 +148,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);
   describe(info, plan, processor);
+  info.solver += processor.shares_memory() ? ", zero copy" : ", staged";
   // Other frames would leave a state in the processor of a calibrated skin.
   if (!source->has_truth() && plan.calibration.empty()) {
     std::ranges::move(reading_warnings(*source, plan, processor),

@@ -4,18 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <atomic>
-#include <cmath>
 #include <mutex>
 #include <thread>
 #include <utility>
 
-#include "host/io/skin_constants.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
+#include "viewer/source/live_view.h"
 #include "viewer/source/object_pool.h"
-#include "viewer/source/plane_block.h"
-#include "viewer/source/result_player.h"
+#include "viewer/source/solved_producer.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -27,6 +25,8 @@ constexpr auto kTareTime = std::chrono::milliseconds(500);
 constexpr LiveTime kInsistTime = std::chrono::seconds(10);
 /// Points of the curves of a sensor: two minutes at 1 kHz.
 constexpr std::size_t kMostLivePoints = 120'000;
+/// Frames in flight of the processor: two, and the fields that the display holds in place.
+constexpr int kFramesInFlight = FieldProducer::kMostShown + 2;
 
 LiveTime live_now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
@@ -34,14 +34,7 @@ SourceInfo live_info(const std::string& name, const SolverPlan& plan, const Proc
   SourceInfo info;
   info.name = name == "-" ? "standard input" : name;
   info.kind = "sensor";
-  info.skin = plan.skin;
-  info.calibration = plan.calibration;
-  info.has_readings = true;
-  info.has_angles = plan.angles;
-  info.has_uncertainty = plan.uncertainty;
-  set_sensor(info.contacts, plan);
-  info.solver =
-      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name);
+  describe(info, plan, processor);
   return info;
 }
 
@@ -49,6 +42,15 @@ LiveSinkInfo recording_info(const SourceInfo& source, const SolverPlan& plan) {
   LiveSinkInfo info = live_sink_info(plan, "", source.name);
   info.replace = Replace::nothing;
   return info;
+}
+
+std::string words_of(const LiveEvent& event) {
+  if (event.kind == LiveEvent::Kind::recording) {
+    return fmt::format("recorded {}: {}", recorded_words(event.recorded), event.recording);
+  }
+  if (!event.error.empty()) return event.error + "; press it again within 10 s to insist";
+  return fmt::format("tare taken: {}{}", event.note,
+                     event.recording.empty() ? "" : "; the recording keeps that of its start");
 }
 
 /// The readings of a field on display, and its forces where elements without readings were
@@ -67,196 +69,199 @@ struct LiveFieldOwner {
   std::optional<Processor::PinnedResult> result;  ///< released first: then `field` implies a slot
 };
 
-}  // namespace
+class LivePlayer final : public LiveView, private ForceSink {
+ public:
+  LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name, SolverPlan plan,
+             Processor processor, std::shared_ptr<Curves> curves, bool keeps_threshold)
+      : LiveView(std::move(curves)),
+        stream_(std::move(stream)),
+        plan_(std::move(plan)),
+        processor_(std::move(processor)),
+        info_(live_info(name, plan_, processor_)),
+        session_(*stream_, plan_, processor_, recording_info(info_, plan_), keeps_threshold),
+        tracker_(plan_.skin.element_pitch_mm(), info_.contacts),
+        fields_(FieldProducer::kMostShown, [this] { return std::make_unique<LiveField>(plan_); }),
+        thread_([this] { run(); }) {}
+  ~LivePlayer() override;
 
-struct LivePlayer::State final : ForceSink {
-  State(std::unique_ptr<FrameStream> from, const std::string& name, SolverPlan with,
-        Processor solver, std::shared_ptr<Curves> measured, NewestField& shown, Wanted& asked,
-        bool keeps_threshold);
-  ~State() override;
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] PlayerState state() const override {
+    return state_after(solved_, session_.health().stream.rate_hz);
+  }
+  void tare() override {
+    const std::scoped_lock lock(mutex_);
+    session_.start_tare(kTareTime, live_now() - refused_at_ < kInsistTime);
+  }
+  void record(const std::filesystem::path& path) override {
+    stop_recording();
+    session_.record(path);
+  }
+  void stop_recording() override { session_.stop_recording(); }
+  [[nodiscard]] LiveStatus status() override;
 
-  void append(const SolvedFrame& frame) override;
+ private:
+  void take_events();
 
   // Run in the thread.
   void run();
   void run_pipeline();
-  [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
-  void publish(const SolvedFrame& frame);
+  void append(const SolvedFrame& frame) override;
+  void publish(const SolvedFrame& frame, ShownField field);
 
-  void take_events();
+  const std::unique_ptr<FrameStream> stream_;
+  const SolverPlan plan_;
+  Processor processor_;
+  SourceInfo info_;  ///< of the display's thread
+  LiveSession session_;
+  // Members of the thread.
+  ContactTracker tracker_;
+  ObjectPool<LiveField> fields_;
+  bool tracks_ = false;
 
-  const std::unique_ptr<FrameStream> stream;
-  const SolverPlan plan;
-  Processor processor;
-  SourceInfo info;  ///< of the display's thread
-  const std::shared_ptr<Curves> curves;
-  LiveSession session;
-  // Of the thread.
-  FieldClock clock{live_now()};
-  ContactTracker tracker;
-  PeakHold peak;
-  ObjectPool<LiveField> fields;
-  bool tracks = false;
-  double time_s = 0;  ///< of the frame solved last
+  std::atomic<bool> stopping_ = false;
+  std::atomic<bool> ended_ = false;
+  std::atomic<std::uint64_t> solved_ = 0;
 
-  Wanted& wanted;
-  std::atomic<bool> stopping = false;
-  std::atomic<bool> ended = false;
-  std::atomic<std::uint64_t> solved = 0;
+  std::mutex mutex_;  ///< guards the next three members
+  std::string message_;
+  std::uint64_t messages_ = 0;
+  LiveTime refused_at_ = -kInsistTime;  ///< the last tare
 
-  mutable std::mutex mutex;  ///< guards `message` and `messages`
-  std::string message;
-  std::uint64_t messages = 0;
-  LiveTime refused_at = -kInsistTime;  ///< the last tare
-
-  NewestField& newest;
-  std::thread thread;  ///< last: uses the other members
+  std::thread thread_;  ///< last: uses the other members
 };
 
-LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& name,
-                         SolverPlan with, Processor solver, std::shared_ptr<Curves> measured,
-                         NewestField& shown, Wanted& asked, bool keeps_threshold)
-    : stream(std::move(from)),
-      plan(std::move(with)),
-      processor(std::move(solver)),
-      info(live_info(name, plan, processor)),
-      curves(std::move(measured)),
-      session(*stream, plan, processor, recording_info(info, plan), keeps_threshold),
-      tracker(plan.skin.element_pitch_mm(), info.contacts),
-      fields(FieldProducer::kMostShown, [this] { return std::make_unique<LiveField>(plan); }),
-      wanted(asked),
-      newest(shown),
-      thread([this] { run(); }) {}
-
-LivePlayer::State::~State() {
-  stopping = true;
-  thread.join();
-  session.finish();
-  for (const LiveSession::Sink& sink : session.sinks()) {
+LivePlayer::~LivePlayer() {
+  stopping_ = true;
+  thread_.join();
+  session_.finish();
+  for (const LiveSession::Sink& sink : session_.sinks()) {
     if (sink.statistics.failure.empty()) continue;
     fmt::print(stderr, "pillarfield-viewer: {}\n", sink.statistics.failure);
   }
 }
 
-void LivePlayer::State::run() {
+void LivePlayer::run() {
   std::exception_ptr failure;
   try {
-    while (!stopping && !ended) run_pipeline();
+    while (!stopping_ && !ended_) run_pipeline();
   } catch (...) {
     failure = std::current_exception();
   }
-  ended = true;
-  newest.end(failure);
+  ended_ = true;
+  newest_.end(failure);
 }
 
 /// Runs until the player ends, or contacts are switched.
-void LivePlayer::State::run_pipeline() {
-  tracks = wanted.contacts;
-  if (tracks) tracker = ContactTracker(plan.skin.element_pitch_mm(), tracker.options());
+void LivePlayer::run_pipeline() {
+  tracks_ = wants_contacts_;
+  if (tracks_) tracker_ = ContactTracker(plan_.skin.element_pitch_mm(), tracker_.options());
   const PipelineStatistics done =
-      session.run({.contacts = tracks ? &tracker : nullptr, .sink = this, .stop = [this] {
-                     return stopping || tracks != wanted.contacts;
-                   }});
-  ended = !done.stopped;
+      session_.run({.contacts = tracks_ ? &tracker_ : nullptr, .sink = this, .stop = [this] {
+                      return stopping_ || tracks_ != wants_contacts_;
+                    }});
+  ended_ = !done.stopped;
 }
 
-std::string words_of(const LiveEvent& event) {
-  if (event.kind == LiveEvent::Kind::recording) {
-    return fmt::format("recorded {}: {}", recorded_words(event.recorded), event.recording);
-  }
-  if (!event.error.empty()) return event.error + "; press it again within 10 s to insist";
-  return fmt::format("tare taken: {}{}", event.note,
-                     event.recording.empty() ? "" : "; the recording keeps that of its start");
-}
-
-void LivePlayer::State::take_events() {
-  for (const LiveEvent& event : session.take_events()) {
-    message = words_of(event);
-    ++messages;
-    if (event.kind != LiveEvent::Kind::tare) continue;
-    if (!event.error.empty()) refused_at = live_now();
-    const LiveSinkInfo now = session.info();
-    info.skin = now.skin;
-    info.calibration = now.calibration;
-  }
-}
-
-ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t index) const {
+void LivePlayer::append(const SolvedFrame& frame) {
   ShownField field;
   field.forces = frame.forces;
   field.raw = frame.readings;
-  field.time_s = time_s;
-  field.index = index;
+  field.time_s = clock_.time_s(frame.time_s, frame.arrived);
+  field.index = solved_;
   field.arrived = frame.arrived;
-  if (plan.estimator == Estimator::direct) field.direct_point = plan.segment_point;
-  field.shear_coefficient = plan.calibration.effects.shear_coefficient.value_or(ShearCoefficient{});
-  return field;
-}
-
-void LivePlayer::State::append(const SolvedFrame& frame) {
-  time_s = clock.time_s(frame.time_s, frame.arrived);
-  curves->add(field_of(frame, solved));
-  if (wanted.peak) {
-    if (wanted.peak_anew.exchange(false)) peak.reset();
-    peak.add(frame.forces);
-  }
-  newest.count(frame.arrived);
-  ++solved;
-  if (!wanted.paused) publish(frame);
+  if (plan_.estimator == Estimator::direct) field.direct_point = plan_.segment_point;
+  field.shear_coefficient =
+      plan_.calibration.effects.shear_coefficient.value_or(ShearCoefficient{});
+  measure(field);
+  ++solved_;
+  if (!paused_) publish(frame, std::move(field));
 }
 
 /// Hands the frame solved last to the display: its forces in place, its readings copied.
-void LivePlayer::State::publish(const SolvedFrame& frame) {
-  const auto owner = std::make_shared<LiveFieldOwner>(fields.acquire());
+void LivePlayer::publish(const SolvedFrame& frame, ShownField field) {
+  const auto owner = std::make_shared<LiveFieldOwner>(fields_.acquire());
   if (owner->field == nullptr) return;
   copy_readings(frame.readings, owner->field->readings.bytes().data());
-  ShownField field = field_of(frame, solved - 1);
   field.raw = owner->field->readings.view();
   if (frame.missing.empty()) {
-    owner->result = processor.pin();
+    owner->result = processor_.pin();
     field.pages = owner->result->pages();
   } else {
     std::optional<PlaneBlock>& planes = owner->field->planes;
     if (!planes)
-      planes.emplace(plan.skin.layout, frame.forces.rows, frame.forces.cols, plan.uncertainty);
+      planes.emplace(plan_.skin.layout, frame.forces.rows, frame.forces.cols, plan_.uncertainty);
     planes->copy(frame.forces);
     field.forces = planes->view();
     field.pages = planes->pages();
   }
   field.keep_alive = owner;
-  if (tracks) {
+  if (tracks_) {
     field.contacts = std::make_shared<const ShownContacts>(
-        with_extents(*frame.contacts, tracker.labels(), tracker.options().noise_n));
+        with_extents(*frame.contacts, tracker_.labels(), tracker_.options().noise_n));
   }
-  if (wanted.peak) field.peak = peak.field(field);
-  newest.set(std::move(field));
+  if (wants_peak_) field.peak = peak_.field(field);
+  newest_.set(std::move(field));
 }
 
-LivePlayer::LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name,
-                       const SolverPlan& plan, Processor processor, std::shared_ptr<Curves> curves,
-                       bool keeps_threshold)
-    : state_(std::make_unique<State>(std::move(stream), name, plan, std::move(processor),
-                                     std::move(curves), newest_, wanted_, keeps_threshold)) {}
-
-LivePlayer::~LivePlayer() = default;
-
-const SourceInfo& LivePlayer::info() const { return state_->info; }
-
-PlayerState LivePlayer::state() const {
-  return state_after(state_->solved, state_->session.health().stream.rate_hz);
+void LivePlayer::take_events() {
+  for (const LiveEvent& event : session_.take_events()) {
+    message_ = words_of(event);
+    ++messages_;
+    if (event.kind != LiveEvent::Kind::tare) continue;
+    if (!event.error.empty()) refused_at_ = live_now();
+    const LiveSinkInfo now = session_.info();
+    info_.skin = now.skin;
+    info_.calibration = now.calibration;
+  }
 }
 
-void LivePlayer::tare() {
-  const std::scoped_lock lock(state_->mutex);
-  state_->session.start_tare(kTareTime, live_now() - state_->refused_at < kInsistTime);
+LiveStatus LivePlayer::status() {
+  LiveStatus status;
+  status.health = session_.health();
+  status.health.solved = solved_;  // and on display
+  status.ended = ended_;
+  status.taring = session_.is_taring();
+  status.recording = session_.recording();
+  for (const LiveSession::Sink& sink : session_.sinks()) status.recorded = sink.statistics;
+  const std::scoped_lock lock(mutex_);
+  take_events();
+  status.message = message_;
+  status.messages = messages_;
+  return status;
 }
 
-void LivePlayer::record(const std::filesystem::path& path) {
-  stop_recording();
-  state_->session.record(path);
+PlanOptions plan_options(const LiveOptions& options) {
+  return {.read = options.producer.read, .calibration = options.calibration.string()};
 }
 
-void LivePlayer::stop_recording() { state_->session.stop_recording(); }
+/// Options that calibrate, as the command line names them.
+std::vector<std::string> given_constants(const LiveOptions& options) {
+  const ReadOptions& read = options.producer.read;
+  std::vector<std::string> given;
+  for (const auto& [name, is_given] :
+       {std::pair("--layout", read.layout.has_value()),
+        std::pair("--pitch-mm", read.sensel_pitch_mm.has_value()),
+        std::pair("--counts-per-newton", read.counts_per_newton.has_value()),
+        std::pair("--threshold", read.threshold_counts.has_value()),
+        std::pair("--full-scale", read.full_scale_counts.has_value()),
+        std::pair("--falling", read.falling),
+        std::pair("--calibration", !options.calibration.empty())}) {
+    if (is_given) given.emplace_back(name);
+  }
+  return given;
+}
+
+OpenedSensor open_results(std::unique_ptr<ResultStream> results, const std::string& source,
+                          const LiveOptions& options) {
+  if (const std::vector<std::string> given = given_constants(options); !given.empty()) {
+    throw Error(source, "it holds results, which are calibrated already",
+                fmt::format("leave out {}", fmt::join(given, ", ")));
+  }
+  auto curves = std::make_shared<Curves>(results->skin().element_pitch_mm(), kMostLivePoints);
+  return {play_results(std::move(results), source, curves), curves};
+}
+
+}  // namespace
 
 std::string recorded_words(const LiveSinkStatistics& recorded) {
   std::string words = fmt::format("{} frames", recorded.frames);
@@ -264,44 +269,6 @@ std::string recorded_words(const LiveSinkStatistics& recorded) {
   if (!recorded.failure.empty()) words += ", failed: " + recorded.failure;
   return words;
 }
-
-LiveStatus LivePlayer::status() const {
-  LiveSession& session = state_->session;
-  LiveStatus status;
-  status.health = session.health();
-  status.health.solved = state_->solved;  // and on display
-  status.ended = state_->ended;
-  status.taring = session.is_taring();
-  status.recording = session.recording();
-  for (const LiveSession::Sink& sink : session.sinks()) status.recorded = sink.statistics;
-  const std::scoped_lock lock(state_->mutex);
-  state_->take_events();
-  status.message = state_->message;
-  status.messages = state_->messages;
-  return status;
-}
-
-namespace {
-
-PlanOptions plan_options(const LiveOptions& options) {
-  return {.read = options.producer.read, .calibration = options.calibration.string()};
-}
-
-OpenedSensor open_results(std::unique_ptr<ResultStream> results, const std::string& source,
-                          const LiveOptions& options) {
-  std::vector<std::string> given = given_constants(options.producer.read);
-  if (!options.calibration.empty()) given.emplace_back("--calibration");
-  if (!given.empty()) {
-    throw Error(source, "it holds results, which are calibrated already",
-                fmt::format("leave out {}", fmt::join(given, ", ")));
-  }
-  OpenedSensor opened;
-  opened.curves = std::make_shared<Curves>(results->skin().element_pitch_mm(), kMostLivePoints);
-  opened.player = std::make_unique<ResultPlayer>(std::move(results), source, opened.curves);
-  return opened;
-}
-
-}  // namespace
 
 SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
   SolverPlan plan =
@@ -311,6 +278,19 @@ SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
   plan.angles = plan.skin.has_pillars();
   plan.uncertainty = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   return plan;
+}
+
+OpenedSensor play_sensor(std::unique_ptr<FrameStream> stream, const std::string& name,
+                         const LiveOptions& options) {
+  const SolverPlan plan = live_plan(*stream, options);
+  Processor processor(open_device(options.producer.device), plan,
+                      {.memory = options.producer.memory,
+                       .frames_in_flight = kFramesInFlight,
+                       .on_compiling = options.producer.on_compiling});
+  auto curves = std::make_shared<Curves>(plan.skin.element_pitch_mm(), kMostLivePoints);
+  return {std::make_unique<LivePlayer>(std::move(stream), name, plan, std::move(processor), curves,
+                                       options.producer.read.threshold_counts.has_value()),
+          curves};
 }
 
 OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) {
@@ -325,18 +305,7 @@ OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) 
     }
   }
   std::unique_ptr<FrameStream> stream = open_live_source(source, live);
-  if (stream == nullptr) return {};
-  const SolverPlan plan = live_plan(*stream, options);
-  Processor processor(open_device(options.producer.device), plan,
-                      {.memory = options.producer.memory,
-                       .frames_in_flight = LivePlayer::kFramesInFlight,
-                       .on_compiling = options.producer.on_compiling});
-  OpenedSensor opened;
-  opened.curves = std::make_shared<Curves>(plan.skin.element_pitch_mm(), kMostLivePoints);
-  opened.player = std::make_unique<LivePlayer>(std::move(stream), source, plan,
-                                               std::move(processor), opened.curves,
-                                               options.producer.read.threshold_counts.has_value());
-  return opened;
+  return stream == nullptr ? OpenedSensor{} : play_sensor(std::move(stream), source, options);
 }
 
 }  // namespace pillarfield::viewer

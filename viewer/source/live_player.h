@@ -5,7 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "viewer/source/live_view.h"
+#include "viewer/source/live_control.h"
+#include "viewer/source/player.h"
 
 namespace pillarfield::viewer {
 
@@ -16,31 +17,6 @@ struct LiveOptions {
   std::function<void(const std::string&)> say = {};  ///< as LiveSourceOptions has it
 };
 
-/// Solves every frame of a sensor as it arrives, by a Pipeline in a thread of its own, and hands
-/// the newest to the display; the stream counts frames for which the program is late. The time of a
-/// field is the sensor's, counted from the start of the player.
-class LivePlayer final : public LiveView {
- public:
-  /// Frames in flight of the processor: two, and the fields that the display holds in place.
-  static constexpr int kFramesInFlight = FieldProducer::kMostShown + 2;
-
-  /// `processor` is made for `plan`, with kFramesInFlight slots.
-  LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name, const SolverPlan& plan,
-             Processor processor, std::shared_ptr<Curves> curves, bool keeps_threshold = false);
-  ~LivePlayer() override;
-
-  [[nodiscard]] const SourceInfo& info() const override;
-  [[nodiscard]] PlayerState state() const override;
-  void tare() override;
-  void record(const std::filesystem::path& path) override;
-  void stop_recording() override;
-  [[nodiscard]] LiveStatus status() const override;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
 /// A plan for display whose tare can be measured anew.
 [[nodiscard]] SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options);
 
@@ -48,6 +24,12 @@ struct OpenedSensor {
   std::unique_ptr<Player> player;
   std::shared_ptr<Curves> curves;  ///< of the last minutes
 };
+
+/// Solves every frame of a sensor as it arrives, by a Pipeline in a thread of its own, and hands
+/// the newest to the display; the stream counts frames for which the program is late. The time of a
+/// field is the sensor's, counted from the start of the player.
+[[nodiscard]] OpenedSensor play_sensor(std::unique_ptr<FrameStream> stream, const std::string& name,
+                                       const LiveOptions& options);
 
 /// Opens a live source and waits for its first frame, or for the ring if it is one of results;
 /// null if LiveOptions::stop gave up. Throws Error where the source or the calibration cannot be

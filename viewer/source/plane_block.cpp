@@ -18,38 +18,50 @@ std::size_t whole_pages(std::size_t bytes) {
   return (bytes + kPageSize - 1) / kPageSize * kPageSize;
 }
 
+constexpr std::size_t kFirstUncertainty = PlaneBlock::kPhi + 1;
+
+template <class Field>
+auto& plane_of(Field& field, std::size_t index) {
+  constexpr std::array kNamed{&ForceFieldView::shear_x, &ForceFieldView::shear_y,
+                              &ForceFieldView::normal,  &ForceFieldView::magnitude,
+                              &ForceFieldView::theta,   &ForceFieldView::phi};
+  if (index < kFirstUncertainty) return field.*kNamed[index];
+  return field.uncertainty[static_cast<Uncertainty>(index - kFirstUncertainty)];
+}
+
+/// Sensels have only the normal force and its deviation.
+bool has_plane(SkinLayout layout, bool uncertainty, std::size_t index) {
+  if (index >= kFirstUncertainty && !uncertainty) return false;
+  return layout == SkinLayout::pillars || index == PlaneBlock::kNormal ||
+         index == kFirstUncertainty + static_cast<std::size_t>(Uncertainty::normal);
+}
+
 }  // namespace
 
 void PlaneBlock::Free::operator()(std::byte* memory) const { ::operator delete[](memory, kPage); }
 
 PlaneBlock::PlaneBlock(SkinLayout layout, std::uint32_t rows, std::uint32_t cols, bool uncertainty)
     : rows_(rows), cols_(cols), plane_bytes_(whole_pages(elements() * sizeof(float))) {
-  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
-    places_[i] = has_plane(layout, true, uncertainty, kResultPlanes[i]) ? planes_++ : kAbsentPlane;
+  for (std::size_t i = 0; i < kPlanes; ++i) {
+    places_[i] = has_plane(layout, uncertainty, i) ? planes_++ : kAbsentPlane;
   }
   bytes_ = planes_ * plane_bytes_ + whole_pages(elements());
   pages_.reset(static_cast<std::byte*>(::operator new[](bytes_, kPage)));
   std::memset(pages_.get(), 0, bytes_);
 }
 
-std::span<float> PlaneBlock::values(std::size_t which) const {
+std::span<float> PlaneBlock::plane(std::size_t which) const {
   const std::size_t place = places_.at(which);
   if (place == kAbsentPlane) return {};
   return {reinterpret_cast<float*>(pages_.get() + place * plane_bytes_), elements()};
 }
 
-std::uint8_t* PlaneBlock::status_place() const {
-  return reinterpret_cast<std::uint8_t*>(pages_.get() + planes_ * plane_bytes_);
+std::span<std::uint8_t> PlaneBlock::status() const {
+  return {reinterpret_cast<std::uint8_t*>(pages_.get() + planes_ * plane_bytes_), elements()};
 }
 
-std::span<float> PlaneBlock::plane(std::size_t which) { return values(which); }
-std::span<const float> PlaneBlock::plane(std::size_t which) const { return values(which); }
-
-std::span<std::uint8_t> PlaneBlock::status() { return {status_place(), elements()}; }
-std::span<const std::uint8_t> PlaneBlock::status() const { return {status_place(), elements()}; }
-
 void PlaneBlock::copy(const ForceFieldView& forces) {
-  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+  for (std::size_t i = 0; i < kPlanes; ++i) {
     const std::span<const float> from = plane_of(forces, i);
     const std::span<float> to = plane(i);
     if (!to.empty()) std::ranges::copy(from, to.begin());
@@ -76,7 +88,7 @@ ForceFieldView PlaneBlock::view() const {
   view.rows = rows_;
   view.cols = cols_;
   view.status = status();
-  for (std::size_t i = 0; i < kSolvedPlanes; ++i) plane_of(view, i) = plane(i);
+  for (std::size_t i = 0; i < kPlanes; ++i) plane_of(view, i) = plane(i);
   return view;
 }
 

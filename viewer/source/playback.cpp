@@ -15,12 +15,11 @@ constexpr Playback::Time kMostBehind = std::chrono::seconds(1);
 double limited(double value, double least, double most) {
   return value > least ? std::min(value, most) : least;
 }
-double limited_rate(double rate_hz) { return limited(rate_hz, 1e-3, 1e6); }
 
 }  // namespace
 
 Playback::Playback(std::uint64_t frames, double rate_hz)
-    : frames_(frames), rate_hz_(limited_rate(rate_hz)), shown_since_(Time::min()) {
+    : frames_(frames), rate_hz_(limited(rate_hz, 1e-3, 1e6)), shown_since_(Time::min()) {
   if (frames == 0)
     throw Error("Playback", "there are no frames", "give a source with at least one frame");
 }
@@ -70,21 +69,14 @@ void Playback::step(std::int64_t frames, Time now) {
   show(static_cast<std::uint64_t>(target), now);
 }
 
-void Playback::change_pace(double& pace, double value, Time now) {
+/// Rescales the rest of the current period.
+void Playback::set_speed(double speed, Time now) {
   const double before_ns = period_ns();
   const Time left = due() - now;
-  pace = value;
+  speed_ = limited(speed, 0.01, 100);
   const double share = std::chrono::duration<double, std::nano>(left).count() / before_ns;
   // A late frame stays as late.
   restart(left.count() <= 0 ? now + left : now + Time(std::llround(share * period_ns())));
-}
-
-void Playback::set_speed(double speed, Time now) {
-  change_pace(speed_, limited(speed, 0.01, 100), now);
-}
-
-void Playback::set_rate(double rate_hz, Time now) {
-  change_pace(rate_hz_, limited_rate(rate_hz), now);
 }
 
 void Playback::set_loop(bool loop) { loops_ = loop; }
@@ -124,11 +116,6 @@ std::optional<Playback::Time> Playback::next_due() const {
   if (shown_since_) return shown_since_;
   if (playing_) return due();
   return std::nullopt;
-}
-
-Playback::Time Playback::behind(Time now) const {
-  if (!playing_) return Time::zero();
-  return std::clamp(now - due(), Time::zero(), kMostBehind);
 }
 
 }  // namespace pillarfield::viewer

@@ -10,13 +10,12 @@ namespace pillarfield::viewer {
 /// `now`.
 ///
 /// The first frame is due at once. While playing, every frame comes due, at rate_hz · speed; at the
-/// end the head loops or stops. Where the solver is too slow, frames are late by `behind()`, which
-/// is limited to one second.
+/// end the head loops or stops. Where the solver is too slow, frames are late by at most a second.
 class Playback {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// Throws Error where there is no frame. A rate out of set_rate()'s range becomes its limit.
+  /// Throws Error where there is no frame. A rate out of 0.001..1e6 Hz becomes its limit.
   Playback(std::uint64_t frames, double rate_hz);
 
   void play(Time now);  ///< restarts from the first frame after stopping at the last
@@ -25,7 +24,6 @@ class Playback {
   void again(Time now);                      ///< produces the current frame once more
   void step(std::int64_t frames, Time now);  ///< pauses; wraps in a loop, else clamps
   void set_speed(double speed, Time now);    ///< 0.01..100; 1 is real time
-  void set_rate(double rate_hz, Time now);   ///< frames per second at speed 1, 0.001..1e6
   void set_loop(bool loop);
   /// Stays at the newest frame as frames are added, without playing; play(), pause(), seek() and
   /// step() end it.
@@ -45,7 +43,6 @@ class Playback {
   [[nodiscard]] bool follows() const { return follows_; }
   [[nodiscard]] double speed() const { return speed_; }
   [[nodiscard]] double rate_hz() const { return rate_hz_; }
-  [[nodiscard]] Time behind(Time now) const;  ///< 0..1 s
 
  private:
   /// Due time of the next frame while playing.
@@ -54,8 +51,6 @@ class Playback {
   [[nodiscard]] std::uint64_t last() const { return frames_ - 1; }
   void show(std::uint64_t frame, Time since);
   void restart(Time first_due);
-  /// Changes rate or speed; rescales the rest of the current period.
-  void change_pace(double& pace, double value, Time now);
   std::uint64_t give(std::uint64_t frame);
 
   std::uint64_t frames_;

@@ -1,13 +1,10 @@
 #include "viewer/source/player.h"
 
 #include <condition_variable>
-#include <exception>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include "viewer/source/plane_block.h"
-#include "viewer/source/recent_times.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -21,77 +18,149 @@ Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
 }  // namespace
 
-struct FilePlayer::State {
-  explicit State(std::unique_ptr<FieldProducer> from)
-      : producer(std::move(from)),
-        info(producer->info()),
-        playback(info.frames, info.rate_hz),
-        thread([this] { run(); }) {}
-  ~State() {
-    command([this](Time) { stopping = true; });
-    thread.join();
+void NewestField::count(std::chrono::nanoseconds begin) {
+  const std::scoped_lock lock(mutex_);
+  ++produced_;
+  const Time end = now();
+  times_.add(end, std::chrono::duration<double, std::milli>(end - begin).count());
+}
+
+void NewestField::set(ShownField field) {
+  {
+    std::optional<ShownField> next(std::move(field));
+    const std::scoped_lock lock(mutex_);
+    std::swap(waiting_, next);
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+  wake_display();
+}
+
+void NewestField::end(std::exception_ptr failure) {
+  {
+    const std::scoped_lock lock(mutex_);
+    failed_ = std::move(failure);
+  }
+  wake_display();
+}
+
+void NewestField::wake_display() {
+  const std::scoped_lock lock(waking_);
+  if (wake_) wake_();
+}
+
+std::optional<ShownField> NewestField::take() {
+  const std::scoped_lock lock(mutex_);
+  if (waiting_) {
+    ++taken_;
+    return std::exchange(waiting_, std::nullopt);
+  }
+  if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
+  return std::nullopt;
+}
+
+PlayerStatistics NewestField::statistics() const {
+  const std::scoped_lock lock(mutex_);
+  times_.forget_before(now());
+  const std::uint64_t waiting = waiting_ ? 1 : 0;
+  return {.produced = produced_,
+          .taken = taken_,
+          .not_shown = produced_ - taken_ - waiting,
+          .waiting = waiting,
+          .produced_hz = times_.rate_hz(),
+          .produce_ms_median = times_.median_ms()};
+}
+
+void NewestField::on_new_field(std::function<void()> wake) {
+  const std::scoped_lock lock(waking_);
+  wake_ = std::move(wake);
+}
+
+namespace {
+
+class FilePlayer final : public Player {
+ public:
+  explicit FilePlayer(std::unique_ptr<FieldProducer> producer)
+      : producer_(std::move(producer)),
+        info_(producer_->info()),
+        head_(info_.frames, info_.rate_hz),
+        thread_([this] { run(); }) {}
+  ~FilePlayer() override {
+    change([this](Playback&, Time) { stopping_ = true; });
+    thread_.join();
+  }
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] PlayerState state() const override {
+    const std::scoped_lock lock(mutex_);
+    return {.frame = head_.frame(),
+            .frames = head_.frames(),
+            .playing = head_.playing(),
+            .loops = head_.loops(),
+            .follows = head_.follows(),
+            .speed = head_.speed(),
+            .rate_hz = head_.rate_hz()};
+  }
+  void set_contacts(bool wanted) override {
+    change([=, this](Playback& head, Time now) {
+      if (!std::exchange(wants_contacts_, wanted) && wanted) head.again(now);
+    });
+  }
+  void set_peak(bool wanted) override {
+    change([=, this](Playback& head, Time now) {
+      wants_peak_ = peak_begins_ = wanted;
+      if (wanted) head.again(now);
+    });
+  }
+
+ private:
+  void move(const Move& wanted) override { change(wanted); }
 
   /// Changes the play head and wakes the thread.
   template <class Change>
-  void command(Change change) {
+  void change(const Change& wanted) {
     {
-      const std::scoped_lock lock(mutex);
-      change(now());
+      const std::scoped_lock lock(mutex_);
+      wanted(head_, now());
     }
-    changed.notify_one();
+    changed_.notify_one();
   }
 
-  // Run in the thread. `lock` holds `mutex` on entry and exit.
+  // Run in the thread. `lock` holds `mutex_` on entry and exit.
   void run();
   void produce_until_stopped();
   void wait(std::unique_lock<std::mutex>& lock);
   void refresh(std::unique_lock<std::mutex>& lock);
   void produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock);
-  void wake_display();
 
-  const std::unique_ptr<FieldProducer> producer;  ///< used by the thread only, once it runs
-  PeakHold peak;                                  ///< likewise
-  const SourceInfo info;
+  const std::unique_ptr<FieldProducer> producer_;  ///< used by the thread only, once it runs
+  PeakHold peak_;                                  ///< likewise
+  const SourceInfo info_;
 
-  std::mutex mutex;  ///< guards the members up to `failed`
-  std::condition_variable changed;
-  Playback playback;
-  PlayerStatistics counts;
-  RecentTimes times;
-  Time refreshed{0};
-  std::unique_ptr<ShownField> waiting;
-  bool wants_contacts = false;
-  bool wants_peak = false;
-  bool peak_begins = false;
-  bool stopping = false;
-  std::exception_ptr failed;
+  mutable std::mutex mutex_;  ///< guards the members up to `stopping_`
+  std::condition_variable changed_;
+  Playback head_;
+  Time refreshed_{0};
+  bool wants_contacts_ = false;
+  bool wants_peak_ = false;
+  bool peak_begins_ = false;
+  bool stopping_ = false;
 
-  std::mutex waking;  ///< guards `wake`, also while it runs; never held together with `mutex`
-  std::function<void()> wake;
-
-  std::thread thread;  ///< last: uses the other members
+  std::thread thread_;  ///< last: uses the other members
 };
 
-void FilePlayer::State::run() {
+void FilePlayer::run() {
   try {
     produce_until_stopped();
-    return;
   } catch (...) {
-    const std::scoped_lock lock(mutex);
-    failed = std::current_exception();
+    newest_.end(std::current_exception());
   }
-  wake_display();
 }
 
-void FilePlayer::State::produce_until_stopped() {
-  std::unique_lock lock(mutex);
-  while (!stopping) {
-    if (playback.follows() && now() >= refreshed + kRefreshEvery) refresh(lock);
-    if (stopping) return;
-    if (const auto frame = playback.next(now())) {
+void FilePlayer::produce_until_stopped() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    if (head_.follows() && now() >= refreshed_ + kRefreshEvery) refresh(lock);
+    if (stopping_) return;
+    if (const auto frame = head_.next(now())) {
       produce(*frame, lock);
     } else {
       wait(lock);
@@ -99,143 +168,49 @@ void FilePlayer::State::produce_until_stopped() {
   }
 }
 
-void FilePlayer::State::wait(std::unique_lock<std::mutex>& lock) {
-  std::optional<Time> until = playback.next_due();
-  if (!until && playback.follows()) until = refreshed + kRefreshEvery;
+void FilePlayer::wait(std::unique_lock<std::mutex>& lock) {
+  std::optional<Time> until = head_.next_due();
+  if (!until && head_.follows()) until = refreshed_ + kRefreshEvery;
   if (until) {
-    changed.wait_until(lock, std::chrono::steady_clock::time_point(*until));
+    changed_.wait_until(lock, std::chrono::steady_clock::time_point(*until));
   } else {
-    changed.wait(lock);
+    changed_.wait(lock);
   }
 }
 
-void FilePlayer::State::refresh(std::unique_lock<std::mutex>& lock) {
+void FilePlayer::refresh(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
-  const bool has_grown = producer->refresh();
+  const bool has_grown = producer_->refresh();
   lock.lock();
-  refreshed = now();
-  if (has_grown) playback.set_frames(producer->info().frames, refreshed);
+  refreshed_ = now();
+  if (has_grown) head_.set_frames(producer_->info().frames, refreshed_);
 }
 
-void FilePlayer::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
-  const bool with_contacts = wants_contacts;
-  const bool with_peak = wants_peak;
-  const bool begins_peak = std::exchange(peak_begins, false);
+void FilePlayer::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
+  const bool with_contacts = wants_contacts_;
+  const bool with_peak = wants_peak_;
+  const bool begins_peak = std::exchange(peak_begins_, false);
   lock.unlock();
-  const Time start = now();
-  auto field = std::make_unique<ShownField>(producer->produce(frame));
-  field->frames = producer->info().frames;
+  const Time begin = now();
+  ShownField field = producer_->produce(frame);
+  field.frames = producer_->info().frames;
   if (with_contacts) {
-    field->contacts = std::make_shared<const ShownContacts>(producer->contacts_of(*field));
+    field.contacts = std::make_shared<const ShownContacts>(producer_->contacts_of(field));
   }
   if (with_peak) {
-    if (begins_peak) peak.reset();
-    peak.add(field->forces);
-    field->peak = peak.field(*field);
+    if (begins_peak) peak_.reset();
+    peak_.add(field.forces);
+    field.peak = peak_.field(field);
   }
-  const Time end = now();
-  lock.lock();
-  times.add(start, end);
-  ++counts.produced;
-  std::swap(waiting, field);
-  if (field != nullptr) ++counts.not_shown;
-  lock.unlock();
-  field.reset();
-  wake_display();
+  newest_.count(begin);
+  newest_.set(std::move(field));
   lock.lock();
 }
 
-void FilePlayer::State::wake_display() {
-  const std::scoped_lock lock(waking);
-  if (wake) wake();
-}
+}  // namespace
 
-FilePlayer::FilePlayer(std::unique_ptr<FieldProducer> producer)
-    : state_(std::make_unique<State>(std::move(producer))) {}
-
-FilePlayer::~FilePlayer() = default;
-
-const SourceInfo& FilePlayer::info() const { return state_->info; }
-
-void FilePlayer::play() {
-  state_->command([this](Time now) { state_->playback.play(now); });
-}
-void FilePlayer::pause() {
-  state_->command([this](Time) { state_->playback.pause(); });
-}
-void FilePlayer::seek(std::uint64_t frame) {
-  state_->command([&](Time now) { state_->playback.seek(frame, now); });
-}
-void FilePlayer::step(std::int64_t frames) {
-  state_->command([&](Time now) { state_->playback.step(frames, now); });
-}
-void FilePlayer::set_speed(double speed) {
-  state_->command([&](Time now) { state_->playback.set_speed(speed, now); });
-}
-void FilePlayer::set_rate(double rate_hz) {
-  state_->command([&](Time now) { state_->playback.set_rate(rate_hz, now); });
-}
-void FilePlayer::set_loop(bool loop) {
-  state_->command([&](Time) { state_->playback.set_loop(loop); });
-}
-void FilePlayer::set_follow(bool follow) {
-  state_->command([&](Time now) { state_->playback.set_follow(follow, now); });
-}
-void FilePlayer::set_contacts(bool wanted) {
-  state_->command([&](Time now) {
-    if (wanted == state_->wants_contacts) return;
-    state_->wants_contacts = wanted;
-    if (wanted) state_->playback.again(now);
-  });
-}
-
-void FilePlayer::set_peak(bool wanted) {
-  state_->command([&](Time now) {
-    state_->wants_peak = wanted;
-    state_->peak_begins = wanted;
-    if (wanted) state_->playback.again(now);
-  });
-}
-
-PlayerState FilePlayer::state() const {
-  const std::scoped_lock lock(state_->mutex);
-  const Playback& playback = state_->playback;
-  return {.frame = playback.frame(),
-          .frames = playback.frames(),
-          .playing = playback.playing(),
-          .loops = playback.loops(),
-          .follows = playback.follows(),
-          .speed = playback.speed(),
-          .rate_hz = playback.rate_hz()};
-}
-
-PlayerStatistics FilePlayer::statistics() const {
-  const std::scoped_lock lock(state_->mutex);
-  const Time time = now();
-  state_->times.forget_before(time);
-  PlayerStatistics statistics = state_->counts;
-  statistics.waiting = state_->waiting != nullptr ? 1 : 0;
-  statistics.produced_hz = state_->times.rate_hz();
-  statistics.produce_ms_median = state_->times.median_ms();
-  statistics.produce_ms_worst = state_->times.worst_ms();
-  statistics.behind_ms =
-      std::chrono::duration<double, std::milli>(state_->playback.behind(time)).count();
-  return statistics;
-}
-
-std::optional<ShownField> FilePlayer::take() {
-  const std::scoped_lock lock(state_->mutex);
-  if (state_->waiting != nullptr) {
-    ++state_->counts.taken;
-    return std::move(*std::exchange(state_->waiting, nullptr));
-  }
-  if (state_->failed) std::rethrow_exception(std::exchange(state_->failed, nullptr));
-  return std::nullopt;
-}
-
-void FilePlayer::on_new_field(std::function<void()> wake) {
-  const std::scoped_lock lock(state_->waking);
-  state_->wake = std::move(wake);
+std::unique_ptr<Player> play_file(std::unique_ptr<FieldProducer> producer) {
+  return std::make_unique<FilePlayer>(std::move(producer));
 }
 
 }  // namespace pillarfield::viewer

@@ -1,14 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <string>
 
-#include "viewer/source/curves.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/playback.h"
+#include "viewer/source/recent_times.h"
 
 namespace pillarfield::viewer {
 
@@ -21,8 +22,6 @@ struct PlayerStatistics {
   std::uint64_t waiting = 0;     ///< 0 or 1, not taken yet
   double produced_hz = 0;        ///< recent
   double produce_ms_median = 0;  ///< recent time to solve or read one field and its contacts
-  double produce_ms_worst = 0;
-  double behind_ms = 0;  ///< delay of the play head
 };
 
 /// A copy of the play head's state.
@@ -36,11 +35,39 @@ struct PlayerState {
   double rate_hz = 0;
 };
 
+/// Hands the newest field of a thread to the display, and counts those that it did not take.
+/// Thread safe.
+class NewestField {
+ public:
+  /// Counts a field, with the time from its begin, or its arrival, until now.
+  void count(std::chrono::nanoseconds begin);
+  /// Replaces the field that waits, and wakes the display.
+  void set(ShownField field);
+  /// take() throws `failure`, unless it is null, once after the last field; wakes the display.
+  void end(std::exception_ptr failure);
+
+  // As Player has them.
+  [[nodiscard]] std::optional<ShownField> take();
+  [[nodiscard]] PlayerStatistics statistics() const;
+  void on_new_field(std::function<void()> wake);
+
+ private:
+  void wake_display();
+
+  mutable std::mutex mutex_;  ///< guards the members up to `failed_`
+  std::optional<ShownField> waiting_;
+  std::uint64_t produced_ = 0;
+  std::uint64_t taken_ = 0;
+  mutable RecentTimes times_;
+  std::exception_ptr failed_;
+  std::mutex waking_;  ///< guards `wake_`, also while it runs; never held together with `mutex_`
+  std::function<void()> wake_;
+};
+
 class LiveControl;
 
 /// Produces fields in its own thread, and never waits for the display: a newer field replaces one
-/// that was not taken. Thread safe. FilePlayer plays a file or a scene, LivePlayer a
-/// sensor, ResultPlayer the results of another program.
+/// that was not taken. Thread safe.
 class Player {
  public:
   Player() = default;
@@ -50,66 +77,61 @@ class Player {
 
   /// Properties at construction; state().frames is the current number of frames, 0 of a sensor.
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
-
-  virtual void play() = 0;
-  virtual void pause() = 0;  ///< the picture of a sensor freezes, not the sensor
-  // Without effect on a sensor.
-  virtual void seek(std::uint64_t frame) = 0;
-  virtual void step(std::int64_t frames) = 0;
-  virtual void set_speed(double speed) = 0;
-  virtual void set_rate(double rate_hz) = 0;
-  virtual void set_loop(bool loop) = 0;
-  virtual void set_follow(bool follow) = 0;
+  [[nodiscard]] virtual PlayerState state() const = 0;
   /// Switches contacts of fields on or off; on, the current frame is produced again.
   virtual void set_contacts(bool wanted) = 0;
   /// Switches ShownField::peak on, beginning with the current frame, or off.
   virtual void set_peak(bool wanted) = 0;
 
-  [[nodiscard]] virtual PlayerState state() const = 0;
-  [[nodiscard]] virtual PlayerStatistics statistics() const = 0;
+  virtual void play() { move(&Playback::play); }
+  virtual void pause() {  ///< the picture of a sensor freezes, not the sensor
+    move([](Playback& head, Playback::Time) { head.pause(); });
+  }
+  // As Playback has them; without effect on a sensor.
+  void seek(std::uint64_t frame) {
+    move([=](Playback& head, Playback::Time now) { head.seek(frame, now); });
+  }
+  void step(std::int64_t frames) {
+    move([=](Playback& head, Playback::Time now) { head.step(frames, now); });
+  }
+  void set_speed(double speed) {
+    move([=](Playback& head, Playback::Time now) { head.set_speed(speed, now); });
+  }
+  void set_loop(bool loop) {
+    move([=](Playback& head, Playback::Time) { head.set_loop(loop); });
+  }
+  void set_follow(bool follow) {
+    move([=](Playback& head, Playback::Time now) { head.set_follow(follow, now); });
+  }
+
+  [[nodiscard]] PlayerStatistics statistics() const { return newest_.statistics(); }
 
   /// Returns the newest field if it was not taken before. After the last field rethrows, once, the
   /// exception that ended the thread.
-  [[nodiscard]] virtual std::optional<ShownField> take() = 0;
+  [[nodiscard]] std::optional<ShownField> take() { return newest_.take(); }
 
   /// Calls `wake` from the player's thread for each new field and for an error that ends the
   /// thread. `wake` may call all members but this one. The previous `wake` is not called after
   /// return.
-  virtual void on_new_field(std::function<void()> wake) = 0;
+  void on_new_field(std::function<void()> wake) { newest_.on_new_field(std::move(wake)); }
 
-  /// What a sensor can do besides; null for a file.
+  /// Actions on a sensor; null for a file.
   [[nodiscard]] virtual LiveControl* live() { return nullptr; }
+
+ protected:
+  using Move = std::function<void(Playback& head, Playback::Time now)>;
+  /// Moves the play head, which a sensor does not have.
+  virtual void move(const Move& /*change*/) {}
+
+  NewestField newest_;
 };
 
-/// Produces fields at the pace of the play head. Produces the first frame at once; playing starts
-/// with play().
+/// Plays a file or a scene at the pace of a play head. Produces the first frame at once; playing
+/// starts with play().
 ///
 /// While following, checks the source for new frames ten times a second. One field waits and one is
-/// in production, so the display may hold FieldProducer::kMostShown - 2.
-class FilePlayer final : public Player {
- public:
-  explicit FilePlayer(std::unique_ptr<FieldProducer> producer);
-  ~FilePlayer() override;  ///< waits for the field in production
-
-  [[nodiscard]] const SourceInfo& info() const override;
-  void play() override;
-  void pause() override;
-  void seek(std::uint64_t frame) override;
-  void step(std::int64_t frames) override;
-  void set_speed(double speed) override;
-  void set_rate(double rate_hz) override;
-  void set_loop(bool loop) override;
-  void set_follow(bool follow) override;
-  void set_contacts(bool wanted) override;
-  void set_peak(bool wanted) override;
-  [[nodiscard]] PlayerState state() const override;
-  [[nodiscard]] PlayerStatistics statistics() const override;
-  [[nodiscard]] std::optional<ShownField> take() override;
-  void on_new_field(std::function<void()> wake) override;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
+/// in production, so the display may hold FieldProducer::kMostShown - 2. The destructor waits for
+/// the field in production.
+[[nodiscard]] std::unique_ptr<Player> play_file(std::unique_ptr<FieldProducer> producer);
 
 }  // namespace pillarfield::viewer

@@ -1,7 +1,6 @@
 #include "viewer/source/recent_times.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace pillarfield::viewer {
 namespace {
@@ -11,10 +10,17 @@ constexpr RecentTimes::Time kRecent = std::chrono::seconds(1);
 
 }  // namespace
 
-void RecentTimes::add(Time start, Time end) {
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+void RecentTimes::add(Time end, double took_ms) {
   forget_before(end);
   if (spans_.size() == kMost) spans_.pop_front();
-  spans_.push_back({end, std::chrono::duration<double, std::milli>(end - start).count()});
+  spans_.push_back({end, took_ms});
 }
 
 void RecentTimes::forget_before(Time now) {
@@ -28,17 +34,9 @@ double RecentTimes::rate_hz() const {
 }
 
 double RecentTimes::median_ms() const {
-  if (spans_.empty()) return 0;
   std::vector<double> times(spans_.size());
   std::ranges::transform(spans_, times.begin(), &Span::took_ms);
-  const auto middle = times.begin() + std::ssize(times) / 2;
-  std::ranges::nth_element(times, middle);
-  return *middle;
-}
-
-double RecentTimes::worst_ms() const {
-  if (spans_.empty()) return 0;
-  return std::ranges::max_element(spans_, {}, &Span::took_ms)->took_ms;
+  return median_of(std::move(times));
 }
 
 }  // namespace pillarfield::viewer

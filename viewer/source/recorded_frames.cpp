@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
+#include <future>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -83,71 +81,6 @@ namespace {
 
 using Frames = std::vector<FrameHandle>;
 
-/// Threads that each render the next unclaimed frame.
-class Rendering {
- public:
-  Rendering(const Simulator& simulator, Frames& frames) : simulator_(simulator), frames_(frames) {
-    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    const std::size_t threads = std::min(cores, frames.size());
-    working_ = threads;
-    for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
-  }
-  ~Rendering() { stop_ = true; }
-  Rendering(const Rendering&) = delete;
-  Rendering& operator=(const Rendering&) = delete;
-
-  /// Waits for all threads; rethrows the exception of one.
-  void wait(const std::function<void(double)>& progress) {
-    std::unique_lock lock(mutex_);
-    do {
-      ended_.wait_for(lock, std::chrono::milliseconds(50), [this] { return working_ == 0; });
-      if (!progress) continue;
-      const double share = static_cast<double>(done_) / static_cast<double>(frames_.size());
-      lock.unlock();
-      progress(share);
-      lock.lock();
-    } while (working_ > 0);
-    if (failed_) std::rethrow_exception(failed_);
-  }
-
- private:
-  void work() {
-    try {
-      render_frames();
-    } catch (...) {
-      stop_ = true;
-      const std::scoped_lock lock(mutex_);
-      failed_ = std::current_exception();
-    }
-    const std::scoped_lock lock(mutex_);
-    --working_;
-    ended_.notify_one();
-  }
-
-  void render_frames() {
-    const Skin& skin = simulator_.scene().skin;
-    ForceField truth(skin.element_rows(), skin.element_cols());
-    for (std::size_t index = next_++; index < frames_.size() && !stop_; index = next_++) {
-      const auto readings =
-          std::make_shared<FrameBuffer>(simulator_.sensel_type(), skin.rows, skin.cols);
-      simulator_.render(index, *readings, truth);
-      frames_[index] = {readings, simulator_.time_of(index)};
-      ++done_;
-    }
-  }
-
-  const Simulator& simulator_;
-  Frames& frames_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<std::size_t> done_ = 0;
-  std::atomic<bool> stop_ = false;
-  std::mutex mutex_;  ///< guards the next two members
-  std::size_t working_ = 0;
-  std::exception_ptr failed_;
-  std::condition_variable ended_;
-  std::vector<std::jthread> threads_;  ///< last: use the other members
-};
-
 class SimulatedFrames final : public FrameProvider {
  public:
   explicit SimulatedFrames(Frames frames) : frames_(std::move(frames)) {}
@@ -163,7 +96,37 @@ class SimulatedFrames final : public FrameProvider {
 std::unique_ptr<FrameProvider> simulate_frames(const Simulator& simulator, std::uint64_t frames,
                                                const std::function<void(double)>& progress) {
   Frames made(frames);
-  Rendering(simulator, made).wait(progress);
+  std::atomic<std::size_t> next = 0;
+  std::atomic<std::size_t> done = 0;
+  const auto render_frames = [&] {
+    const Skin& skin = simulator.scene().skin;
+    ForceField truth(skin.element_rows(), skin.element_cols());
+    for (std::size_t index = next++; index < made.size(); index = next++, ++done) {
+      auto readings = std::make_shared<FrameBuffer>(simulator.sensel_type(), skin.rows, skin.cols);
+      simulator.render(index, *readings, truth);
+      made[index] = {std::move(readings), simulator.time_of(index)};
+    }
+  };
+  std::vector<std::future<void>> threads;
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  try {
+    for (std::size_t i = 0; i < std::min<std::size_t>(cores, frames); ++i) {
+      threads.push_back(std::async(std::launch::async, render_frames));
+    }
+    for (std::future<void>& thread : threads) {
+      while (thread.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+        if (progress) progress(static_cast<double>(done) / static_cast<double>(frames));
+      }
+      thread.get();
+    }
+    if (progress) progress(1);
+  } catch (...) {
+    next = made.size();  // The other threads end after their frames.
+    for (const std::future<void>& thread : threads) {
+      if (thread.valid()) thread.wait();
+    }
+    throw;
+  }
   return std::make_unique<SimulatedFrames>(std::move(made));
 }
 

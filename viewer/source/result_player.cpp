@@ -1,13 +1,11 @@
-#include "viewer/source/result_player.h"
-
 #include <atomic>
 #include <mutex>
 #include <thread>
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "viewer/source/live_view.h"
 #include "viewer/source/object_pool.h"
-#include "viewer/source/plane_block.h"
 #include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {
@@ -15,7 +13,7 @@ namespace {
 
 using ResultTime = std::chrono::nanoseconds;
 
-/// How long a change of what is wanted may go unnoticed while no result comes.
+/// Time that a change of the wanted planes may go unnoticed while no result comes.
 constexpr ResultTime kPatience = std::chrono::milliseconds(50);
 
 ResultTime now_of_results() { return std::chrono::steady_clock::now().time_since_epoch(); }
@@ -31,157 +29,134 @@ SourceInfo results_info(const std::string& name, const Skin& skin) {
   return info;
 }
 
-}  // namespace
+class ResultPlayer final : public LiveView {
+ public:
+  ResultPlayer(std::unique_ptr<ResultStream> stream, const std::string& name,
+               std::shared_ptr<Curves> curves)
+      : LiveView(std::move(curves)),
+        stream_(std::move(stream)),
+        info_(results_info(name, stream_->skin())),
+        found_here_(info_.skin.element_pitch_mm(), info_.contacts),
+        blocks_(FieldProducer::kMostShown,
+                [this] {
+                  return std::make_unique<PlaneBlock>(info_.skin.layout, info_.skin.element_rows(),
+                                                      info_.skin.element_cols(), false);
+                }),
+        thread_([this] { run(); }) {}
+  ~ResultPlayer() override {
+    stopping_ = true;
+    thread_.join();
+  }
 
-struct ResultPlayer::State {
-  State(std::unique_ptr<ResultStream> from, const std::string& name,
-        std::shared_ptr<Curves> measured, NewestField& display, Wanted& asked);
-  ~State();
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] PlayerState state() const override {
+    const PlayerStatistics counts = statistics();
+    return state_after(counts.produced, counts.produced_hz);
+  }
+  /// Does nothing but say who can.
+  void tare() override {
+    const std::scoped_lock lock(mutex_);
+    status_.message = info_.name + ": the tare is taken by the program that solves the frames";
+    ++status_.messages;
+  }
+  void record(const std::filesystem::path& /*path*/) override {
+    throw Error(info_.name, "it holds results, not frames",
+                "record by the program that solves them: stream --record");
+  }
+  void stop_recording() override {}
+  [[nodiscard]] LiveStatus status() override;
 
+ private:
   // Run in the thread.
   void run();
   void add();
   void publish();
   [[nodiscard]] std::shared_ptr<const ShownContacts> contacts_of(const ShownField& field);
 
-  const std::unique_ptr<ResultStream> stream;
-  const SourceInfo info;
-  const std::shared_ptr<Curves> curves;
-  // Of the thread.
-  StreamedResult result;
-  ShownField shown;  ///< with the planes of `result`
-  FieldClock clock{now_of_results()};
-  ContactLabels map;
-  FieldContacts found_here;  ///< contacts where the ring has none
-  PeakHold peak;
-  ObjectPool<PlaneBlock> blocks;
+  const std::unique_ptr<ResultStream> stream_;
+  const SourceInfo info_;
+  // Members of the thread.
+  StreamedResult result_;
+  ShownField shown_;  ///< with the planes of `result_`
+  ContactLabels map_;
+  FieldContacts found_here_;  ///< contacts where the ring has none
+  ObjectPool<PlaneBlock> blocks_;
 
-  Wanted& wanted;
-  std::atomic<bool> stopping = false;
+  std::atomic<bool> stopping_ = false;
+  std::mutex mutex_;  ///< guards the next two members
+  LiveStatus status_;
+  ResultTime arrived_ = now_of_results();  ///< of the newest result
 
-  mutable std::mutex mutex;  ///< guards the members up to `messages`
-  StreamHealth health;
-  ResultTime arrived = now_of_results();  ///< of the newest result
-  std::string message;
-  std::uint64_t messages = 0;
-
-  NewestField& newest;
-  std::thread thread;  ///< last: uses the other members
+  std::thread thread_;  ///< last: uses the other members
 };
 
-ResultPlayer::State::State(std::unique_ptr<ResultStream> from, const std::string& name,
-                           std::shared_ptr<Curves> measured, NewestField& display, Wanted& asked)
-    : stream(std::move(from)),
-      info(results_info(name, stream->skin())),
-      curves(std::move(measured)),
-      found_here(info.skin.element_pitch_mm(), info.contacts),
-      blocks(FieldProducer::kMostShown,
-             [this] {
-               return std::make_unique<PlaneBlock>(info.skin.layout, info.skin.element_rows(),
-                                                   info.skin.element_cols(), false);
-             }),
-      wanted(asked),
-      newest(display),
-      thread([this] { run(); }) {}
-
-ResultPlayer::State::~State() {
-  stopping = true;
-  thread.join();
-}
-
-void ResultPlayer::State::run() {
+void ResultPlayer::run() {
   try {
-    bool with_contacts = wanted.contacts;
-    while (!stopping) {
-      const bool came = stream->next(result, kPatience);
+    bool with_contacts = wants_contacts_;
+    while (!stopping_) {
+      const bool came = stream_->next(result_, kPatience);
       if (came) add();
-      const bool changed = std::exchange(with_contacts, wanted.contacts) != with_contacts;
-      if ((came || (changed && stream->health().frames > 0)) && !wanted.paused) publish();
-      const std::scoped_lock lock(mutex);
-      health = stream->health();
-      if (came) arrived = result.arrived;
+      const bool changed = std::exchange(with_contacts, wants_contacts_) != with_contacts;
+      if ((came || (changed && stream_->health().frames > 0)) && !paused_) publish();
+      const std::scoped_lock lock(mutex_);
+      status_.health.stream = stream_->health();
+      if (came) arrived_ = result_.arrived;
     }
   } catch (...) {
-    newest.end(std::current_exception());
+    newest_.end(std::current_exception());
   }
 }
 
 /// Measures the result that came.
-void ResultPlayer::State::add() {
-  shown = {};
-  shown.forces = result.forces.view();
-  shown.time_s = clock.time_s(result.time_s, result.arrived);
-  shown.index = stream->health().frames - 1;
-  shown.arrived = result.arrived;
-  curves->add(shown);
-  newest.count(result.arrived);
-  if (!wanted.peak) return;
-  if (wanted.peak_anew.exchange(false)) peak.reset();
-  peak.add(result.forces.view());
+void ResultPlayer::add() {
+  shown_ = {};
+  shown_.forces = result_.forces.view();
+  shown_.time_s = clock_.time_s(result_.time_s, result_.arrived);
+  shown_.index = stream_->health().frames - 1;
+  shown_.arrived = result_.arrived;
+  measure(shown_);
 }
 
 /// Hands a copy of the newest result to the display.
-void ResultPlayer::State::publish() {
-  const std::shared_ptr<PlaneBlock> block = blocks.acquire();
+void ResultPlayer::publish() {
+  const std::shared_ptr<PlaneBlock> block = blocks_.acquire();
   if (block == nullptr) return;
-  block->copy(result.forces.view());
-  ShownField field = shown;
+  block->copy(result_.forces.view());
+  ShownField field = shown_;
   field.forces = block->view();
   field.pages = block->pages();
   field.keep_alive = block;
-  if (wanted.contacts) field.contacts = contacts_of(field);
-  if (wanted.peak) field.peak = peak.field(field);
-  newest.set(std::move(field));
+  if (wants_contacts_) field.contacts = contacts_of(field);
+  if (wants_peak_) field.peak = peak_.field(field);
+  newest_.set(std::move(field));
 }
 
-std::shared_ptr<const ShownContacts> ResultPlayer::State::contacts_of(const ShownField& field) {
-  if (!result.contacts) {
-    return std::make_shared<const ShownContacts>(found_here.contacts_of(field));
+std::shared_ptr<const ShownContacts> ResultPlayer::contacts_of(const ShownField& field) {
+  if (!result_.contacts) {
+    return std::make_shared<const ShownContacts>(found_here_.contacts_of(field));
   }
-  map.find(field.forces.status, field.forces.rows, field.forces.cols);
-  FrameContacts found = *result.contacts;
+  map_.find(field.forces.status, field.forces.rows, field.forces.cols);
+  FrameContacts found = *result_.contacts;
   std::erase_if(found.contacts,
-                [&](const TrackedContact& contact) { return contact.label >= map.contacts(); });
-  return std::make_shared<const ShownContacts>(with_extents(std::move(found), map, {}));
+                [&](const TrackedContact& contact) { return contact.label >= map_.contacts(); });
+  return std::make_shared<const ShownContacts>(with_extents(std::move(found), map_, {}));
 }
 
-ResultPlayer::ResultPlayer(std::unique_ptr<ResultStream> stream, const std::string& name,
-                           std::shared_ptr<Curves> curves)
-    : state_(
-          std::make_unique<State>(std::move(stream), name, std::move(curves), newest_, wanted_)) {}
-
-ResultPlayer::~ResultPlayer() = default;
-
-const SourceInfo& ResultPlayer::info() const { return state_->info; }
-
-PlayerState ResultPlayer::state() const {
-  const PlayerStatistics counts = statistics();
-  return state_after(counts.produced, counts.produced_hz);
-}
-
-void ResultPlayer::tare() {
-  const std::scoped_lock lock(state_->mutex);
-  state_->message = state_->info.name + ": the tare is taken by the program that solves the frames";
-  ++state_->messages;
-}
-
-void ResultPlayer::record(const std::filesystem::path& /*path*/) {
-  throw Error(state_->info.name, "it holds results, not frames",
-              "record by the program that solves them: stream --record");
-}
-
-LiveStatus ResultPlayer::status() const {
+LiveStatus ResultPlayer::status() {
   const double rate_hz = statistics().produced_hz;
-  const std::scoped_lock lock(state_->mutex);
-  LiveStatus status;
-  status.health.stream = state_->health;
+  const std::scoped_lock lock(mutex_);
+  LiveStatus status = status_;
   status.health.stream.rate_hz = rate_hz;
-  status.health.solved = state_->health.frames;
-  status.health.since_frame_s =
-      std::chrono::duration<double>(now_of_results() - state_->arrived).count();
-  status.message = state_->message;
-  status.messages = state_->messages;
+  status.health.solved = status.health.stream.frames;
+  status.health.since_frame_s = std::chrono::duration<double>(now_of_results() - arrived_).count();
   return status;
+}
+
+}  // namespace
+
+std::unique_ptr<Player> play_results(std::unique_ptr<ResultStream> stream, const std::string& name,
+                                     std::shared_ptr<Curves> curves) {
+  return std::make_unique<ResultPlayer>(std::move(stream), name, std::move(curves));
 }
 
 }  // namespace pillarfield::viewer

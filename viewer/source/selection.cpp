@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "pillarfield/error.h"
@@ -11,6 +12,7 @@
 namespace pillarfield::viewer {
 namespace {
 
+constexpr std::uint32_t kBlock = 8;  ///< pillars whose statuses are compared at once
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
@@ -83,6 +85,17 @@ class SumBuilder {
     if ((state & status::kUsable) != 0 && is_finite(forces_, at)) add_force(pillar, at);
   }
 
+  [[nodiscard]] bool is_idle_block(PillarIndex first) const {
+    std::uint64_t block = 0;
+    static_assert(sizeof block == kBlock);
+    std::memcpy(&block, &forces_.status[std::size_t{first.row} * forces_.cols + first.col], kBlock);
+    return block == 0;
+  }
+  void add_idle(std::uint32_t pillars) {
+    sums_.pillars += pillars;
+    sums_.by_region[static_cast<std::size_t>(Region::none)] += pillars;
+  }
+
   [[nodiscard]] SelectionSums finish() {
     const auto touched = static_cast<double>(sums_.in_contact);
     sums_.area_mm2 = touched * pitch_mm_.area_mm2();
@@ -152,7 +165,14 @@ SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
   const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);
   for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {
-    for (std::uint32_t col = rect.col_begin; col < col_end; ++col) adding.add({row, col});
+    for (std::uint32_t col = rect.col_begin; col < col_end;) {
+      if (col + kBlock <= col_end && adding.is_idle_block({row, col})) {
+        adding.add_idle(kBlock);
+        col += kBlock;
+      } else {
+        adding.add({row, col++});
+      }
+    }
   }
   return adding.finish();
 }

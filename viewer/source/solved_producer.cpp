@@ -32,6 +32,17 @@ SolverPlan shown_plan(SolverPlan plan) {
   return plan;
 }
 
+void describe(SourceInfo& info, const SolverPlan& plan, const Processor& processor) {
+  info.skin = plan.skin;
+  info.calibration = plan.calibration;
+  info.has_readings = true;
+  info.has_angles = plan.angles;
+  info.has_uncertainty = plan.uncertainty;
+  set_sensor(info.contacts, plan);
+  info.solver =
+      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name);
+}
+
 SolvedProducer::SolvedProducer(SourceInfo info, std::shared_ptr<FrameProvider> provider,
                                const SolverPlan& plan, Processor processor)
     : info_(std::move(info)), provider_(std::move(provider)), processor_(std::move(processor)) {

@@ -21,6 +21,9 @@ namespace pillarfield::viewer {
 /// the estimator supports it; with a fixed baseline.
 [[nodiscard]] SolverPlan shown_plan(SolverPlan plan);
 
+/// Fills in the properties that plan and processor determine.
+void describe(SourceInfo& info, const SolverPlan& plan, const Processor& processor);
+
 /// Solves the frames of a provider on demand. A field is the processor's pinned result and keeps
 /// its readings alive. Where the plan has `memory`, a frame that follows the previous one uses its
 /// friction; any other frame is solved alone.

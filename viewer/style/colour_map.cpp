@@ -14,44 +14,33 @@ namespace {
 constexpr Colour kDetermined = colour_from(0x96b478);
 constexpr Colour kAmbiguous = colour_from(0xff7800);
 constexpr Colour kInconsistent = colour_from(0x870f87);
-constexpr Colour kSaturated = colour_from(0xd21e0f);
-constexpr Colour kFromContact = colour_from(0x2dc3e1);
-constexpr Colour kRegion2 = colour_from(0x4bd2ff);
-constexpr Colour kRegion4 = colour_from(0x8769f0);
+
+struct SpecialColour {
+  Colour dark, light;
+  constexpr SpecialColour(Colour both) : dark(both), light(both) {}  // NOLINT: implicit
+  constexpr SpecialColour(Colour on_dark, Colour on_light) : dark(on_dark), light(on_light) {}
+};
+constexpr std::array<SpecialColour, kSpecials> kColoursOf{{
+    {colour_from(0x262a30), colour_from(0xe3e5e8)},  // idle
+    colour_from(0xd21e0f),                           // saturated
+    kInconsistent,
+    kAmbiguous,
+    colour_from(0x2dc3e1),  // from_contact
+    kDetermined,            // region_1
+    colour_from(0x4bd2ff),  // region_2
+    kAmbiguous,             // region_3
+    colour_from(0x8769f0),  // region_4
+    kInconsistent,          // opposite
+    kDetermined,
+    {colour_from(0x50565e), colour_from(0xb4b9c0)},  // no_reading
+}};
 
 /// The colour of a status class.
 Special special_of(StatusClass status) {
-  switch (status) {
-    case StatusClass::determined:
-      return Special::determined;
-    case StatusClass::ambiguous:
-      return Special::ambiguous;
-    case StatusClass::from_contact:
-      return Special::from_contact;
-    case StatusClass::saturated:
-      return Special::saturated;
-    case StatusClass::inconsistent:
-      break;
-  }
-  return Special::inconsistent;
-}
-
-Special special_of(Region region) {
-  switch (region) {
-    case Region::none:
-      return Special::idle;
-    case Region::one:
-      return Special::region_1;
-    case Region::two:
-      return Special::region_2;
-    case Region::three:
-      return Special::region_3;
-    case Region::four:
-      return Special::region_4;
-    case Region::opposite:
-      break;
-  }
-  return Special::opposite;
+  constexpr std::array<Special, kStatusClasses> kSpecialOf{
+      Special::determined, Special::ambiguous, Special::from_contact, Special::saturated,
+      Special::inconsistent};
+  return kSpecialOf.at(static_cast<std::size_t>(status));
 }
 
 bool is_fault(StatusClass status) {
@@ -67,51 +56,22 @@ const char* name_of(ColourMap map) {
 }
 
 ColourMap default_map(Scale scale) {
-  switch (scale) {
-    case Scale::diverging:
-      return ColourMap::diverging;
-    case Scale::cyclic:
-      return ColourMap::cyclic;
-    case Scale::sequential:
-    case Scale::classes:
-      break;
-  }
-  return ColourMap::cividis;
+  if (scale == Scale::diverging) return ColourMap::diverging;
+  return scale == Scale::cyclic ? ColourMap::cyclic : ColourMap::cividis;
 }
 
 Colour colour_of(Special special, Theme theme) {
-  switch (special) {
-    case Special::idle:
-      return theme == Theme::dark ? colour_from(0x262a30) : colour_from(0xe3e5e8);
-    case Special::no_reading:
-      return theme == Theme::dark ? colour_from(0x50565e) : colour_from(0xb4b9c0);
-    case Special::saturated:
-      return kSaturated;
-    case Special::inconsistent:
-    case Special::opposite:
-      return kInconsistent;
-    case Special::ambiguous:
-    case Special::region_3:
-      return kAmbiguous;
-    case Special::from_contact:
-      return kFromContact;
-    case Special::region_2:
-      return kRegion2;
-    case Special::region_4:
-      return kRegion4;
-    case Special::region_1:
-    case Special::determined:
-      break;
-  }
-  return kDetermined;
+  const SpecialColour& colour = kColoursOf.at(static_cast<std::size_t>(special));
+  return theme == Theme::dark ? colour.dark : colour.light;
 }
 
-const char* name_of(Special special) {
-  static constexpr std::array<const char*, kSpecials> kNames = {
-      "no contact",      "saturated",        "inconsistent", "ambiguous",
-      "from neighbours", "region 1",         "region 2",     "region 3",
-      "region 4",        "opposite sensels", "determined",   "no reading"};
-  return kNames.at(static_cast<std::size_t>(special));
+Colour region_colour(Region region, Theme theme) { return colour_of(special_of(region), theme); }
+
+Special special_of(Region region) {
+  constexpr std::array<Special, kRegions> kSpecialOf{Special::idle,     Special::region_1,
+                                                     Special::region_2, Special::region_3,
+                                                     Special::region_4, Special::opposite};
+  return kSpecialOf.at(static_cast<std::size_t>(region));
 }
 
 Colour background_of(Theme theme) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "pillarfield/status.h"
 #include "viewer/style/quantity.h"
 
 namespace pillarfield::viewer {
@@ -49,8 +50,9 @@ enum class Special : std::uint8_t {
 inline constexpr int kSpecials = 12;
 enum class Theme : std::uint8_t { dark, light };
 [[nodiscard]] Colour colour_of(Special special, Theme theme);  ///< quiet ones by theme
-[[nodiscard]] const char* name_of(Special special);            ///< in the legend: "saturated"
-[[nodiscard]] Colour background_of(Theme theme);               ///< around the skin
+[[nodiscard]] Special special_of(Region region);
+[[nodiscard]] Colour region_colour(Region region, Theme theme);
+[[nodiscard]] Colour background_of(Theme theme);  ///< around the skin
 
 /// The special colour of a pillar; none where the map colours its value. A fault shows on idle
 /// pillars too; an ambiguous pillar has a value. In `region` and `status` every pillar has one.

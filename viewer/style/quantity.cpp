@@ -17,20 +17,26 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr auto kHalfTurn = std::numbers::pi_v<float>;
 
+bool any(const SourceInfo& /*source*/) { return true; }
+bool pillars(const SourceInfo& source) { return source.skin.has_pillars(); }
+bool angles(const SourceInfo& source) { return source.has_angles; }
+bool uncertain(const SourceInfo& source) { return source.has_uncertainty; }
+bool readings(const SourceInfo& source) { return source.has_readings && pillars(source); }
+
 constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
-    {"normal", "Normal force", "N", 1, Scale::sequential},
-    {"shear", "Shear", "N", 1, Scale::sequential},
-    {"shear_x", "Shear x", "N", 1, Scale::diverging},
-    {"shear_y", "Shear y", "N", 1, Scale::diverging},
-    {"magnitude", "Magnitude", "N", 1, Scale::sequential},
-    {"theta", "Inclination θ", "°", kDegrees, Scale::sequential},
-    {"phi", "Direction φ", "°", kDegrees, Scale::cyclic},
-    {"region", "Region", "", 1, Scale::classes},
-    {"status", "Status", "", 1, Scale::classes},
-    {"uncertainty", "Uncertainty", "N", 1, Scale::sequential},
-    {"parity", "Parity residual", "counts", 1, Scale::diverging},
-    {"peak", "Peak normal force", "N", 1, Scale::sequential},
-    {"pressure", "Pressure", "kPa", 1, Scale::sequential},
+    {"normal", "Normal force", "N", 1, Scale::sequential, any},
+    {"shear", "Shear", "N", 1, Scale::sequential, pillars},
+    {"shear_x", "Shear x", "N", 1, Scale::diverging, pillars},
+    {"shear_y", "Shear y", "N", 1, Scale::diverging, pillars},
+    {"magnitude", "Magnitude", "N", 1, Scale::sequential, angles},
+    {"theta", "Inclination θ", "°", kDegrees, Scale::sequential, angles},
+    {"phi", "Direction φ", "°", kDegrees, Scale::cyclic, angles},
+    {"region", "Region", "", 1, Scale::classes, pillars},
+    {"status", "Status", "", 1, Scale::classes, any},
+    {"uncertainty", "Uncertainty", "N", 1, Scale::sequential, uncertain},
+    {"parity", "Parity residual", "counts", 1, Scale::diverging, readings},
+    {"peak", "Peak normal force", "N", 1, Scale::sequential, any},
+    {"pressure", "Pressure", "kPa", 1, Scale::sequential, any},
 }};
 
 float root_of_squares(float x, float y) { return std::sqrt(x * x + y * y); }
@@ -143,13 +149,6 @@ QuantityInfo info_of(Quantity quantity, const PressureUnit& unit) {
   return info;
 }
 
-std::optional<Quantity> quantity_named(std::string_view name) {
-  for (std::size_t i = 0; i < kInfos.size(); ++i) {
-    if (name == kInfos.at(i).name) return static_cast<Quantity>(i);
-  }
-  return std::nullopt;
-}
-
 StatusClass status_class(std::uint8_t status) {
   if ((status & status::kInconsistent) != 0) return StatusClass::inconsistent;
   if ((status & status::kSaturated) != 0) return StatusClass::saturated;
@@ -162,27 +161,7 @@ bool is_pressed(std::uint8_t status) {
 }
 
 bool is_available(Quantity quantity, const SourceInfo& source) {
-  switch (quantity) {
-    case Quantity::magnitude:
-    case Quantity::theta:
-    case Quantity::phi:
-      return source.has_angles;
-    case Quantity::uncertainty:
-      return source.has_uncertainty;
-    case Quantity::parity:
-      return source.has_readings && source.skin.has_pillars();
-    case Quantity::shear:
-    case Quantity::shear_x:
-    case Quantity::shear_y:
-    case Quantity::region:
-      return source.skin.has_pillars();
-    case Quantity::normal:
-    case Quantity::status:
-    case Quantity::peak:
-    case Quantity::pressure:
-      break;
-  }
-  return true;
+  return kInfos.at(static_cast<std::size_t>(quantity)).is_in(source);
 }
 
 const ShownField& field_with(Quantity quantity, const ShownField& field) {

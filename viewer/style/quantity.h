@@ -37,10 +37,10 @@ struct QuantityInfo {
   std::string_view unit;  ///< displayed unit: "N", "°", "counts", ""
   double factor;  ///< displayed number over value: 180/pi for angles, 1/kPa for pressure, else 1
   Scale scale;
+  bool (*is_in)(const SourceInfo& source);  ///< see is_available()
 };
 [[nodiscard]] QuantityInfo info_of(Quantity quantity,
                                    const PressureUnit& unit = kPressureUnits.front());
-[[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
 
 /// Values of `status`; the worst applies.
 enum class StatusClass : std::uint8_t {
@@ -84,24 +84,10 @@ struct Range {
 /// [-pi, pi] for phi and [0, number of classes] for classes.
 [[nodiscard]] Range fitting_range(Quantity quantity, float largest_value);
 
-/// The value of one pillar or sensel, as in the heat map's shader, in single precision without
-/// contraction. `x`, `y`, `n` are the planes shear_x, shear_y and normal.
-///
-///     normal, shear_x, shear_y     n, x, y
-///     shear                        sqrt(x*x + y*y)
-///     magnitude, theta, phi        from their planes
-///     region                       float(region_of(status)): 1 to 5
-///     status                       float(status_class(status)): 0 to 4
-///     uncertainty                  s = sqrt((sx*sx + sy*sy) + sn*sn) of the deviations; where the
-///                                  status is ambiguous h = 0.5*(magnitude_high - magnitude_low),
-///                                  and h > s ? h : s
-///     parity                       (V1 + V3) - (V2 + V4) of the readings as floats
-///     pressure                     n*kpa_per_newton()
-///
-/// In the uncertainty of sensels, sx and sy are zero.
-///
-/// NaN where the source lacks the data or the pillar is idle: not is_pressed(); for region no
-/// usable sensel; for status not pressed and no fault.
+/// The value of one pillar or sensel by the operations of shaders/value.glsl, in single precision
+/// without contraction. In the uncertainty of sensels the deviations of the shear are zero. NaN
+/// where the source lacks the data or the pillar is idle: not is_pressed(); for region no usable
+/// sensel; for status not pressed and no fault.
 [[nodiscard]] float value_of(Quantity quantity, const ShownField& shown, const Skin& skin,
                              std::uint32_t row, std::uint32_t col);
 

@@ -9,7 +9,7 @@
 /// Intersections and extents of surfaces.
 namespace pillarfield::viewer {
 
-/// How the viewer draws a skin's surface: a height map as a plane.
+/// A skin's surface as the viewer draws it: a height map as a plane.
 [[nodiscard]] Surface drawn_surface(const std::optional<pillarfield::Surface>& surface);
 
 /// The surface as the shaders take it (shaders/surface.glsl).

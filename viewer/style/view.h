@@ -29,7 +29,7 @@ struct SkinSize {
 enum class SurfaceKind : std::uint32_t { plane, cylinder, sphere };
 struct Surface {
   SurfaceKind kind = SurfaceKind::plane;
-  /// Of a cylinder or sphere, negative with the skin inside; a plane below kLeastRadiusMm.
+  /// Radius of a cylinder or sphere, negative with the skin inside; a plane below kLeastRadiusMm.
   double radius_mm = 0;
   double axis_deg = 90;  ///< direction of a cylinder's axis, from +x towards +y
   friend bool operator==(const Surface&, const Surface&) = default;

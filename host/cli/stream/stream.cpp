@@ -15,8 +15,8 @@
 #include "cli/stream/session.h"
 #include "cli/warnings.h"
 #include "io/file_kind.h"
-#include "io/layout_note.h"
 #include "pillarfield/error.h"
+#include "pillarfield/layout_note.h"
 #include "pillarfield/live.h"
 #include "pillarfield/printable.h"
 
@@ -111,14 +111,9 @@ void stream(const StreamOptions& options) {
   const SolverPlan plan = plan_of(options, *source);
   tell_assumptions(options, *source, plan.skin);
   const Device device = open_device(options.device).for_plan(plan);
-  const auto opened = std::chrono::steady_clock::now();
   Processor processor(device, plan,
                       {.frames_in_flight = options.frames_in_flight,
-                       .start_on_host = !options.summary,
                        .on_compiling = terminal_line(options.quiet)});
-  // Frames that waited for kernels would count as late.
-  const auto prepared = std::chrono::steady_clock::now() - opened;
-  if (options.summary && prepared > std::chrono::milliseconds(500)) source->discard_waiting();
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
   session.run(is_live_source(options.source) ? waited : std::chrono::nanoseconds(0));
   session.print_summary();

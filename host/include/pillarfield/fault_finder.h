@@ -1,19 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pillarfield/force_field.h"
 #include "pillarfield/frame_statistics.h"
 #include "pillarfield/sensel_finding.h"
 #include "pillarfield/skin_calibration.h"
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
-
-class SenselReader;
 
 /// Options of FaultFinder.
 struct FaultOptions {
@@ -69,12 +69,14 @@ class FaultFinder {
   class Classifier;
 
   [[nodiscard]] Range range_of(std::size_t sensel) const;
-  void predict(std::size_t row, std::size_t col, SenselReader& reader);
+  /// Adds the predictions of a pillar from its sensels in a frame.
+  void predict(const std::array<std::size_t, 4>& sensels, const ForceField& corrected);
 
   FrameStatistics statistics_;
   SkinCalibration calibration_;
   FaultOptions options_;
   SolverPlan plan_;
+  SolverPlan sensels_;  ///< of its sensels alone, in counts
   std::vector<Prediction> predictions_;
 };
 

@@ -87,6 +87,8 @@ struct ForceField {
   ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols);
   /// The same for the elements of a skin; without pillars there is no shear.
   explicit ForceField(const Skin& skin);
+  /// A copy.
+  explicit ForceField(const ForceFieldView& field);
 
   [[nodiscard]] std::size_t elements() const { return std::size_t{rows} * cols; }
   [[nodiscard]] ForceFieldView view() const;

@@ -73,10 +73,6 @@ class FrameStream {
   /// Counts since the stream was opened; zero unless overridden.
   [[nodiscard]] virtual StreamHealth health() const;
 
-  /// Discards the frames that wait, without counting them as lost: for a program that was not ready
-  /// for them. Does nothing unless overridden.
-  virtual void discard_waiting() {}
-
   /// Waits for the next frame, at most for `timeout`; may return earlier. A `timeout` of zero
   /// polls.
   ///

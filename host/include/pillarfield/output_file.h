@@ -21,7 +21,6 @@ enum class OutputKind : std::uint8_t {
   contacts,  ///< likewise
   messages,  ///< .mcap
   png,
-  svg,
   video,
   text,
 };
@@ -32,8 +31,7 @@ enum class OutputKind : std::uint8_t {
 /// The existing files that an output may replace. All but `nothing` replace an empty file.
 enum class Replace : std::uint8_t {
   nothing,
-  results,   ///< a file whose content is of the same kind, except recordings, calibrations,
-             ///< messages and texts, which cannot be made again
+  results,   ///< an earlier result of the same kind and format: forces, contacts, pictures, videos
   anything,  ///< any regular file
 };
 

@@ -57,9 +57,8 @@ class Device {
 
   /// The device that solves the frames of a plan: this one, if it was named. Else the host for a
   /// skin of up to 16,384 pillars (or 2 x 2 sensels; 65,536 if it solves forces alone from 8-bit
-  /// readings without any correction) and two columns or more, without opening OpenCL, and the best
-  /// OpenCL device for others; the host if there is no such device. Throws Error in the cases of
-  /// list_devices().
+  /// readings without any correction), without opening OpenCL, and the best OpenCL device for
+  /// others; the host if there is no such device. Throws Error in the cases of list_devices().
   [[nodiscard]] Device for_plan(const SolverPlan& plan) const;
 
   /// @cond internal
@@ -107,12 +106,6 @@ class Processor {
   struct Options {
     Memory memory = Memory::automatic;
     int frames_in_flight = 2;  ///< slots, 1 to 64
-    /// While the kernels of an OpenCL device are compiled, which takes seconds where the driver's
-    /// cache does not hold them, submit() solves on the host instead, with the same bits, so that
-    /// forces come at once; pin() finds no frame, and set_plan() waits for the kernels. Has no
-    /// effect with angles, estimators other than `direct`, and plans whose frames leave
-    /// something to the next ones (a followed baseline, a bent skin, hysteresis, creep).
-    bool start_on_host = false;
     /// Called at most once, from another thread, if compiling the kernels takes longer than 0.3 s,
     /// with a line of text for the user. It must not throw.
     std::function<void(const std::string& line)> on_compiling = {};
@@ -196,20 +189,12 @@ class Processor {
 
   [[nodiscard]] int in_flight() const;       ///< frames submitted and not yet received
   [[nodiscard]] int pinned() const;          ///< results held now
-  [[nodiscard]] bool is_compiling() const;   ///< submit() still solves on the host
   [[nodiscard]] bool shares_memory() const;  ///< whether frames and results stay in place
   [[nodiscard]] const Device& device() const;
 
  private:
   struct State;
-  struct Start;
-
-  void end_start();
-  void await_kernels();
-  bool submit_on_host(const FrameView& frame);
-
-  std::unique_ptr<State> state_;  ///< null while kernels are compiled
-  std::unique_ptr<Start> start_;  ///< null without Options::start_on_host
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace pillarfield

@@ -1,4 +1,4 @@
-#include "io/output/png_file.h"
+#include "pillarfield/png_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

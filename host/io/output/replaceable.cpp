@@ -1,7 +1,6 @@
 #include "io/output/replaceable.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -11,7 +10,6 @@
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_sink.h"
-#include "io/frame_source.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/recording_format.h"
@@ -21,90 +19,56 @@
 namespace pillarfield {
 namespace {
 
-/// Kind of a file by its content.
-struct FoundContent {
-  std::optional<OutputKind> kind;      ///< unset: not written by this project
-  std::string words;                   ///< "holds a recording"
-  const SinkFormat* format = nullptr;  ///< for forces and contacts
-};
+constexpr std::string_view kMcapBeginning = "\x89MCAP0\r\n";
 
-FoundContent hdf5_content(const InputFile& input) {
-  const hdf5::QuietErrors quiet;
-  const hdf5::File file = hdf5::open_to_read(input, false);
-  const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
-  if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
-  if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};
-  if (format == force_format::kName) {
-    const SinkFormat* const written = format_by_extension("forces.h5", OutputKind::forces);
-    return {OutputKind::forces, written->content, written};
-  }
-  return {std::nullopt, "is an HDF5 file of another kind"};
-}
-
-/// Signature of a picture, video or drawing.
+/// Beginnings of results other than forces and contacts (SinkFormat); all other files that exist
+/// need --overwrite.
 struct Beginning {
   OutputKind kind;
-  const char* words;
   std::size_t offset;
   std::string_view bytes;
 };
-
-constexpr std::array<Beginning, 5> kBeginnings = {{
-    {OutputKind::messages, "holds messages", 0, "\x89MCAP0\r\n"},
-    {OutputKind::png, "is a picture", 0, "\x89PNG\r\n\x1a\n"},
-    {OutputKind::video, "is a video", 4, "ftyp"},              // MP4, QuickTime
-    {OutputKind::video, "is a video", 0, "\x1a\x45\xdf\xa3"},  // Matroska, WebM
-    {OutputKind::svg, "is a drawing", 0, "<svg"},
+constexpr std::array<Beginning, 3> kBeginnings = {{
+    {OutputKind::png, 0, "\x89PNG\r\n\x1a\n"},
+    {OutputKind::video, 4, "ftyp"},              // MP4, QuickTime
+    {OutputKind::video, 0, "\x1a\x45\xdf\xa3"},  // Matroska, WebM
 }};
-
-FoundContent content_by_beginning(const InputFile& file) {
-  const std::string head = file.text_at(0, 1024);
-  for (const Beginning& beginning : kBeginnings) {
-    if (head.size() < beginning.offset) continue;
-    if (head.compare(beginning.offset, beginning.bytes.size(), beginning.bytes) == 0) {
-      return {beginning.kind, beginning.words};
-    }
-  }
-  if (const SinkFormat* const format = format_by_beginning(head)) {
-    return {format->kind, format->content, format};
-  }
-  if (head.starts_with("<?xml") && head.find("<svg") != std::string::npos) {
-    return {OutputKind::svg, "is a drawing"};
-  }
-  return {std::nullopt, file.path().extension() == ".toml"
-                            ? "is a scene or another TOML file"
-                            : "is not an earlier output of this kind"};
-}
-
-FoundContent content_of(const std::filesystem::path& path) {
-  const InputFile file(path);
-  const DetectedFormat detected = detect_format(file);
-  if (detected.kind == FileKind::hdf5) return hdf5_content(file);
-  FoundContent found = content_by_beginning(file);
-  if (found.kind || detected.frames == nullptr) return found;
-  return {std::nullopt, fmt::format("is a {}", detected.frames->name)};
-}
 
 bool is_empty_file(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::file_size(path, error) == 0 && !error;
 }
 
-bool is_result(OutputKind kind) {
-  return kind != OutputKind::recording && kind != OutputKind::calibration &&
-         kind != OutputKind::messages && kind != OutputKind::text;
+/// The attribute `format` of an HDF5 file; unset if it cannot be read.
+std::optional<std::string> hdf5_format(const InputFile& file) {
+  try {
+    const hdf5::QuietErrors quiet;
+    const hdf5::File opened = hdf5::open_to_read(file, false);
+    return hdf5::read_text(opened, opened.id.get(), "format").value_or("");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
-constexpr const char* kKeepOrReplace = "rename it, or replace it with --overwrite";
+/// True if a file is an earlier result of this kind, in the format of its extension.
+bool is_earlier_result(const InputFile& file, OutputKind kind) {
+  const std::string head = file.text_at(0, 1024);
+  if (const SinkFormat* const format = format_by_extension(file.path(), kind)) {
+    return format->begins.empty() ? hdf5_format(file) == force_format::kName
+                                  : format_by_beginning(head) == format;
+  }
+  return std::ranges::any_of(kBeginnings, [&](const Beginning& beginning) {
+    return beginning.kind == kind && head.size() > beginning.offset &&
+           std::string_view(head).substr(beginning.offset).starts_with(beginning.bytes);
+  });
+}
 
-/// Number of frames in an unfinished recording.
-std::uint64_t frames_in(const std::filesystem::path& part) {
+/// True if a recording has frames, or cannot be read.
+bool has_frames(const std::filesystem::path& recording) {
   try {
-    return open_frames(part)->frames();
-  } catch (const Error& error) {
-    throw Error(part.string(),
-                fmt::format("holds a recording that cannot be read ({})", error.what()),
-                kKeepOrReplace);
+    return open_frames(recording)->frames() > 0;
+  } catch (const Error&) {
+    return true;
   }
 }
 
@@ -119,38 +83,27 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
   }
   if (replace == Replace::nothing) throw Error(path.string(), "exists", "choose another name");
   if (replace == Replace::anything || is_empty_file(path)) return;
-  FoundContent found;
-  try {
-    found = content_of(path);
-  } catch (const Error&) {
-    found.words = "cannot be read";
-  }
-  const SinkFormat* const asked = format_by_extension(path, kind);
-  const bool is_of_its_format = asked == nullptr || asked == found.format;
-  if (found.kind == kind && is_result(kind) && is_of_its_format) return;
-  throw Error(path.string(), "exists and " + found.words,
+  if (is_earlier_result(InputFile(path), kind)) return;
+  throw Error(path.string(), "exists and is not an earlier result of this kind",
               "choose another name, or replace it with --overwrite");
 }
 
 void require_disposable(const std::filesystem::path& path, Replace replace) {
   if (is_empty_file(path)) return;
-  FoundContent found;
-  try {
-    found = content_of(path);
-  } catch (const Error&) {
-    return;  // A writer died before its first flush.
+  const InputFile part(path);
+  const DetectedFormat detected = detect_format(part);
+  const std::string head = part.text_at(0, 1024);
+  bool is_kept = detected.frames != nullptr && format_by_beginning(head) == nullptr;
+  bool is_ours = head.starts_with(kMcapBeginning);
+  if (detected.kind == FileKind::hdf5) {
+    const auto format = hdf5_format(part);  // Unset: a writer died before its first flush.
+    is_kept = format && format != force_format::kName &&
+              (format != recording_format::kName || has_frames(path));
+    is_ours = format == recording_format::kName || format == calibration_format::kName;
   }
-  if (found.kind && replace == Replace::anything) return;
-  if (found.kind == OutputKind::recording) {
-    const std::uint64_t frames = frames_in(path);
-    if (frames == 0) return;
-    throw Error(path.string(), fmt::format("holds {} frames of an unfinished recording", frames),
-                kKeepOrReplace);
-  }
-  const bool is_worth_keeping =
-      found.kind ? !is_result(*found.kind) : kind_of(path) != FileKind::other;
-  if (!is_worth_keeping) return;
-  throw Error(path.string(), found.words, found.kind ? kKeepOrReplace : "rename or remove it");
+  if (!is_kept || (is_ours && replace == Replace::anything)) return;
+  throw Error(path.string(), "holds data that no command can make again",
+              is_ours ? "rename it, or replace it with --overwrite" : "rename or remove it");
 }
 
 }  // namespace pillarfield

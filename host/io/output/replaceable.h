@@ -11,7 +11,7 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
 
 /// Throws Error if the part that an earlier writer left at `path` holds data that cannot be made
 /// again: an HDF5 file or frames of another program, or, unless `replace` is Replace::anything, a
-/// calibration or frames of a recording.
+/// calibration, messages or frames of a recording.
 void require_disposable(const std::filesystem::path& path, Replace replace);
 
 }  // namespace pillarfield

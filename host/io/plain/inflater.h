@@ -1,11 +1,12 @@
 #pragma once
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
+#include <vector>
 
 #include "base/input_file.h"
 
@@ -21,29 +22,27 @@ inline constexpr std::uint64_t kMostInflatedBytes = std::uint64_t{1} << 30;
 /// Bytes that a byte of deflated data stands for, at most.
 inline constexpr std::uint64_t kMostDeflateRatio = 1032;
 
-/// Compressed bytes of a file.
-struct DeflatedData {
-  std::uint64_t at = 0;
-  std::uint64_t bytes = 0;
-  bool has_zlib_header = false;  ///< and a checksum (RFC 1950); else deflated alone (RFC 1951)
-};
-
-/// Inflates compressed bytes of a file, from first to last, by 64 KiB at a time.
+/// Inflates `left` bytes of a file from byte `at` on, with header and checksum of zlib (RFC 1950),
+/// from first to last, by 64 KiB at a time.
 class Inflater {
  public:
-  /// `place` and `mend` are those of its errors. `file` must outlive it.
-  Inflater(const InputFile& file, const DeflatedData& data, std::string place, const char* mend);
-  ~Inflater();
-  Inflater(Inflater&& other) noexcept;
-  Inflater& operator=(Inflater&&) = delete;
+  /// `file` must outlive it.
+  Inflater(const InputFile& file, std::uint64_t at, std::uint64_t left);
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
 
   /// Fills `bytes` and returns how many of them there are. Throws Error if the data are damaged, or
   /// is_interrupted() becomes true.
   std::size_t read(std::span<std::byte> bytes);
 
  private:
-  class State;
-  std::unique_ptr<State> state_;
+  const InputFile& file_;
+  std::uint64_t at_;
+  std::uint64_t left_;
+  z_stream stream_ = {};
+  std::vector<std::byte> input_ = std::vector<std::byte>(64U << 10U);
+  bool has_ended_ = false;
 };
 
 }  // namespace pillarfield

@@ -1,8 +1,12 @@
 // Frames of NumPy: .npy files and .npz archives.
 
 #include <fmt/format.h>
+#include <minizip/unzip.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include "base/input_file.h"
@@ -11,13 +15,14 @@
 #include "io/plain/array_names.h"
 #include "io/plain/inflater.h"
 #include "io/plain/source.h"
-#include "io/plain/zip.h"
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr std::size_t kMostMembers = 1000;
+constexpr const char* kDamagedArchive = "the archive is damaged or truncated; use another copy";
 
 /// The header of an array of readings. Throws Error if it is damaged, or the array has booleans or
 /// Fortran order.
@@ -51,36 +56,48 @@ std::unique_ptr<NumberArray> npy_in_file(InputFile file, std::uint64_t offset,
 
 /// An array of an archive.
 struct NpzArray {
-  std::string name;  ///< of the member, without .npy
-  ZipMember member;
+  std::string name;       ///< of the member, without .npy
+  unz64_file_pos place;   ///< of its entry in the directory
+  unz_file_info64 info;   ///< its sizes
+  std::uint64_t data_at;  ///< offset in the archive
   NpyHeader header;
 };
 
-/// The arrays of numbers in an archive; others, such as text, are left out.
+/// The arrays of numbers in an archive of stored or deflated members; others, such as text, are
+/// left out.
 class NpzArchive {
  public:
-  explicit NpzArchive(const std::filesystem::path& path) : path_(path), file_(path), names_(path) {
-    const std::vector<ZipMember> members = list_zip(file_);
-    if (members.size() > kMostMembers) {
-      throw Error(path_.string(), fmt::format("has {} members", members.size()),
-                  fmt::format("archives of at most {} arrays are read", kMostMembers));
+  explicit NpzArchive(const std::filesystem::path& path)
+      : file_(path),
+        zip_(unzOpen64(fmt::format("/proc/self/fd/{}", file_.descriptor()).c_str()), unzClose),
+        names_(path) {
+    if (!zip_) fail_archive("has no directory of its members");
+    std::size_t members = 0;
+    int result = unzGoToFirstFile(zip_.get());
+    for (; result == UNZ_OK; result = unzGoToNextFile(zip_.get())) {
+      if (++members > kMostMembers) {
+        throw Error(path.string(), fmt::format("has more than {} members", kMostMembers),
+                    "save the frames alone");
+      }
+      add_member();
     }
-    for (const ZipMember& member : members) add(member);
+    if (result != UNZ_END_OF_LIST_OF_FILE) fail_archive("its directory is damaged");
   }
 
   [[nodiscard]] const ArrayNames& names() const { return names_; }
   /// Throws Error if it is not an archive of NumPy.
   void require_arrays() const {
-    if (!has_npy_) refuse_foreign_archive(path_, is_workbook_);
+    if (!has_npy_) refuse_foreign_archive(file_.path(), is_workbook_);
   }
 
   [[nodiscard]] std::unique_ptr<NumberArray> open(std::size_t index) const {
     const NpzArray& array = arrays_[index];
-    std::string place = fmt::format("{}: {}", path_.string(), array.name);
-    if (!array.member.is_deflated) {
-      return npy_in_file(InputFile(path_), array.member.data, array.member.bytes, std::move(place));
+    const std::string place = place_of(array.name);
+    if (array.info.compression_method == 0) {
+      return npy_in_file(InputFile(file_.path()), array.data_at, array.info.uncompressed_size,
+                         place);
     }
-    std::vector<std::byte> bytes = inflate(file_, array.member);
+    std::vector<std::byte> bytes = inflated(array);
     const NpyHeader& header = array.header;
     if (bytes.size() - header.bytes < header.data_bytes) {
       throw Error(place, "is shorter than its header says", "use another copy");
@@ -89,28 +106,116 @@ class NpzArchive {
     if (header.is_swapped) {
       swap_bytes(bytes.data(), header.data_bytes / header.type.bytes, header.type.bytes);
     }
-    return array_in_memory(std::move(place), header.type, header.shape, std::move(bytes));
+    return array_in_memory(place, header.type, header.shape, std::move(bytes));
   }
 
  private:
-  void add(const ZipMember& member) {
+  [[noreturn]] void fail_archive(const char* failure) const {
+    throw Error(file_.path().string(), failure, kDamagedArchive);
+  }
+
+  [[nodiscard]] std::string place_of(const std::string& name) const {
+    return fmt::format("{}: {:.60}", file_.path().string(), name);
+  }
+
+  /// Takes the member at the current entry of the directory, if it is an array.
+  void add_member() {
     constexpr std::string_view kEnding = ".npy";
-    std::string name = member.name;
-    if (name.ends_with(kEnding)) name.resize(name.size() - kEnding.size());
-    const std::string head = head_of(file_, member, kLongestNpyHeader);
-    is_workbook_ = is_workbook_ || name == "xl/workbook.xml";
+    std::array<char, 1024> text{};
+    NpzArray array = {};
+    unz_file_info64& info = array.info;
+    if (unzGetCurrentFileInfo64(zip_.get(), &info, text.data(), text.size() - 1, nullptr, 0,
+                                nullptr, 0) != UNZ_OK ||
+        unzGetFilePos64(zip_.get(), &array.place) != UNZ_OK) {
+      fail_archive("its directory is damaged");
+    }
+    array.name = text.data();
+    check_method(array);
+    if (array.name.ends_with(kEnding)) array.name.resize(array.name.size() - kEnding.size());
+    open_member(array);
+    array.data_at = unzGetCurrentFileZStreamPos64(zip_.get());
+    if (array.data_at > file_.size() || info.compressed_size > file_.size() - array.data_at) {
+      fail_archive("ends within a member");
+    }
+    std::string head(std::min<std::uint64_t>(kLongestNpyHeader, info.uncompressed_size), '\0');
+    head.resize(read_member(std::as_writable_bytes(std::span(head)), place_of(array.name)));
+    is_workbook_ = is_workbook_ || array.name == "xl/workbook.xml";
     if (!head.starts_with(kNpyMagic)) return;
     has_npy_ = true;
     try {
-      arrays_.push_back({name, member, header_of_readings(head, name)});
-      names_.add(name, arrays_.back().header.shape.size());
+      array.header = header_of_readings(head, array.name);
+      names_.add(array.name, array.header.shape.size());
+      arrays_.push_back(std::move(array));
     } catch (const Error& error) {
-      names_.refuse(name, error.what());
+      names_.refuse(array.name, error.what());
     }
   }
 
-  std::filesystem::path path_;
+  void check_method(const NpzArray& array) const {
+    constexpr unsigned kEncrypted = 1;
+    const auto& [name, place, info, data_at, header] = array;
+    if ((info.flag & kEncrypted) != 0) {
+      throw Error(place_of(name), "is encrypted", "save it without a password");
+    }
+    if (info.compression_method != 0 && info.compression_method != Z_DEFLATED) {
+      throw Error(place_of(name),
+                  fmt::format("is compressed by method {}", info.compression_method),
+                  "use numpy.savez or numpy.savez_compressed");
+    }
+    if (info.compression_method == 0 && info.uncompressed_size != info.compressed_size) {
+      throw Error(place_of(name), "has two different sizes", kDamagedArchive);
+    }
+  }
+
+  void open_member(const NpzArray& array) const {
+    if (unzGoToFilePos64(zip_.get(), &array.place) == UNZ_OK &&
+        unzOpenCurrentFile(zip_.get()) == UNZ_OK) {
+      return;
+    }
+    throw Error(place_of(array.name), "is not where the archive says", kDamagedArchive);
+  }
+
+  /// Reads from the open member; returns the number of bytes, fewer at its end.
+  std::size_t read_member(std::span<std::byte> bytes, const std::string& place) const {
+    constexpr std::size_t kMostAtOnce = std::size_t{16} << 20U;
+    std::size_t found = 0;
+    while (found < bytes.size()) {
+      if (is_interrupted()) throw Error(place, "interrupted while it was read", "start again");
+      const std::size_t count = std::min(bytes.size() - found, kMostAtOnce);
+      const int read = unzReadCurrentFile(zip_.get(), &bytes[found], static_cast<unsigned>(count));
+      if (read < 0) throw Error(place, "cannot be decompressed", kDamagedArchive);
+      if (read == 0) break;
+      found += static_cast<std::size_t>(read);
+    }
+    return found;
+  }
+
+  /// Throws Error if the array exceeds most_inflated(), or has another size or checksum than the
+  /// archive says.
+  [[nodiscard]] std::vector<std::byte> inflated(const NpzArray& array) const {
+    const std::string place = place_of(array.name);
+    const std::uint64_t size = array.info.uncompressed_size;
+    const std::uint64_t stored = array.info.compressed_size;
+    if (const std::uint64_t most = most_inflated(stored); size > most) {
+      throw Error(
+          place,
+          fmt::format("has {} bytes in {}, and at most {} are read of so few", size, stored, most),
+          "save it uncompressed, with numpy.savez");
+    }
+    if (size / kMostDeflateRatio > stored) {
+      throw Error(place, "is smaller than any compression makes it", kDamagedArchive);
+    }
+    open_member(array);
+    std::vector<std::byte> bytes(size);
+    const std::size_t found = read_member(bytes, place);
+    if (found != size || unzCloseCurrentFile(zip_.get()) != UNZ_OK) {
+      throw Error(place, "differs from its size or checksum", kDamagedArchive);
+    }
+    return bytes;
+  }
+
   InputFile file_;
+  std::unique_ptr<void, int (*)(unzFile)> zip_;
   std::vector<NpzArray> arrays_;
   bool has_npy_ = false;
   bool is_workbook_ = false;

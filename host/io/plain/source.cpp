@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "io/hdf5/stored_frames.h"
-#include "io/layout_note.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
+#include "pillarfield/layout_note.h"
 
 namespace pillarfield {
 namespace {

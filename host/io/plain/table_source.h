@@ -11,9 +11,6 @@
 
 namespace pillarfield {
 
-/// Most readings of a table: 512 MiB of them.
-inline constexpr std::size_t kMostTableReadings = std::size_t{1} << 27U;
-
 /// Readings as an array: of uint16 if all are whole numbers from 0 to 65535, else of float32.
 [[nodiscard]] std::unique_ptr<NumberArray> array_of(const std::vector<float>& readings,
                                                     std::vector<std::uint64_t> shape,

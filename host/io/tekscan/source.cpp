@@ -7,9 +7,9 @@
 
 #include "io/file_source.h"
 #include "io/frame_source.h"
-#include "io/layout_note.h"
 #include "io/tekscan/parser.h"
 #include "pillarfield/error.h"
+#include "pillarfield/layout_note.h"
 #include "skin/pillar_sensels.h"
 
 namespace pillarfield {

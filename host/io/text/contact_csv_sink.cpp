@@ -81,7 +81,7 @@ SinkFormat contact_csv_format() {
   return {.kind = OutputKind::contacts,
           .extensions = {".csv"},
           .content = "is a table of contacts",
-          .recognises = [](std::string_view head) { return head.starts_with(kContactCsvHead); },
+          .begins = kContactCsvHead,
           .create = create_sink<ContactCsvSink>};
 }
 

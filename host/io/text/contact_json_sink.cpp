@@ -125,7 +125,7 @@ SinkFormat contact_json_format() {
   return {.kind = OutputKind::contacts,
           .extensions = {".json"},
           .content = "is a list of contacts",
-          .recognises = [](std::string_view head) { return head.starts_with(kContactJsonHead); },
+          .begins = kContactJsonHead,
           .create = create_sink<JsonSink>};
 }
 

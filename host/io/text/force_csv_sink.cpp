@@ -79,7 +79,7 @@ SinkFormat force_csv_format() {
   return {.kind = OutputKind::forces,
           .extensions = {".csv"},
           .content = "is a table of forces",
-          .recognises = [](std::string_view head) { return head.starts_with(kForceCsvHead); },
+          .begins = kForceCsvHead,
           .create = create_sink<ForceCsvSink>};
 }
 

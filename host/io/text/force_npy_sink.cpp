@@ -113,11 +113,8 @@ SinkFormat force_npy_format() {
   return {.kind = OutputKind::forces,
           .extensions = {".npy"},
           .content = "is an array of forces",
-          .recognises =
-              [](std::string_view head) {
-                return head.starts_with(kNpyMagic) &&
-                       head.find(kNpyFields) != std::string_view::npos;
-              },
+          .begins = kNpyMagic,
+          .holds = kNpyFields,
           .create = create_sink<NpySink>};
 }
 

@@ -40,7 +40,6 @@ class RingReader {
   [[nodiscard]] std::uint64_t invalid() const { return invalid_; }
   /// The layout of the latest ring of this content that did not fit.
   [[nodiscard]] const std::optional<RingLayout>& other() const { return other_; }
-  void clear_counts() { overrun_ = invalid_ = 0; }
 
  private:
   [[nodiscard]] bool attach();

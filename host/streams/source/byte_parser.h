@@ -44,7 +44,6 @@ class ByteParser {
 
   /// Runs of bytes that are not a packet.
   [[nodiscard]] virtual std::uint64_t invalid() const = 0;
-  virtual void clear_counts() = 0;
   /// Shape of the latest packets that are sound, but of other frames than those of prepare().
   [[nodiscard]] virtual std::optional<FrameShape> other() const { return std::nullopt; }
   /// Reason why many bytes held no packet, for the user who waits for one; empty: unknown.

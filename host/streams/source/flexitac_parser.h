@@ -40,7 +40,6 @@ class FlexitacParser final : public ByteParser {
   bool next(Packet& packet) override;
   void finish() override;
   [[nodiscard]] std::uint64_t invalid() const override { return invalid_; }
-  void clear_counts() override { invalid_ = 0; }
   [[nodiscard]] std::string complaint() const override;
 
   static constexpr std::uint8_t kProof = 4;

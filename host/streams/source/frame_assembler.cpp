@@ -81,15 +81,15 @@ void FrameAssembler::add(const Packet& packet) {
   if (began_anew(header, packet.arrived)) restart();
   ended_ = false;
   last_packet_ = packet.arrived;
-  if (header.sequence < next_.value_or(quiet_until_)) {
-    if (next_ && header.sequence >= quiet_until_) count_late(header);
-    return;
+  if (header.sequence < next_.value_or(0)) {
+    count_late(header);
+  } else {
+    add_to_frame(packet);
   }
-  add_to_frame(packet);
 }
 
 bool FrameAssembler::began_anew(const PillarfieldPacket& header, Time arrived) const {
-  const std::uint64_t expected = next_.value_or(quiet_until_);
+  const std::uint64_t expected = next_.value_or(0);
   const std::uint64_t sequence = header.sequence;
   if (sequence >= expected) return next_ && sequence - expected > kFarAhead;
   const std::uint64_t back = expected - sequence;
@@ -102,7 +102,7 @@ bool FrameAssembler::began_anew(const PillarfieldPacket& header, Time arrived) c
 void FrameAssembler::restart() {
   give_up();
   next_.reset();
-  quiet_until_ = highest_ = 0;
+  highest_ = 0;
   history_.clear();
   ++epoch_;
   ++counts_.restarts;
@@ -218,13 +218,6 @@ std::optional<FrameAssembler::Time> FrameAssembler::deadline() const {
   const Time two_intervals(std::llround(std::min(2 * interval_ns_, 1e9)));
   // A stream that goes on gives frames up without the deadline.
   return last_packet_ + std::max<Time>(two_intervals, interval_ns_ == 0 ? 100ms : 20ms);
-}
-
-void FrameAssembler::discard() {
-  for (Slot& slot : slots_) slot.used = false;
-  if (next_) quiet_until_ = std::max(*next_, highest_ + 1);
-  next_.reset();
-  listening_ = false;
 }
 
 bool FrameAssembler::pop(StreamedFrame& frame) {

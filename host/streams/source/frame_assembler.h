@@ -86,8 +86,8 @@ enum class PacketOrder : std::uint8_t {
 ///
 /// An incomplete frame is given up when a packet of a later frame shows that no more will come
 /// (PacketOrder), or after two frame intervals without a packet. It is delivered if one of its
-/// packets came, and lost otherwise. A stream that starts in the middle of a frame, or after
-/// discard(), does not count that frame. Allocates only at construction.
+/// packets came, and lost otherwise. A stream that starts in the middle of a frame does not count
+/// that frame. Allocates only at construction.
 class FrameAssembler {
  public:
   using Time = std::chrono::nanoseconds;
@@ -106,9 +106,6 @@ class FrameAssembler {
 
   /// Gives up all frames under way.
   void give_up();
-
-  /// Forgets the frames under way, and does not count those up to the next packet.
-  void discard();
 
   [[nodiscard]] const FrameShape& shape() const { return shape_; }
   /// Shape of the latest packet that is sound, but of other frames.
@@ -158,10 +155,9 @@ class FrameAssembler {
 
   std::optional<std::uint64_t> next_;  ///< the oldest frame neither delivered nor lost
   std::uint64_t highest_ = 0;          ///< sequence of this session
-  std::uint64_t quiet_until_ = 0;      ///< packets of frames before are not counted
   std::uint64_t epoch_ = 0;
   std::uint64_t delivered_epoch_ = 0;
-  bool listening_ = false;  ///< a frame began since construction or discard()
+  bool listening_ = false;  ///< a frame began since construction
   bool ended_ = false;      ///< the sensor said so
   std::uint64_t released_ = 0;
   Time last_packet_{0};

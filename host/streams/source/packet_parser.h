@@ -29,7 +29,6 @@ class PacketParser final : public ByteParser {
 
   void finish() override { finished_ = true; }
   [[nodiscard]] std::uint64_t invalid() const override { return invalid_; }
-  void clear_counts() override { invalid_ = 0; }
   [[nodiscard]] std::optional<FrameShape> other() const override { return other_; }
   [[nodiscard]] std::string complaint() const override;
 

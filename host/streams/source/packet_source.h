@@ -35,23 +35,19 @@ class PacketSource {
   /// Allocates the memory for frames of this shape; the last packet received stays valid.
   virtual void prepare(const FrameShape& /*shape*/) {}
 
-  /// True if the sender waits for the reader, as with a pipe: packets that wait are not outdated.
-  [[nodiscard]] virtual bool holds_sender_back() const { return false; }
-
-  /// True if anyone may send to it: then frames of another size need not be the sensor's.
+  /// Whether anyone may send to it: then frames of another size need not be the sensor's.
   [[nodiscard]] virtual bool is_open_to_all() const { return false; }
 
   /// Reason why bytes but no packet came, for the user who waits; empty: unknown.
   [[nodiscard]] virtual std::string complaint() const { return {}; }
 
-  /// Counts since clear_counts().
+  /// Counts since the source was opened.
   struct Counts {
     std::uint64_t invalid = 0;             ///< no packets
     std::uint64_t overrun = 0;             ///< packets lost because nobody received them in time
     std::optional<FrameShape> other = {};  ///< of frames refused since prepare(), the latest
   };
   [[nodiscard]] virtual Counts counts() const = 0;
-  virtual void clear_counts() = 0;
 };
 
 /// Opens a stream of the frames of a source: waits for its first frame. Null if options.stop gave

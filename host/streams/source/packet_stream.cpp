@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
 #include "pillarfield/error.h"
@@ -12,13 +11,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using std::chrono::nanoseconds;
-
-/// Processor time of this thread: a busy computer does not use it up.
-nanoseconds thread_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::chrono::seconds(time.tv_sec) + nanoseconds(time.tv_nsec);
-}
 
 /// A packet with its bytes.
 struct KeptPacket {
@@ -111,7 +103,6 @@ class PacketStream final : public FrameStream {
   [[nodiscard]] SenselType sensel_type() const override { return assembler_.shape().type; }
   [[nodiscard]] const Calibration& calibration() const override { return calibration_; }
   [[nodiscard]] StreamHealth health() const override;
-  void discard_waiting() override;
   [[nodiscard]] Arrival next(StreamedFrame& frame, nanoseconds timeout) override;
 
  private:
@@ -146,23 +137,6 @@ Arrival PacketStream::receive(Packet& packet, nanoseconds timeout) {
   const KeptPacket& kept = first_[next_first_++];
   packet = {kept.header, kept.bytes, kept.arrived};
   return Arrival::arrived;
-}
-
-void PacketStream::discard_waiting() {
-  if (source_->holds_sender_back()) return;
-  const StreamHealth before = health();
-  const nanoseconds until = thread_time() + 200ms;  // for a sensor that is faster than this loop
-  StreamedFrame frame(sensel_type(), skin_);
-  Packet packet;
-  do {
-    while (assembler_.pop(frame)) {
-    }
-    if (receive(packet, 0ns) != Arrival::arrived) break;
-    assembler_.add(packet);
-  } while (thread_time() < until);
-  assembler_.discard();
-  assembler_.set_counts(before);
-  source_->clear_counts();
 }
 
 bool PacketStream::pop(StreamedFrame& frame) {

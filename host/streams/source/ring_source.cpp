@@ -15,7 +15,6 @@ class RingSource final : public PacketSource {
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   [[nodiscard]] StoredSkin stated(const Packet& packet) const override;
   [[nodiscard]] Counts counts() const override;
-  void clear_counts() override { reader_.clear_counts(); }
 
  private:
   RingReader reader_;

@@ -63,7 +63,6 @@ class SerialSource final : public PacketSource {
   void prepare(const FrameShape& shape) override { parser_->prepare(shape); }
   [[nodiscard]] std::string complaint() const override;
   [[nodiscard]] Counts counts() const override { return {parser_->invalid(), 0, parser_->other()}; }
-  void clear_counts() override { parser_->clear_counts(); }
 
  private:
   void leave();

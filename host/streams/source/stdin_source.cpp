@@ -14,9 +14,7 @@ class StdinSource final : public PacketSource {
  public:
   [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
   void prepare(const FrameShape& shape) override { parser_.prepare(shape); }
-  [[nodiscard]] bool holds_sender_back() const override { return true; }
   [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0, parser_.other()}; }
-  void clear_counts() override { parser_.clear_counts(); }
   [[nodiscard]] std::string complaint() const override { return parser_.complaint(); }
 
  private:

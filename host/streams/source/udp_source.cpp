@@ -38,7 +38,6 @@ class UdpSource final : public PacketSource {
     if (counts_.invalid < kMany) return {};
     return fmt::format("{} datagrams came, no packet", counts_.invalid);
   }
-  void clear_counts() override;
 
  private:
   using Control = std::array<std::byte, CMSG_SPACE(sizeof(std::uint32_t))>;
@@ -58,7 +57,6 @@ class UdpSource final : public PacketSource {
   std::chrono::nanoseconds arrived_{0};
   Counts counts_;
   std::uint32_t drops_ = 0;  ///< of the socket, as the kernel counts them
-  bool ignores_next_drops_ = false;
 };
 
 UdpSource::UdpSource(int socket) : socket_(socket), memory_(kDatagrams * kDatagramBytes) {
@@ -106,22 +104,15 @@ bool UdpSource::take(std::size_t i, Packet& packet) {
   return true;
 }
 
+/// The kernel tells of drops with the next datagram.
 void UdpSource::count_drops(msghdr& message) {
   for (cmsghdr* each = CMSG_FIRSTHDR(&message); each != nullptr;
        each = CMSG_NXTHDR(&message, each)) {
     if (each->cmsg_level != SOL_SOCKET || each->cmsg_type != SO_RXQ_OVFL) continue;
     std::uint32_t drops = 0;
     std::memcpy(&drops, CMSG_DATA(each), sizeof drops);
-    const std::uint32_t more = drops - std::exchange(drops_, drops);
-    if (!ignores_next_drops_) counts_.overrun += more;
+    counts_.overrun += drops - std::exchange(drops_, drops);
   }
-  ignores_next_drops_ = false;  // Without a report nothing was dropped before this datagram.
-}
-
-/// The kernel tells of drops with the next datagram.
-void UdpSource::clear_counts() {
-  counts_ = {};
-  ignores_next_drops_ = true;
 }
 
 std::unique_ptr<FrameStream> open_udp(const std::string& rest, const LiveSourceOptions& options) {

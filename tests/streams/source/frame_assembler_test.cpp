@@ -217,20 +217,6 @@ TEST(FrameAssembler, TimeNeverGoesBack) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(run.times_s[i], expected[i], 1e-9);
 }
 
-TEST(FrameAssembler, DiscardForgetsWithoutCounting) {
-  AssemblerRun run(kShape);
-  run.add(frame_packet(kShape, 3));
-  run.add(row_packets(kShape, 4, 2)[0]);
-  run.assembler.discard();
-  run.add(row_packets(kShape, 4, 2)[1]);
-  run.add(row_packets(kShape, 90, 2)[1]);
-  run.add(frame_packet(kShape, 91));
-  run.add(frame_packet(kShape, 93));
-  run.add(frame_packet(kShape, 94));
-  EXPECT_EQ(run.sequences, (Sequences{3, 91, 93, 94}));
-  expect_counts(run.health(), {.frames = 4, .lost = 1});
-}
-
 TEST(FrameAssembler, AllocatesNothingForAFrame) {
   std::vector<SentPacket> packets;
   for (std::uint64_t i = 0; i < 50; ++i) {

@@ -1,10 +1,14 @@
 #pragma once
 
-#include <cmath>
+#include <imgui_internal.h>
+
+#include <initializer_list>
 #include <memory>
-#include <vector>
+#include <string>
+#include <variant>
 
 #include "viewer/app/input/actions.h"
+#include "viewer/app/input/gui_input.h"
 #include "viewer/app/input/shortcuts.h"
 
 namespace pillarfield::viewer {
@@ -50,14 +54,14 @@ class FakeProducer final : public FieldProducer {
 
 /// The state of a window of 1000 x 700 pixels with a picture of 800 x 600.
 struct FakeAppState {
-  FilePlayer player;
+  std::unique_ptr<Player> player;
   AppState state;
-  FieldPlace place{{0, 0, 800, 600}, &player.info()};
+  FieldPlace place{{0, 0, 800, 600}, &player->info()};
   PendingActions pending;
 
   explicit FakeAppState(SkinLayout layout = SkinLayout::pillars)
-      : player(std::make_unique<FakeProducer>(layout)) {
-    state.player = &player;
+      : player(play_file(std::make_unique<FakeProducer>(layout))) {
+    state.player = player.get();
     take_field(state, FakeProducer(layout).produce(0));
     reset_view(state, place);
   }
@@ -66,9 +70,62 @@ struct FakeAppState {
   /// Window pixel of the centre of a pillar.
   [[nodiscard]] Vec2 pixel(std::uint32_t row, std::uint32_t col) const {
     const Vec2 corner = corner_of(place, row, col);
-    const double half = 0.5 * player.info().skin.pillar_pitch_mm();
+    const double half = 0.5 * player->info().skin.pillar_pitch_mm();
     return pixel_of(place, state.settings, {corner.x + half, corner.y - half}).value();
   }
+};
+
+/// An ImGui window without a display, whose widgets are pressed by their names.
+class FakeGui {
+ public:
+  FakeGui() : context_(ImGui::CreateContext()) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = ImVec2(500, 1600);
+    unsigned char* pixels = nullptr;
+    io.Fonts->GetTexDataAsAlpha8(&pixels, nullptr, nullptr);
+  }
+  ~FakeGui() { ImGui::DestroyContext(context_); }
+  FakeGui(const FakeGui&) = delete;
+  FakeGui& operator=(const FakeGui&) = delete;
+
+  /// Draws a frame; returns its words.
+  template <class Draw>
+  std::string frame(const Draw& draw) {
+    input.begin_frame(0.02);
+    ImGui::NewFrame();
+    ImGui::SetNextWindowPos(ImVec2(0, 0));
+    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+    ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
+    ImGui::LogToBuffer();
+    draw();
+    const std::string words = context_->LogBuffer.c_str();
+    ImGui::LogFinish();
+    ImGui::End();
+    ImGui::Render();
+    return words;
+  }
+
+  /// Presses the widget at the end of a path of ImGui's names and numbers.
+  using Name = std::variant<const char*, int>;
+  template <class Draw>
+  void press(std::initializer_list<Name> path, const Draw& draw) {
+    frame(draw);
+    ImGuiID id = ImGui::FindWindowByName("panel")->ID;
+    for (const Name& name : path) {
+      const int* const number = std::get_if<int>(&name);
+      id = number != nullptr ? ImHashData(number, sizeof *number, id)
+                             : ImHashStr(std::get<const char*>(name), 0, id);
+    }
+    ImGui::ActivateItem(id);
+    frame(draw);
+    frame(draw);
+  }
+
+  GuiInput input;
+
+ private:
+  ImGuiContext* context_;
 };
 
 }  // namespace pillarfield::viewer

@@ -18,7 +18,7 @@ namespace {
 /// All state that a shortcut may change, for comparison.
 auto state_of(const FakeAppState& fake) {
   const AppState& state = fake.state;
-  const PlayerState player = fake.player.state();
+  const PlayerState player = fake.player->state();
   const PendingActions& pending = fake.pending;
   return std::tuple(state.settings, state.pins.size(), state.selection.has_value(), state.show_help,
                     state.show_panels, player.frame, player.playing, player.loops, player.follows,
@@ -31,7 +31,7 @@ auto state_of(const FakeAppState& fake) {
 void set_up(FakeAppState& fake, Quantity quantity) {
   show_quantity(fake.state, quantity);
   set_range(fake.state, {0, 7.5f});
-  fake.player.seek(50);
+  fake.player->seek(50);
   toggle_pin(fake.state, {3, 4});
   select_pillars(fake.state, {1, 2, 3, 4});
   zoom(fake.state.settings.view, fake.place.plot(fake.state.settings), {300, 300}, 2);
@@ -84,16 +84,16 @@ TEST(Shortcuts, OthersDoNothing) {
 
 TEST(Shortcuts, StepsGoOnAndBack) {
   FakeAppState fake;
-  fake.player.set_loop(false);
-  fake.player.seek(50);
+  fake.player->set_loop(false);
+  fake.player->seek(50);
   dispatch({GLFW_KEY_RIGHT, {true, false}}, fake.command());
-  EXPECT_EQ(fake.player.state().frame, 60u);
+  EXPECT_EQ(fake.player->state().frame, 60u);
   dispatch({GLFW_KEY_LEFT, {}}, fake.command());
-  EXPECT_EQ(fake.player.state().frame, 59u);
+  EXPECT_EQ(fake.player->state().frame, 59u);
   dispatch({GLFW_KEY_END, {}}, fake.command());
-  EXPECT_EQ(fake.player.state().frame, FakeProducer::kFrames - 1);
+  EXPECT_EQ(fake.player->state().frame, FakeProducer::kFrames - 1);
   dispatch({GLFW_KEY_HOME, {}}, fake.command());
-  EXPECT_EQ(fake.player.state().frame, 0u);
+  EXPECT_EQ(fake.player->state().frame, 0u);
 }
 
 TEST(Shortcuts, EscapeClosesTheHelpFirstAndStopsWritingBeforeItClears) {

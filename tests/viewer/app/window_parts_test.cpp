@@ -152,17 +152,10 @@ TEST(Redraws, AnIdleWindowRestsForEver) {
   EXPECT_EQ(draw_all(redraws, settles), 1);
   EXPECT_FALSE(redraws.rest(settles));
   EXPECT_FALSE(redraws.due(1e6));
-}
-
-TEST(Redraws, AFieldIsDrawnOnceAndInputAFewTimes) {
-  Redraws redraws;
-  draw_all(redraws, 0);
   redraws.field();
-  EXPECT_EQ(draw_all(redraws, 10), 1);
-  redraws.input(20);
-  const int frames = draw_all(redraws, 20);
-  EXPECT_GE(frames, 2);
-  EXPECT_LT(frames, 10);
+  EXPECT_EQ(draw_all(redraws, 1e6), 1);
+  redraws.input(2e6);
+  EXPECT_GE(draw_all(redraws, 2e6), 2);
 }
 
 TEST(Redraws, ANoticeGoesAway) {

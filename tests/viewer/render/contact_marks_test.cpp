@@ -86,21 +86,6 @@ TEST(ContactMarks, HeaviestFirstAndNoneOutOfSight) {
   EXPECT_EQ(contact_marks(contacts, Ground(nullptr, source(), near, kPlot)).size(), 1U);
 }
 
-TEST(ContactMarks, ASinglePillarAtTheNoiseHasNone) {
-  // The shear of the pillar is 20 times its normal force, both small beside the other contact.
-  const ShownContacts contacts =
-      contacts_of({{{4, 8, 22, 28}, 1}, {{12, 13, 2, 3}, 0.0004F, 0.008F, 0}});
-  ASSERT_EQ(contacts.found.contacts.size(), 2U);
-  const auto marks = contact_marks(contacts, Ground(nullptr, source(), top_settings(), kPlot));
-  ASSERT_EQ(marks.size(), 1U);
-  EXPECT_EQ(marks.front().words, "1  24.0 N");
-  EXPECT_EQ(contact_marks(contacts_of({{{4, 8, 22, 28}, 1}, {{12, 13, 2, 3}, 0.1F}}),
-                          Ground(nullptr, source(), top_settings(), kPlot))
-                .size(),
-            2U)
-      << "a single pillar above the noise";
-}
-
 TEST(ContactMarks, OnACylinderFollowTheSurface) {
   RenderSettings settings = top_settings();
   settings.surface = {SurfaceKind::cylinder, 10};

@@ -130,20 +130,23 @@ TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
   EXPECT_EQ(in_place.memory().bytes_copied(), 0U);
 }
 
-TEST(HeatMap, ReadInPlaceFollowsTheMemory) {
-  const MadeUpField field = varied_field();
+TEST(BareSensels, PlacesWithoutASenselAreBlank) {
+  const MadeUpField field(2, 4, [](std::uint32_t, std::uint32_t) {
+    return MadeUpPillar{0, 0, 0, 0};
+  });
+  MadeUpField bare = field.without_pillars();
   Drawing drawing;
-  if (!drawing.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
-  const RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
-  const Pixels before = drawing.draw(field, settings, kMapWidth, kMapHeight);
-  // A solver writes into the imported memory, without a copy.
-  auto* const normal = const_cast<float*>(field.shown().forces.normal.data());
-  std::fill(normal, normal + field.shown().forces.normal.size(), 1.0F);
-  const Pixels after = drawing.draw(field, settings, kMapWidth, kMapHeight);
-  EXPECT_NE(before.rgba, after.rgba);
-  const PixelPlace place = middle_of(field, settings, kMapWidth, kMapHeight, 3, 3);
-  EXPECT_EQ(colour_at(after, place.x, place.y), table_of(settings.map).back());
-  EXPECT_EQ(drawing.memory().bytes_copied(), 0U);
+  const RenderSettings settings = bare_settings(bare, kMapWidth, kMapHeight);
+  SourceInfo source = bare.source();
+  source.calibration.mask = {1, 1, 2, 2, 1, 0, 2, 1};
+  const Pixels pixels = drawing.draw(bare.shown(), source, settings, kMapWidth, kMapHeight);
+  const Colour idle = colour_of(Special::idle, settings.theme);
+  const Colour paper = background_of(settings.theme);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const PixelPlace place = middle_of(bare, settings, kMapWidth, kMapHeight, i / 4, i % 4);
+    const bool is_absent = source.calibration.mask[i] == kAbsent;
+    EXPECT_EQ(colour_at(pixels, place.x, place.y), is_absent ? paper : idle) << i;
+  }
 }
 
 }  // namespace

@@ -25,25 +25,7 @@ ShownField rising_field(std::uint64_t index) {
                        {{{2, 9, 12, 14}, force, 0.5F * force, -1}, {{15, 17, 3, 29}}});
 }
 
-void expect_equal(const CurvePoint& point, const SelectionSums& sums) {
-  EXPECT_FLOAT_EQ(point.normal, static_cast<float>(sums.normal));
-  EXPECT_FLOAT_EQ(point.shear_x, static_cast<float>(sums.shear_x));
-  EXPECT_FLOAT_EQ(point.shear_y, static_cast<float>(sums.shear_y));
-  EXPECT_NEAR(point.torque, sums.moment_z, 1e-4);
-  EXPECT_FLOAT_EQ(point.centre_x_mm, static_cast<float>(sums.centre_x_mm));
-  EXPECT_FLOAT_EQ(point.centre_y_mm, static_cast<float>(sums.centre_y_mm));
-}
-
-TEST(CurvePoint, IsTheSumOfTheSelection) {
-  for (const PillarRect& rect : {kWholeSkin, PillarRect{3, 16, 5, 29}, PillarRect{2, 3, 12, 13},
-                                 PillarRect{10, 400, 0, 400}}) {
-    expect_equal(curve_point(rising_field(4), rect, kCurvePitch),
-                 sums_over(rising_field(4), rect, kCurvePitch));
-  }
-  ShownField sensels = rising_field(4);
-  sensels.forces.shear_x = sensels.forces.shear_y = {};
-  expect_equal(curve_point(sensels, kWholeSkin, kCurvePitch),
-               sums_over(sensels, kWholeSkin, kCurvePitch));
+TEST(CurvePoint, OfAnIdleSkinHasNoCentre) {
   const CurvePoint idle = curve_point(touched_field(3, 20, 30, {}), kWholeSkin, kCurvePitch);
   EXPECT_EQ(idle.normal, 0);
   EXPECT_TRUE(std::isnan(idle.centre_x_mm));
@@ -167,6 +149,12 @@ TEST(PeakHold, KeepsTheLargestNormalForceOfEachPillar) {
   EXPECT_EQ(held->forces.shear_x[2 * 30 + 12], 0);
   EXPECT_EQ(held->index, 5U);
   EXPECT_NE(held->pages.data(), nullptr);
+  ShownField sensels = rising_field(5);
+  sensels.forces.shear_x = sensels.forces.shear_y = {};
+  PeakHold of_sensels;
+  of_sensels.add(sensels.forces);
+  EXPECT_TRUE(of_sensels.field(sensels)->forces.shear_x.empty());
+  EXPECT_EQ(of_sensels.field(sensels)->forces.status[2 * 30 + 12], status::kSensel1);
   peaks.reset();
   peaks.add(rising_field(1).forces);
   EXPECT_EQ(peaks.field(rising_field(1))->forces.normal[2 * 30 + 12], 2);

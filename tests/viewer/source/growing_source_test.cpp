@@ -41,18 +41,6 @@ TEST(GrowingFile, ReportsEachChangeOnce) {
   EXPECT_FALSE(file.may_have_changed()) << "a file that is away is nothing new";
 }
 
-TEST(GrowingFile, IsCheckedAgainWithinTheTimeResolution) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "a.h5";
-  write_bytes(path, "1");
-  const auto time = std::filesystem::file_time_type::clock::now() + std::chrono::hours(1);
-  std::filesystem::last_write_time(path, time);
-  GrowingFile file(path);
-  write_bytes(path, "2");
-  std::filesystem::last_write_time(path, time);
-  EXPECT_TRUE(file.may_have_changed());
-}
-
 TEST(GrowingFile, IsOpenedAgainUntilItsWriterLetsIt) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";

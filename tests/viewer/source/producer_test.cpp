@@ -118,26 +118,6 @@ TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {
                Stopped);
 }
 
-TEST(SceneProducer, WithoutNoiseThereIsNoUncertainty) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "quiet.toml";
-  const std::string common = "[skin]\nsize_mm = [20, 20]\n[time]\nframes = 2\nrate_hz = 50\n";
-  const std::string contact =
-      "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 5\nposition_mm = "
-      "[0, 0]\n"
-      "load_n = 5\n";
-  write_bytes(path, common + contact);
-  const auto producer = open_producer(path, {});
-  EXPECT_FALSE(producer->info().has_uncertainty);
-  for (const std::string& warning : producer->info().warnings) {
-    EXPECT_EQ(warning.find("every pillar"), std::string::npos);
-  }
-  const ShownField field = producer->produce(1);
-  EXPECT_TRUE(field.forces.uncertainty[Uncertainty::shear_x].empty());
-  EXPECT_EQ(field.time_s, 0.02);
-  expect_angles(field.forces);
-}
-
 TEST(SceneProducer, TheBaselineIsFixedAndThePaperHasNoUncertainty) {
   const TemporaryDirectory directory;
   const auto path = directory / "paper.toml";
@@ -273,38 +253,6 @@ TEST(SceneProducer, OpensAgainAndHasATruth) {
   EXPECT_FALSE(truth->open_truth);
 }
 
-TEST(RecordingProducer, ReportsMissingNoise) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "r.h5";
-  Calibration tared;
-  tared.tare.assign(small_skin().sensels(), 0);
-  write_recording(path, tared, 0.01);
-  const auto producer = open_producer(path, {});
-  for (const std::string& warning : producer->info().warnings) {
-    EXPECT_EQ(warning.find("every pillar"), std::string::npos);
-  }
-  EXPECT_FALSE(producer->info().has_uncertainty);
-  EXPECT_NEAR(producer->info().rate_hz, 100, 1e-6);
-}
-
-TEST(RecordingProducer, ReadsTekscanExports) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "movie.asf";
-  write_bytes(path,
-              "DATA_TYPE MOVIE\nVERSION Some System 1.0\nROWS 2\nCOLS 4\nROW_SPACING 0.5 mm\n"
-              "COL_SPACING 0.5 mm\nNOISE_THRESHOLD 3\nSECONDS_PER_FRAME 0.5\nSTART_FRAME 1\n"
-              "END_FRAME 2\nUNITS raw\nASCII_DATA @@\n\nFrame 1\n1,2,3,4\n5,6,7,8\n\n"
-              "Frame 2\n9,8,7,6\n5,4,3,2\n@@\n");
-  const auto producer = open_producer(path, {.read = {.layout = SkinLayout::pillars}});
-  EXPECT_EQ(producer->info().kind, "Tekscan ASCII");
-  EXPECT_TRUE(has_all(producer->info().warnings.back(), {"pillars are in contact", "tare"}));
-  EXPECT_EQ(producer->info().rate_hz, 2);
-  EXPECT_EQ(producer->produce(1).forces.cols, 2U);
-  const ShownField field = open_producer(path, {})->produce(1);
-  EXPECT_EQ(field.forces.cols, 4U);
-  EXPECT_EQ(static_cast<const std::uint8_t*>(field.raw.data)[0], 9);
-}
-
 TEST(ForceFileProducer, ShowsWhatTheFileHasAndAngles) {
   for (const bool uncertainty : {false, true}) {
     const TemporaryDirectory directory;
@@ -342,19 +290,16 @@ ShownField passing(std::uint64_t index) {
                     : touched_field(index, 20, 30, {left, right});
 }
 
-/// Writes the fields, with contacts of at least two pillars or without contacts.
-void write_passing(const std::filesystem::path& path, bool with_contacts) {
+/// Writes the fields, with contacts of at least two pillars.
+void write_passing(const std::filesystem::path& path) {
   ForceFileInfo info = {20, 30, 1.3, "direct", "a device", "press.h5", false, false};
-  const ContactOptions options{.minimum_pillars = 2};
-  if (with_contacts) info.contacts = options;
+  info.contacts = ContactOptions{.minimum_pillars = 2};
   const auto sink = create_force_sink(path, info);
-  ContactTracker tracker(info.element_pitch_mm, options);
+  ContactTracker tracker(info.element_pitch_mm, *info.contacts);
   for (std::uint64_t index = 0; index < kFrames; ++index) {
     const ShownField field = passing(index);
     const FrameContacts& found = tracker.update(field.forces, field.time_s);
-    sink->append({.forces = field.forces,
-                  .contacts = with_contacts ? &found : nullptr,
-                  .time_s = field.time_s});
+    sink->append({.forces = field.forces, .contacts = &found, .time_s = field.time_s});
   }
   sink->finish();
 }
@@ -367,7 +312,7 @@ std::vector<std::uint64_t> ids_of(const ShownContacts& contacts) {
 
 TEST(ForceFileProducer, ContactsOfTheFileKeepTheirIdsInWhateverOrderTheyAreSeen) {
   const TemporaryDirectory directory;
-  write_passing(directory / "c.h5", true);
+  write_passing(directory / "c.h5");
   const auto producer = open_producer(directory / "c.h5", {});
   const auto at = [&](std::uint64_t index) {
     return producer->contacts_of(producer->produce(index));
@@ -380,18 +325,6 @@ TEST(ForceFileProducer, ContactsOfTheFileKeepTheirIdsInWhateverOrderTheyAreSeen)
   EXPECT_EQ(contacts.extents[1].row_begin, 12U);
   EXPECT_EQ(contacts.extents[1].col_begin, 17U);
   EXPECT_EQ(contacts.heaviest, (std::vector<std::size_t>{1, 0}));
-}
-
-TEST(ForceFileProducer, WithoutContactsTheyAreFollowedAsTheyAreSeen) {
-  const TemporaryDirectory directory;
-  write_passing(directory / "n.h5", false);
-  const auto producer = open_producer(directory / "n.h5", {});
-  const auto at = [&](std::uint64_t index) {
-    return ids_of(producer->contacts_of(producer->produce(index)));
-  };
-  EXPECT_EQ(at(2), (std::vector<std::uint64_t>{1}));
-  EXPECT_EQ(at(3), (std::vector<std::uint64_t>{2, 1}));
-  EXPECT_EQ(at(0), (std::vector<std::uint64_t>{1, 2}));
 }
 
 TEST(FieldProducer, FieldsStayWhateverTheSource) {
@@ -430,6 +363,65 @@ TEST(FieldProducer, RejectsFilesThatItCannotShow) {
   EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_producer(empty, {})); }),
                       {"empty.h5", "no frames"}));
   EXPECT_THROW(static_cast<void>(open_producer(kDemo, {.device = "no such device"})), Error);
+}
+
+/// The frames of a scene solved in order, with the prior carried over.
+std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::uint64_t frames) {
+  const Simulator simulator(load_scene(path));
+  const SolverPlan plan = plan_of(simulator);
+  Processor processor(open_device(), plan);
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  std::vector<ForceField> solved;
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    simulator.render(index, raw, truth);
+    processor.submit(raw.view());
+    solved.push_back(copy_of(processor.receive()));
+  }
+  return solved;
+}
+
+/// A ball with growing shear: the friction observed in frame 4 sharpens frame 5.
+constexpr const char* kGrowingShear =
+    "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n"
+    "[sensor]\nnoise_counts = 0.3\n[time]\nframes = 6\n"
+    "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 8\n"
+    "path = [{ time_s = 0, position_mm = [0, 0], load_n = 30 },\n"
+    "        { time_s = 0.05, position_mm = [0, 0], load_n = 3 }]\n"
+    "[[contact]]\nshape = \"sphere\"\nmotion = \"slide\"\ncontact_radius_mm = 8\n"
+    "friction = 1.9\ndirection_deg = 0\n"
+    "path = [{ time_s = 0, position_mm = [0, 0], load_n = 3 },\n"
+    "        { time_s = 0.05, position_mm = [0, 0], load_n = 30 }]\n";
+
+class FramesInOrder : public testing::Test {
+ protected:
+  FramesInOrder() { write_bytes(path_, kGrowingShear); }
+
+  TemporaryDirectory directory_;
+  std::filesystem::path path_ = directory_ / "growing.toml";
+};
+
+TEST_F(FramesInOrder, CarryThePriorOverWhilePlayed) {
+  const std::vector<ForceField> expected = solved_in_order(path_, 4);
+  for (const Memory memory : {Memory::automatic, Memory::staged}) {
+    const auto producer = open_producer(path_, {.memory = memory});
+    for (std::uint64_t index = 0; index < expected.size(); ++index) {
+      expect_same_forces(producer->produce(index).forces, expected[index].view());
+    }
+  }
+}
+
+TEST_F(FramesInOrder, HaveNoPriorAfterAJump) {
+  const auto producer = open_producer(path_, {});
+  ASSERT_EQ(producer->info().notes.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().notes[0], {"jumped to", "solved alone"}));
+  const ForceField alone = copy_of(producer->produce(5).forces);
+  for (const std::uint64_t before : {0U, 3U, 5U}) {
+    static_cast<void>(producer->produce(before));
+    expect_same_forces(producer->produce(5).forces, alone.view());
+  }
+  static_cast<void>(producer->produce(4));
+  EXPECT_FALSE(std::ranges::equal(producer->produce(5).forces.normal, alone.normal));
 }
 
 TEST(FrameRate, IsOfTheMedianStep) {

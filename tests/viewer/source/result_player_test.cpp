@@ -1,6 +1,4 @@
 // Results of another program on display, read from its ring.
-#include "viewer/source/result_player.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -158,49 +156,10 @@ TEST(ResultPlayer, FindsContactsThatTheRingLacksAndTrustsNone) {
   EXPECT_EQ(found->found.contacts[0].quantities.normal_n, 8);
 }
 
-TEST(ResultPlayer, PauseFreezesThePictureNotTheSource) {
-  Program program;
-  const ShownResults shown;
-  program.send(5);
-  static_cast<void>(shown.newest());
-  shown.player.pause();
-  program.send(6);
-  shown.wait_for_results(2);
-  EXPECT_FALSE(shown.player.take());
-  EXPECT_FALSE(shown.player.state().playing);
-  shown.player.play();
-  program.send(7);
-  EXPECT_EQ(shown.newest().forces.normal[4 * kCols + 5], 7);
-  EXPECT_EQ(shown.player.statistics().produced, 3U);
-}
-
-TEST(ResultPlayer, AProgramMayStopAndStartAgain) {
-  std::optional<Program> program(std::in_place);
-  program->send(5);
-  const ShownResults shown;
-  shown.wait_for_results(1);
-  program.reset();
-  wait_till([&] { return shown.status().health.since_frame_s > 0.1; });
-  EXPECT_FALSE(shown.status().ended);
-  program.emplace();
-  program->send(6);
-  shown.wait_for_results(2);
-  const ShownField field = shown.newest();
-  EXPECT_EQ(field.forces.normal[4 * kCols + 5], 6);
-  EXPECT_EQ(shown.status().health.stream.restarts, 1U);
-  const auto points = shown.opened.curves->total(-1, 1e9, 10);
-  ASSERT_EQ(points.size(), 2U);
-  EXPECT_GT(points[1].time_s, points[0].time_s);
-}
-
-TEST(ResultPlayer, HasNoReadingsToTareOrRecord) {
+TEST(ResultPlayer, HasNoReadingsToRecord) {
   const Program program;
   const ShownResults shown;
-  LiveControl& control = *shown.player.live();
-  control.tare();
-  EXPECT_EQ(shown.status().messages, 1U);
-  EXPECT_NE(shown.status().message.find("the program that solves"), std::string::npos);
-  EXPECT_THROW(control.record("recording.h5"), Error);
+  EXPECT_THROW(shown.player.live()->record("recording.h5"), Error);
   EXPECT_THROW((void)open_sensor(ring_name(), {.producer = {.read = {.counts_per_newton = 100}}}),
                Error);
 }

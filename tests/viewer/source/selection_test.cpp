@@ -100,30 +100,6 @@ TEST(Selection, SumsAreThoseOfAPlainLoop) {
   }
 }
 
-TEST(Selection, SumsOfSenselsAreThoseOfPillarsWithoutShear) {
-  Sample sample(13, 21);
-  ShownField pillars = sample.shown();
-  ForceField unsheared = sample.forces();
-  unsheared.shear_x.assign(unsheared.elements(), 0);
-  unsheared.shear_y.assign(unsheared.elements(), 0);
-  pillars.forces = unsheared.view();
-  ShownField sensels = pillars;
-  sensels.forces.shear_x = sensels.forces.shear_y = {};
-  for (const PillarRect rect : {PillarRect{0, 13, 0, 21}, {2, 9, 5, 6}, {12, 13, 0, 21}}) {
-    const SelectionSums expected = sums_over(pillars, rect, kPitch);
-    const SelectionSums sums = sums_over(sensels, rect, kPitch);
-    EXPECT_GT(sums.normal, 0);
-    EXPECT_EQ(sums.normal, expected.normal);
-    EXPECT_EQ(sums.in_contact, expected.in_contact);
-    EXPECT_EQ(sums.peak_normal, expected.peak_normal);
-    EXPECT_EQ(sums.centre_x_mm, expected.centre_x_mm);
-    EXPECT_EQ(sums.centre_y_mm, expected.centre_y_mm);
-    EXPECT_EQ(sums.area_mm2, expected.area_mm2);
-    EXPECT_EQ(sums.saturated, expected.saturated);
-    EXPECT_EQ(sums.inconsistent, expected.inconsistent);
-  }
-}
-
 TEST(ValuesAt, ASenselHasTheReadingOfItsPlaceAndNormalForceAlone) {
   ForceField forces;
   forces.rows = 5;
@@ -175,18 +151,6 @@ TEST(Selection, CountsEveryPillarOnce) {
   EXPECT_EQ(sums.inconsistent, inconsistent);
 }
 
-TEST(Selection, PartsAddUpToTheWhole) {
-  const Sample sample(16, 16);
-  const ShownField field = sample.shown();
-  const SelectionSums whole = sums_over(field, {0, 16, 0, 16}, kPitch);
-  const SelectionSums left = sums_over(field, {0, 16, 0, 7}, kPitch);
-  const SelectionSums right = sums_over(field, {0, 16, 7, 16}, kPitch);
-  EXPECT_NEAR(whole.shear_x, left.shear_x + right.shear_x, 1e-12);
-  EXPECT_NEAR(whole.normal, left.normal + right.normal, 1e-12);
-  EXPECT_EQ(whole.in_contact, left.in_contact + right.in_contact);
-  EXPECT_EQ(whole.peak_normal, std::max(left.peak_normal, right.peak_normal));
-}
-
 TEST(Selection, ATurnToTheLeftIsPositive) {
   Sample sample(3, 3);
   ForceField& forces = sample.forces();
@@ -215,15 +179,6 @@ TEST(Selection, WithoutLoadThereIsNoCentre) {
   EXPECT_EQ(sums_over(sample.shown(), {2, 2, 0, 4}, kPitch).pillars, 0U) << "an empty rectangle";
 }
 
-TEST(Selection, PillarsOutsideAreOmitted) {
-  const Sample sample(5, 6);
-  const SelectionSums whole = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
-  const SelectionSums more = sums_over(sample.shown(), {0, 500, 0, 600}, kPitch);
-  EXPECT_EQ(more.pillars, 30U);
-  EXPECT_EQ(more.normal, whole.normal);
-  EXPECT_EQ(sums_over(sample.shown(), {7, 9, 0, 6}, kPitch).pillars, 0U);
-}
-
 TEST(Selection, ForcesThatAreNoNumbersSpoilNothing) {
   Sample sample(5, 6);
   const std::uint64_t in_contact = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch).in_contact;
@@ -243,20 +198,6 @@ TEST(Selection, ReadingsFollowThePositionsOfSensels) {
   EXPECT_EQ(values.readings[1], upper_left);
   EXPECT_EQ(values.readings[2], upper_left + stride);
   EXPECT_EQ(values.readings[3], upper_left + stride + 1);
-}
-
-TEST(Selection, ReadingsOfEveryTypeAreRead) {
-  for (const SenselType type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
-    FrameBuffer frame(type, 2, 2);
-    if (type == SenselType::u8) frame.readings<std::uint8_t>()[1] = 200;
-    if (type == SenselType::u16) frame.readings<std::uint16_t>()[1] = 200;
-    if (type == SenselType::f32) frame.readings<float>()[1] = 200;
-    const ForceField forces(1, 1);
-    ShownField field;
-    field.forces = forces.view();
-    field.raw = frame.view();
-    EXPECT_EQ(values_at(field, {0, 0}).readings, (std::array<float, 4>{200, 0, 0, 0}));
-  }
 }
 
 TEST(Selection, MissingReadingsAndUncertaintyAreMarked) {

@@ -7,12 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "glsl_types.h"
 #include "viewer/style/view.h"
-
-namespace glsl {
-#include "shaders/surface.glsl"
-}  // namespace glsl
 
 namespace pillarfield::viewer {
 namespace {
@@ -30,44 +25,11 @@ std::vector<Surface> all_surfaces() {
           {SurfaceKind::sphere, -3000}};
 }
 
-Vec2 random_point(std::mt19937& random) {
-  std::uniform_real_distribution<double> place(-120, 120);
-  const double x = place(random);
-  return {x, place(random)};
-}
-
 TEST(Surface, ACylinderWithoutRadiusIsAPlane) {
   for (const double radius : {0.0, -1e-9, 1e-9, std::nan("")}) {
     const SurfaceFrame frame = frame_at(cylinder(radius), {100, 20});
     EXPECT_EQ(length(frame.position - Vec3{100, 20, 0}), 0);
     EXPECT_EQ(frame.normal.z, 1);
-  }
-}
-
-TEST(SurfaceShader, IsTheSameFunctionInSinglePrecision) {
-  std::mt19937 random(3);
-  for (const Surface& surface : all_surfaces()) {
-    for (int i = 0; i < 500; ++i) {
-      const Vec2 at = random_point(random);
-      const SurfaceFrame frame = frame_at(surface, at);
-      const glsl::vec2 sheet{static_cast<float>(at.x), static_cast<float>(at.y)};
-      const auto [x, y, radius, kind] = shader_surface(surface);
-      const glsl::vec4 bent{x, y, radius, kind};
-      const auto distance = [](glsl::vec3 single, Vec3 exact) {
-        return length(Vec3{single.x, single.y, single.z} - exact);
-      };
-      EXPECT_LT(distance(glsl::surface_position(sheet, bent), frame.position), 5e-5);
-      const auto basis = glsl::surface_basis(sheet, bent);
-      EXPECT_LT(distance(basis.first, frame.tangent_x), 1e-5);
-      EXPECT_LT(distance(basis.second, frame.tangent_y), 1e-5);
-      EXPECT_LT(distance(basis.third, frame.normal), 1e-5);
-    }
-  }
-}
-
-TEST(SurfaceShader, TakesASurfaceWithoutARadiusAsAPlane) {
-  for (const double radius : {0.0, -1e-4, 1e-20, std::nan("")}) {
-    EXPECT_EQ(shader_surface(cylinder(radius))[3], 0);
   }
 }
 
@@ -95,23 +57,6 @@ TEST(FirstHit, FindsThePointOfEverySurface) {
         EXPECT_LE(frame.position.*axis, box.high.*axis + 1e-9);
       }
     }
-  }
-}
-
-TEST(BoxAbout, HoldsTheSkinTightly) {
-  const SkinSize skin{100, 60};
-  for (const double radius : {0.0, 10.0, 20.0, 40.0, 1000.0}) {
-    const Surface surface = cylinder(radius);
-    const Box box = box_about(skin, surface);
-    Vec3 low{1e9, 1e9, 1e9};
-    Vec3 high{-1e9, -1e9, -1e9};
-    for (int i = -500; i <= 500; ++i) {
-      const Vec3 place = frame_at(surface, {0.1 * i, i % 2 == 0 ? 30.0 : -30.0}).position;
-      low = {std::min(low.x, place.x), std::min(low.y, place.y), std::min(low.z, place.z)};
-      high = {std::max(high.x, place.x), std::max(high.y, place.y), std::max(high.z, place.z)};
-    }
-    EXPECT_LT(length(box.low - low), 0.01) << radius;
-    EXPECT_LT(length(box.high - high), 0.01) << radius;
   }
 }
 

@@ -79,27 +79,6 @@ TEST(Views, PickFindsWhatProjectShows) {
   EXPECT_GT(compared, kSituations / 2);
 }
 
-TEST(Views, ProjectShowsWhatPickFound) {
-  std::mt19937 random(2);
-  int compared = 0;
-  for (int i = 0; i < kSituations; ++i) {
-    const Situation situation = random_situation(random);
-    const Viewport& viewport = situation.viewport;
-    const Vec2 pixel{viewport.x + random_between(random, 0, viewport.width),
-                     viewport.y + random_between(random, 0, viewport.height)};
-    const auto found = picked(situation, pixel);
-    if (!found) continue;
-    EXPECT_LE(std::abs(found->x), situation.skin.width_mm / 2);
-    EXPECT_LE(std::abs(found->y), situation.skin.height_mm / 2);
-    const auto back = projected(situation, frame_at(shown_surface(situation), *found).position);
-    ASSERT_TRUE(back) << i;
-    ++compared;
-    EXPECT_NEAR(back->x, pixel.x, 1e-6) << i;
-    EXPECT_NEAR(back->y, pixel.y, 1e-6) << i;
-  }
-  EXPECT_GT(compared, kSituations / 4);
-}
-
 TEST(Views, PickFindsNothingBesideTheSkin) {
   std::mt19937 random(3);
   for (int i = 0; i < 500; ++i) {

@@ -5,7 +5,6 @@ import shutil
 import struct
 import subprocess
 import time
-import zlib
 
 import numpy
 
@@ -26,69 +25,6 @@ def read_xwd(path):
     pixels = numpy.frombuffer(data, dtype=numpy.uint8, count=line * height, offset=begin)
     pixels = pixels.reshape(height, line)[:, : 4 * width].reshape(height, width, 4)
     return pixels[:, :, [2, 1, 0]] if little_endian else pixels[:, :, [1, 2, 3]]
-
-
-def write_png(path, pixels):
-    (height, width, _) = pixels.shape
-    rows = numpy.zeros((height, 1 + 3 * width), dtype=numpy.uint8)
-    rows[:, 1:] = pixels.reshape(height, 3 * width)
-
-    def chunk(kind, data):
-        whole = kind + data
-        return struct.pack(">I", len(data)) + whole + struct.pack(">I", zlib.crc32(whole))
-
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n")
-        file.write(chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)))
-        file.write(chunk(b"IDAT", zlib.compress(rows.tobytes(), 1)))
-        file.write(chunk(b"IEND", b""))
-
-
-def read_png(path):
-    """The pixels [height, width, 3] of a PNG of 8 bits, red, green, blue and perhaps alpha."""
-    with open(path, "rb") as file:
-        data = file.read()
-    (place, compressed) = (8, b"")
-    while place < len(data):
-        (size, kind) = struct.unpack(">I4s", data[place:place + 8])
-        body = data[place + 8:place + 8 + size]
-        if kind == b"IHDR":
-            (width, height, bits, colour) = struct.unpack(">IIBB", body[:10])
-            channels = {2: 3, 6: 4}[colour]
-            assert bits == 8 and body[12] == 0
-        elif kind == b"IDAT":
-            compressed += body
-        place += 12 + size
-    raw = numpy.frombuffer(zlib.decompress(compressed), dtype=numpy.uint8)
-    lines = raw.reshape(height, 1 + channels * width)
-    above = numpy.zeros(channels * width, dtype=numpy.uint8)
-    rows = []
-    for line in lines:
-        above = unfiltered(line[0], line[1:], above, channels)
-        rows.append(above)
-    return numpy.array(rows).reshape(height, width, channels)[:, :, :3]
-
-
-def unfiltered(kind, line, above, channels):
-    if kind == 0:
-        return line.copy()
-    if kind == 2:
-        return line + above
-    row = line.astype(int)
-    up = above.astype(int)
-    for i in range(len(row)):
-        left = row[i - channels] if i >= channels else 0
-        corner = up[i - channels] if i >= channels else 0
-        if kind == 1:
-            guess = left
-        elif kind == 3:
-            guess = (left + up[i]) // 2
-        else:
-            distances = [(abs(up[i] - corner), 0, left), (abs(left - corner), 1, up[i]),
-                         (abs(left + up[i] - 2 * corner), 2, corner)]
-            guess = min(distances)[2]
-        row[i] = (row[i] + guess) & 255
-    return row.astype(numpy.uint8)
 
 
 class Display:

@@ -9,7 +9,8 @@ import time
 import unittest
 
 import numpy
-from display import Display, write_png
+from PIL import Image
+from display import Display
 
 VIEWER = os.environ["PILLARFIELD_VIEWER"]
 PROGRAM = os.environ["PILLARFIELD"]
@@ -121,7 +122,7 @@ class WindowTest(unittest.TestCase):
 
     def shoot(self, name, still=True):
         pixels = self.screen.still_pixels() if still else self.screen.pixels()
-        write_png(PICTURES / f"window_{name}.png", pixels)
+        Image.fromarray(pixels).save(PICTURES / f"window_{name}.png", compress_level=1)
         return pixels
 
     def wait_for(self, condition, what):

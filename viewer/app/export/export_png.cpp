@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "io/output/png_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/png_file.h"
 #include "pillarfield/solver_plan.h"
 #include "viewer/app/export/export.h"
 

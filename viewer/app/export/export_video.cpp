@@ -3,76 +3,51 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 #include <string_view>
+#include <vector>
 
-#include "host/base/child_program.h"
+#include "pillarfield/child_program.h"
 #include "pillarfield/error.h"
 #include "viewer/app/export/export.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-using Words = std::vector<std::string>;
-
 /// ffmpeg's options for a file name extension.
 struct Encoding {
   std::string_view ending;
-  Words words;  ///< with the muxer, which the temporary name does not determine
+  const char* codec;
+  const char* container;  ///< the muxer, which the temporary name does not determine
 };
 
 /// H.264 at a quality that keeps thin lines and small text, with the index first, as players
-/// expect.
-const std::array<Encoding, 4>& encodings() {
-  static const Words mp4{"-c:v", "libx264",   "-preset",    "medium", "-crf",
-                         "16",   "-movflags", "+faststart", "-f",     "mp4"};
-  static const Words mov{"-c:v", "libx264",   "-preset",    "medium", "-crf",
-                         "16",   "-movflags", "+faststart", "-f",     "mov"};
-  static const Words matroska{"-c:v", "libx264", "-preset", "medium",
-                              "-crf", "16",      "-f",      "matroska"};
-  static const Words vp9{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-f", "webm"};
-  static const std::array<Encoding, 4> all{
-      {{".mp4", mp4}, {".mov", mov}, {".mkv", matroska}, {".webm", vp9}}};
-  return all;
-}
+/// expect; 4:2:0 chroma needs even sizes, and players expect HDTV colours.
+constexpr const char* kH264 = "-c:v libx264 -preset medium -crf 16";
+constexpr std::array kEncodings{Encoding{".mp4", kH264, "-movflags +faststart -f mp4"},
+                                Encoding{".mov", kH264, "-movflags +faststart -f mov"},
+                                Encoding{".mkv", kH264, "-f matroska"},
+                                Encoding{".webm", "-c:v libvpx-vp9 -crf 24 -b:v 0", "-f webm"}};
 
-const Words& encoding_of(const std::filesystem::path& path) {
+const Encoding& encoding_of(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
-  const auto* const found = std::ranges::find(encodings(), ending, &Encoding::ending);
-  if (found != encodings().end()) return found->words;
+  const auto* const found = std::ranges::find(kEncodings, ending, &Encoding::ending);
+  if (found != kEncodings.end()) return *found;
   throw Error(path.string(), "the extension is not a video format",
               "use .mp4, .mkv, .mov or .webm");
 }
 
-Words command(const OutputFile& file, std::uint32_t width, std::uint32_t height, double rate_hz) {
-  Words words{"ffmpeg",
-              "-hide_banner",
-              "-loglevel",
-              "error",
-              "-nostdin",
-              "-y",
-              "-f",
-              "rawvideo",
-              "-pixel_format",
-              "rgb0",
-              "-video_size",
-              fmt::format("{}x{}", width, height),
-              "-framerate",
-              fmt::format("{}", rate_hz),
-              "-i",
-              "pipe:0",
-              "-an"};
-  // 4:2:0 chroma needs even sizes; players expect HDTV colours.
-  const Words colours{"-vf",
-                      "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p",
-                      "-colorspace",
-                      "bt709",
-                      "-color_primaries",
-                      "bt709",
-                      "-color_trc",
-                      "bt709"};
-  const Words& encoding = encoding_of(file.path());
-  words.insert(words.end(), colours.begin(), colours.end());
-  words.insert(words.end(), encoding.begin(), encoding.end());
+std::vector<std::string> command(const OutputFile& file, std::uint32_t width, std::uint32_t height,
+                                 double rate_hz) {
+  const Encoding& encoding = encoding_of(file.path());
+  std::istringstream line(
+      fmt::format("ffmpeg -hide_banner -loglevel error -nostdin -y -f rawvideo -pixel_format rgb0 "
+                  "-video_size {}x{} -framerate {} -i pipe:0 -an "
+                  "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p "
+                  "-colorspace bt709 -color_primaries bt709 -color_trc bt709 {} {}",
+                  width, height, rate_hz, encoding.codec, encoding.container));
+  std::vector<std::string> words{std::istream_iterator<std::string>(line), {}};
   words.push_back("file:" + file.part_path().string());
   return words;
 }

@@ -12,6 +12,7 @@
 
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/window/style.h"
+#include "viewer/render/contact_marks.h"
 #include "viewer/render/ground.h"
 #include "viewer/render/imgui_point.h"
 
@@ -46,18 +47,11 @@ class Marker {
       if (lower && !point.hidden) corner = point;
     }
     if (!corner) return;
-    const ImVec2 size = ImGui::CalcTextSize(box.name.c_str());
-    const float margin = std::round(4 * unit_);
-    const Viewport plot = place_.plot(settings_);
-    const auto inside = [](double at, double begin, double length, float most) {
-      const double end = begin + length - static_cast<double>(most);
-      return static_cast<float>(std::round(std::clamp(at, begin, std::max(begin, end))));
-    };
-    const ImVec2 low(inside(corner->x, plot.x, plot.width, size.x + 2 * margin),
-                     inside(corner->y + static_cast<double>(margin), plot.y, plot.height, size.y));
-    list_.AddRectFilled(low, ImVec2(low.x + size.x + 2 * margin, low.y + size.y),
-                        IM_COL32(8, 10, 14, 190), 3 * unit_);
-    list_.AddText(ImVec2(low.x + margin, low.y), colour, box.name.c_str());
+    const double height = static_cast<double>(ImGui::CalcTextSize(box.name.c_str()).y);
+    const double scale = settings_.scale;
+    const Vec2 below{corner->x, corner->y + std::round(4 * scale) + height};
+    draw_label(list_, label_box(box.name, below, place_.plot(settings_), scale), box.name, colour,
+               scale);
   }
 
   void pin(const Pin& pin, bool inspected) const {
@@ -132,11 +126,7 @@ class Marker {
   float unit_;
 };
 
-PillarRect only(const PillarIndex& pillar) {
-  return {pillar.row, pillar.row + 1, pillar.col, pillar.col + 1};
-}
-
-/// Of each contact while contacts are shown, else of the whole skin.
+/// Trails of each contact while contacts are shown, else of the whole skin.
 void draw_trails(const AppState& state, const Marker& marker) {
   for (const Trails::Trail& trail : state.trails.all()) marker.trail(trail.places);
   if (!state.trails.all().empty() || state.curves == nullptr || !state.field) return;
@@ -167,7 +157,7 @@ void draw_marks(const AppState& state, const FieldPlace& place) {
   if (state.show_trails) draw_trails(state, marker);
   for (const NamedBox& box : state.boxes) marker.box(box);
   if (state.selection) marker.outline(state.selection->rect, palette_of(Theme::dark).accent);
-  if (state.hovered) marker.outline(only(*state.hovered), IM_COL32(255, 255, 255, 230));
+  if (state.hovered) marker.outline(rect_of(Pin{*state.hovered}), IM_COL32(255, 255, 255, 230));
   for (std::size_t i = 0; i < state.pins.size(); ++i) {
     marker.pin(state.pins[i], i + 1 == state.pins.size());
   }
@@ -188,17 +178,17 @@ constexpr PinColours kOnDark{{{86, 180, 233},
 constexpr PinColours kOnLight{
     {{0, 106, 170}, {196, 122, 0}, {0, 134, 98}, {174, 84, 134}, {110, 100, 0}, {196, 70, 0}}};
 
-bool is_taken(const AppState& state, int number) {
-  return std::ranges::any_of(state.pins, [number](const Pin& pin) { return pin.number == number; });
+bool is_taken(const Marks& marks, int number) {
+  return std::ranges::any_of(marks.pins, [number](const Pin& pin) { return pin.number == number; });
 }
 
 }  // namespace
 
-void number_pins(AppState& state) {
-  for (Pin& pin : state.pins) {
+void number_pins(Marks& marks) {
+  for (Pin& pin : marks.pins) {
     if (pin.number != 0) continue;
     int number = 1;
-    while (is_taken(state, number)) ++number;
+    while (is_taken(marks, number)) ++number;
     pin.number = number;
   }
 }
@@ -207,15 +197,15 @@ PillarRect rect_of(const Pin& pin) {
   return {pin.pillar.row, pin.pillar.row + 1, pin.pillar.col, pin.pillar.col + 1};
 }
 
-void inspect_pin(AppState& state, std::size_t index) {
-  if (index >= state.pins.size()) return;
-  const auto pin = state.pins.begin() + static_cast<std::ptrdiff_t>(index);
-  std::rotate(pin, pin + 1, state.pins.end());
+void inspect_pin(Marks& marks, std::size_t index) {
+  if (index >= marks.pins.size()) return;
+  const auto pin = marks.pins.begin() + static_cast<std::ptrdiff_t>(index);
+  std::rotate(pin, pin + 1, marks.pins.end());
 }
 
-void remove_pin(AppState& state, std::size_t index) {
-  if (index >= state.pins.size()) return;
-  state.pins.erase(state.pins.begin() + static_cast<std::ptrdiff_t>(index));
+void remove_pin(Marks& marks, std::size_t index) {
+  if (index >= marks.pins.size()) return;
+  marks.pins.erase(marks.pins.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 Colour pin_colour(int number, Theme theme) {

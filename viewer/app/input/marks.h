@@ -14,15 +14,15 @@ void draw_marks(const AppState& state, const FieldPlace& place);
 [[nodiscard]] FieldPlace beside_place(const AppState& state, const FieldPlace& place);
 
 /// Gives each unnumbered pin the least free number; a pin keeps its number and colour.
-void number_pins(AppState& state);
+void number_pins(Marks& marks);
 
 /// The pin's pillar alone.
 [[nodiscard]] PillarRect rect_of(const Pin& pin);
 
 /// Makes a pin the inspected one; the others keep their order.
-void inspect_pin(AppState& state, std::size_t index);
+void inspect_pin(Marks& marks, std::size_t index);
 
-void remove_pin(AppState& state, std::size_t index);
+void remove_pin(Marks& marks, std::size_t index);
 
 /// Colour of a pin by its number: legible in the theme, distinct for colour-blind readers; 0 has
 /// the colour of 1.

@@ -18,12 +18,6 @@ namespace {
 
 constexpr const char* kWidestNumber = "0.0000";
 
-void flush_right(const std::string& words) {
-  const float left_over = ImGui::GetContentRegionAvail().x - static_cast<float>(width_of(words));
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
-  ImGui::TextUnformatted(words.c_str());
-}
-
 /// A number, as wide as kWidestNumber at most.
 void number_cell(double value) {
   ImGui::TableNextColumn();

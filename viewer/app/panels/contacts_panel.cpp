@@ -54,12 +54,6 @@ void write_head(std::span<const ContactColumn> columns, const PressureUnit& unit
   }
 }
 
-void write_right(const std::string& words) {
-  const float left_over = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(words.c_str()).x;
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
-  ImGui::TextUnformatted(words.c_str());
-}
-
 /// All values of a row, also those that do not fit, and how sure they are.
 void show_all(const std::vector<std::string>& words, const ContactQuantities& contact,
               SkinLayout layout) {
@@ -86,7 +80,7 @@ bool write_row(const std::string& name, const ContactQuantities& contact, SkinLa
       clicked = ImGui::Selectable(words[i].c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
       if (ImGui::IsItemHovered()) show_all(words, contact, layout);
     } else {
-      write_right(words[i]);
+      flush_right(words[i]);
     }
   }
   return clicked;

@@ -155,12 +155,13 @@ std::array<ShownValue, 3> shown_direction(const PillarValues& values) {
   const double theta = static_cast<double>(values.theta) * kDegrees;
   const double phi = static_cast<double>(values.phi) * kDegrees;
   if (is_ambiguous(values) && values.uncertainty) {
-    const Span force{plane(values, Uncertainty::magnitude_low),
-                     plane(values, Uncertainty::magnitude_high)};
-    const Span inclination{plane(values, Uncertainty::theta_low) * kDegrees,
-                           plane(values, Uncertainty::theta_high) * kDegrees};
-    return {with_interval("magnitude", magnitude, force, "N"),
-            with_interval("θ", theta, inclination, "°"),
+    const auto span = [&](Uncertainty low, Uncertainty high, double factor) {
+      return Span{plane(values, low) * factor, plane(values, high) * factor};
+    };
+    return {with_interval("magnitude", magnitude,
+                          span(Uncertainty::magnitude_low, Uncertainty::magnitude_high, 1), "N"),
+            with_interval("θ", theta,
+                          span(Uncertainty::theta_low, Uncertainty::theta_high, kDegrees), "°"),
             with_interval("φ", phi, phi_span(values), "°")};
   }
   const DirectionDeviation deviation = direction_deviation(values);
@@ -170,25 +171,18 @@ std::array<ShownValue, 3> shown_direction(const PillarValues& values) {
 }
 
 std::array<ShownValue, 3> shown_components(const PillarValues& values) {
-  if (is_ambiguous(values) && values.uncertainty) {
-    const auto span = [&values](ComponentEnd low) {
-      const auto first = static_cast<std::size_t>(low);
-      return Span{static_cast<double>(values.component_ends[first]),
-                  static_cast<double>(values.component_ends[first + 1])};
-    };
-    return {with_interval("normal", static_cast<double>(values.normal),
-                          span(ComponentEnd::normal_low), "N"),
-            with_interval("shear x", static_cast<double>(values.shear_x),
-                          span(ComponentEnd::shear_x_low), "N"),
-            with_interval("shear y", static_cast<double>(values.shear_y),
-                          span(ComponentEnd::shear_y_low), "N")};
-  }
-  return {with_deviation("normal", static_cast<double>(values.normal),
-                         plane(values, Uncertainty::normal), "N"),
-          with_deviation("shear x", static_cast<double>(values.shear_x),
-                         plane(values, Uncertainty::shear_x), "N"),
-          with_deviation("shear y", static_cast<double>(values.shear_y),
-                         plane(values, Uncertainty::shear_y), "N")};
+  const auto shown = [&](const char* label, float force, Uncertainty deviation, ComponentEnd low) {
+    const auto value = static_cast<double>(force);
+    if (!is_ambiguous(values) || !values.uncertainty) {
+      return with_deviation(label, value, plane(values, deviation), "N");
+    }
+    const auto* const end = &values.component_ends[static_cast<std::size_t>(low)];
+    return with_interval(label, value, {static_cast<double>(end[0]), static_cast<double>(end[1])},
+                         "N");
+  };
+  return {shown("normal", values.normal, Uncertainty::normal, ComponentEnd::normal_low),
+          shown("shear x", values.shear_x, Uncertainty::shear_x, ComponentEnd::shear_x_low),
+          shown("shear y", values.shear_y, Uncertainty::shear_y, ComponentEnd::shear_y_low)};
 }
 
 std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,

@@ -39,7 +39,7 @@ struct DirectionDeviation {
 /// "region 3, ambiguous", "no contact", "region 1, saturated".
 [[nodiscard]] std::string format_status(std::uint8_t status);
 
-/// Of a sensel without a pillar: "in contact", "no contact", "saturated", "no reading".
+/// State of a sensel without a pillar: "in contact", "no contact", "saturated", "no reading".
 [[nodiscard]] std::string format_sensel_status(std::uint8_t status);
 
 /// The value with the decimals of two digits of its deviation ("0.1234" for 0.0056); three_digits()

@@ -52,6 +52,12 @@ double width_of(const std::string& text) {
   return static_cast<double>(ImGui::CalcTextSize(text.c_str()).x);
 }
 
+void flush_right(const std::string& words) {
+  const float left_over = ImGui::GetContentRegionAvail().x - static_cast<float>(width_of(words));
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
+  ImGui::TextUnformatted(words.c_str());
+}
+
 void draw_text(ImDrawList& list, Vec2 place, ImU32 colour, const std::string& text, Align align) {
   if (align != Align::left) place.x -= (align == Align::middle ? 0.5 : 1) * width_of(text);
   list.AddText(to_imgui({std::round(place.x), std::round(place.y)}), colour, text.c_str());
@@ -109,13 +115,6 @@ Colour status_colour(std::uint8_t status, bool pillars, Theme theme) {
 }
 
 }  // namespace
-
-Colour region_colour(Region region, Theme theme) {
-  constexpr std::array<Special, kRegions> kSpecial{Special::idle,     Special::region_1,
-                                                   Special::region_2, Special::region_3,
-                                                   Special::region_4, Special::opposite};
-  return colour_of(kSpecial[static_cast<std::size_t>(region)], theme);
-}
 
 void swatch(const PanelStyle& style, ImU32 colour) {
   const double side = std::round(0.66 * style.line);

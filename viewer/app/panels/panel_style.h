@@ -34,6 +34,9 @@ inline constexpr Colour kWarningColour = colour_from(0xe69f00);
 
 [[nodiscard]] double width_of(const std::string& text);
 
+/// Writes words at the right end of the room that is left.
+void flush_right(const std::string& words);
+
 /// Alignment of a text to its position.
 enum class Align { left, middle, right };
 
@@ -55,8 +58,6 @@ void faint_text(const PanelStyle& style, const char* words);
 
 /// The title of a part of a panel, with `further` in the faint colour.
 void heading(const PanelStyle& style, const std::string& words, const std::string& further = {});
-
-[[nodiscard]] Colour region_colour(Region region, Theme theme);
 
 /// The status of a pillar or sensel after a swatch in the colour of its region or fault; "no
 /// sensel" where there is none.

@@ -70,7 +70,7 @@ void write_panel(const Command& command);
 /// device. Fills the current ImGui window.
 void status_row(const AppState& state, const std::string& gpu);
 
-/// What the start page offers.
+/// Choices of the start page.
 struct StartChoices {
   std::vector<std::string> recent;
   ScenesAtHand scenes;
@@ -82,7 +82,7 @@ struct StartChoices {
 [[nodiscard]] std::string start_page(const StartChoices& choices, const Viewport& area,
                                      const std::string& notice, double scale);
 
-/// What the window waits for while a source is opened.
+/// Page shown while a source is opened: its name and the present step.
 void loading_page(const std::string& source, const std::string& message, const Viewport& area);
 
 /// Controls of the play head in one row: play, step, position, speed, loop, follow. Fills the

@@ -64,7 +64,7 @@ std::string silent_words(const LiveStatus& status) {
 }
 
 double silence_s(const AppState& state) {
-  const LiveControl* const live = state.player->live();
+  LiveControl* const live = state.player->live();
   if (live == nullptr) return 0;
   const LiveStatus status = live->status();
   const bool silent = status.ended || status.health.since_frame_s > kSilentSeconds;

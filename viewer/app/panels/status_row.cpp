@@ -67,7 +67,7 @@ std::string plural(std::uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// What a user wants to know of a sensor.
+/// State of a sensor in words for its user.
 std::string sensor_words(const LiveStatus& status) {
   if (status.ended) return "the source has ended";
   const std::string& mismatch = status.health.stream.mismatch;
@@ -88,7 +88,7 @@ std::string source_words(const AppState& state) {
   const Skin& skin = player.info().skin;
   const std::string size =
       fmt::format("{} × {} {}", skin.element_rows(), skin.element_cols(), name_of(skin.layout));
-  if (const LiveControl* const live = player.live()) {
+  if (LiveControl* const live = player.live()) {
     return fmt::format("{}   {}", sensor_words(live->status()), size);
   }
   return fmt::format("{} at {:.6g} Hz   {}", plural(player.state().frames, "frame"),

@@ -77,44 +77,38 @@ void add_total(std::vector<Chart>& charts, const Points& points, const Colours& 
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
-/// Forces on marked parts of the skin.
-class MarkCharts {
- public:
-  MarkCharts(const AppState& state, const Span& time, const std::string& title)
-      : state_(state),
-        time_(time),
-        normal_{title + ", normal", "N", {}},
-        shear_{title + ", |shear|", "N", {}} {}
-
-  void add(const std::string& name, const PillarRect& rect, int number) {
-    const Points points = state_.curves->of(rect, time_.from, time_.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(number, state_.settings.theme));
-    normal_.curves.push_back({name, points, normal_of, colour});
-    shear_.curves.push_back({name, points, shear_of, colour});
-  }
-
-  void move_to(std::vector<Chart>& charts) {
-    if (normal_.curves.empty()) return;
-    charts.push_back(std::move(normal_));
-    if (state_.player->info().skin.has_pillars()) charts.push_back(std::move(shear_));
-  }
-
- private:
-  const AppState& state_;
-  Span time_;
-  Chart normal_;
-  Chart shear_;
+/// A part of the skin with its name and the number of its colour.
+struct MarkedPart {
+  std::string name;
+  PillarRect rect;
+  int number;
 };
 
-void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
-  MarkCharts boxes(state, time, "Boxes");
-  for (const NamedBox& box : state.boxes) boxes.add(box.name, box.rect, box.number);
-  boxes.move_to(charts);
-  MarkCharts pins(state, time, "Pins");
-  for (const Pin& pin : state.pins) {
-    pins.add(std::to_string(pin.number), rect_of(pin), pin.number);
+/// Forces on marked parts of the skin.
+void add_parts(std::vector<Chart>& charts, const AppState& state, const Span& time,
+               const std::string& title, const std::vector<MarkedPart>& parts) {
+  if (parts.empty()) return;
+  Chart normal{title + ", normal", "N", {}};
+  Chart shear{title + ", |shear|", "N", {}};
+  for (const auto& [name, rect, number] : parts) {
+    const Points points = state.curves->of(rect, time.from, time.to, kMostShownPoints);
+    const ImU32 colour = packed(pin_colour(number, state.settings.theme));
+    normal.curves.push_back({name, points, normal_of, colour});
+    shear.curves.push_back({name, points, shear_of, colour});
   }
-  pins.move_to(charts);
+  charts.push_back(std::move(normal));
+  if (state.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
+}
+
+void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
+  std::vector<MarkedPart> boxes;
+  for (const NamedBox& box : state.boxes) boxes.push_back({box.name, box.rect, box.number});
+  std::vector<MarkedPart> pins;
+  for (const Pin& pin : state.pins) {
+    pins.push_back({std::to_string(pin.number), rect_of(pin), pin.number});
+  }
+  add_parts(charts, state, time, "Boxes", boxes);
+  add_parts(charts, state, time, "Pins", pins);
 }
 
 void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
@@ -354,7 +348,7 @@ void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const Panel
   }
 }
 
-/// How far the survey of a file is, while it is under way.
+/// Progress of a file's survey, while it is under way.
 void draw_progress(const AppState& state, const PanelStyle& style) {
   if (state.survey == nullptr) return;
   const Survey::Progress progress = state.survey->progress();

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "io/layout_note.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
+#include "pillarfield/layout_note.h"
 #include "pillarfield/printable.h"
 #include "viewer/source/live_player.h"
 
@@ -18,9 +18,9 @@ namespace {
 RenderSettings live_settings(const Options& options, const SourceInfo& source, double scale) {
   constexpr float kFirstRangeN = 1;
   RenderSettings settings = chosen_settings(options, source, scale);
-  settings.range = options.range
-                       ? in_unit_of(*options.range, options.quantity, options.pressure_unit)
-                       : fitting_range(options.quantity, kFirstRangeN);
+  settings.range =
+      options.range ? in_unit_of(*options.range, options.look.quantity, options.look.pressure_unit)
+                    : fitting_range(options.look.quantity, kFirstRangeN);
   settings.full_force_n = settings.full_shear_n = static_cast<double>(kFirstRangeN) / 2;
   return settings;
 }
@@ -68,7 +68,7 @@ LoadedSource load_file(const Options& options, const std::filesystem::path& path
   loaded.open_truth = producer->open_truth;
   loaded.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
   loaded.survey = std::make_unique<Survey>(producer->open_again, loaded.curves);
-  loaded.player = std::make_unique<FilePlayer>(std::move(producer));
+  loaded.player = play_file(std::move(producer));
   return loaded;
 }
 
@@ -111,8 +111,7 @@ std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_tr
 }
 
 void show_truth(LoadedSource& source) {
-  source.beside =
-      std::make_unique<FilePlayer>(opened_truth(source.open_truth, source.player->info().name));
+  source.beside = play_file(opened_truth(source.open_truth, source.player->info().name));
   source.beside_is_truth = true;
 }
 

@@ -87,7 +87,7 @@ void UserSettings::save() const noexcept {
       std::filesystem::remove(part, error);
     }
   } catch (const std::exception&) {
-    // What is not remembered does no harm.
+    // Settings that are not remembered do no harm.
   }
 }
 

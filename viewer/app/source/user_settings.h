@@ -8,8 +8,8 @@
 
 namespace pillarfield::viewer {
 
-/// What the window remembers between runs, in $XDG_CONFIG_HOME/pillarfield/viewer.conf, else below
-/// ~/.config. Without a folder that can be written it remembers nothing.
+/// Settings that the window keeps between runs, in $XDG_CONFIG_HOME/pillarfield/viewer.conf, else
+/// below ~/.config. Without a folder that can be written it remembers nothing.
 class UserSettings {
  public:
   static constexpr std::size_t kMostRecent = 8;

@@ -52,7 +52,7 @@ class Presenter {
   [[nodiscard]] const gpu::Image& image(std::size_t index) const {
     return parts_.at(index).renderer->image();
   }
-  /// Of the first picture.
+  /// Renderer of the first picture.
   [[nodiscard]] Renderer& renderer() { return *parts_.front().renderer; }
 
   /// Waits until the device is idle.

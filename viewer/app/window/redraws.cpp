@@ -47,45 +47,28 @@ bool Redraws::notice_is_old(double now_s) const {
 
 namespace {
 
-constexpr double kRecentSeconds = 1;
-
-double median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
+RecentTimes::Time time_of(double now_s) {
+  return std::chrono::duration_cast<RecentTimes::Time>(std::chrono::duration<double>(now_s));
 }
 
 }  // namespace
 
 void DrawClock::add(double now_s, double draw_ms, std::optional<double> latency_ms) {
-  Frame frame{now_s, static_cast<float>(draw_ms), std::nullopt};
-  draw_ms_.push_back(frame.draw_ms);
-  if (latency_ms) {
-    frame.latency_ms = static_cast<float>(*latency_ms);
-    latency_ms_.push_back(*frame.latency_ms);
-  }
-  recent_.push_back(frame);
-  while (recent_.front().now_s < now_s - kRecentSeconds) recent_.pop_front();
+  draws_.add(time_of(now_s), draw_ms);
+  draw_ms_.push_back(draw_ms);
+  if (!latency_ms) return;
+  latencies_.add(time_of(now_s), *latency_ms);
+  latency_ms_.push_back(*latency_ms);
 }
 
 DrawStatistics DrawClock::lately(double now_s) const {
-  std::vector<float> draws;
-  std::vector<float> latencies;
-  for (const Frame& frame : recent_) {
-    if (frame.now_s < now_s - kRecentSeconds) continue;
-    draws.push_back(frame.draw_ms);
-    if (frame.latency_ms) latencies.push_back(*frame.latency_ms);
-  }
+  draws_.forget_before(time_of(now_s));
+  latencies_.forget_before(time_of(now_s));
   DrawStatistics statistics;
-  statistics.frames_hz = static_cast<double>(draws.size()) / kRecentSeconds;
-  statistics.draw_ms_median = median(draws);
-  statistics.latency_ms_median = median(latencies);
+  statistics.frames_hz = draws_.rate_hz();
+  statistics.draw_ms_median = draws_.median_ms();
+  statistics.latency_ms_median = latencies_.median_ms();
   return statistics;
 }
-
-double DrawClock::draw_ms_median() const { return median(draw_ms_); }
-
-double DrawClock::latency_ms_median() const { return median(latency_ms_); }
 
 }  // namespace pillarfield::viewer

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
 #include "viewer/app/app_state.h"
+#include "viewer/source/recent_times.h"
 
 namespace pillarfield::viewer {
 
@@ -47,18 +47,15 @@ class DrawClock {
   [[nodiscard]] DrawStatistics lately(double now_s) const;
 
   [[nodiscard]] std::uint64_t frames() const { return draw_ms_.size(); }
-  [[nodiscard]] double draw_ms_median() const;     ///< over all frames; 0 for none
-  [[nodiscard]] double latency_ms_median() const;  ///< over all fields; 0 for none
+  /// Over all frames, and over all fields; 0 for none.
+  [[nodiscard]] double draw_ms_median() const { return median_of(draw_ms_); }
+  [[nodiscard]] double latency_ms_median() const { return median_of(latency_ms_); }
 
  private:
-  struct Frame {
-    double now_s = 0;
-    float draw_ms = 0;
-    std::optional<float> latency_ms;
-  };
-  std::deque<Frame> recent_;
-  std::vector<float> draw_ms_;
-  std::vector<float> latency_ms_;
+  mutable RecentTimes draws_;
+  mutable RecentTimes latencies_;
+  std::vector<double> draw_ms_;
+  std::vector<double> latency_ms_;
 };
 
 }  // namespace pillarfield::viewer

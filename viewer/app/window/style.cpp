@@ -2,8 +2,6 @@
 
 #include <imgui.h>
 
-#include <array>
-
 #include "viewer/style/colour_map.h"
 
 namespace pillarfield::viewer {
@@ -52,49 +50,38 @@ void set_sizes(ImGuiStyle& style) {
   style.PopupBorderSize = 1;
 }
 
-void set_text(ImGuiStyle& style, const Shades& shades) {
-  style.Colors[ImGuiCol_Text] = vector(shades.text);
-  style.Colors[ImGuiCol_TextDisabled] = vector(shades.faint);
-  style.Colors[ImGuiCol_TextSelectedBg] = vector(shades.accent, 0.35f);
-  style.Colors[ImGuiCol_CheckMark] = vector(shades.accent);
-  style.Colors[ImGuiCol_PlotLines] = vector(shades.accent);
-  style.Colors[ImGuiCol_PlotHistogram] = vector(shades.accent);
-  style.Colors[ImGuiCol_SliderGrab] = vector(shades.accent);
-  style.Colors[ImGuiCol_SliderGrabActive] = vector(shades.accent);
-}
-
-void set_surfaces(ImGuiStyle& style, const Shades& shades) {
-  style.Colors[ImGuiCol_WindowBg] = vector(shades.panel);
-  style.Colors[ImGuiCol_ChildBg] = vector(shades.panel, 0);
-  style.Colors[ImGuiCol_PopupBg] = vector(shades.popup);
-  style.Colors[ImGuiCol_Border] = vector(shades.line);
-  style.Colors[ImGuiCol_Separator] = vector(shades.line);
-  style.Colors[ImGuiCol_TableBorderLight] = vector(shades.line);
-  style.Colors[ImGuiCol_TableBorderStrong] = vector(shades.line);
-  style.Colors[ImGuiCol_ScrollbarBg] = vector(shades.panel, 0);
-  style.Colors[ImGuiCol_ScrollbarGrab] = vector(shades.field_active);
-  style.Colors[ImGuiCol_ScrollbarGrabHovered] = vector(shades.faint);
-  style.Colors[ImGuiCol_ScrollbarGrabActive] = vector(shades.faint);
-}
-
-/// ImGui's colours of an item: at rest, hovered, active.
-struct Three {
-  int rest, hovered, active;
+struct StyleColour {
+  int index;
+  unsigned Shades::*shade;
+  float alpha = 1;
 };
 
-void set_frames(ImGuiStyle& style, const Shades& shades) {
-  constexpr std::array kFields{
-      Three{ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive},
-      Three{ImGuiCol_Button, ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive}};
-  for (const Three& three : kFields) {
-    style.Colors[three.rest] = vector(shades.field);
-    style.Colors[three.hovered] = vector(shades.field_hovered);
-    style.Colors[three.active] = vector(shades.field_active);
-  }
-  style.Colors[ImGuiCol_Header] = vector(shades.accent, 0.25f);
-  style.Colors[ImGuiCol_HeaderHovered] = vector(shades.field_hovered);
-  style.Colors[ImGuiCol_HeaderActive] = vector(shades.field_active);
-}
+constexpr StyleColour kStyleColours[] = {{ImGuiCol_Text, &Shades::text},
+                                         {ImGuiCol_TextDisabled, &Shades::faint},
+                                         {ImGuiCol_TextSelectedBg, &Shades::accent, 0.35f},
+                                         {ImGuiCol_CheckMark, &Shades::accent},
+                                         {ImGuiCol_SliderGrab, &Shades::accent},
+                                         {ImGuiCol_SliderGrabActive, &Shades::accent},
+                                         {ImGuiCol_WindowBg, &Shades::panel},
+                                         {ImGuiCol_ChildBg, &Shades::panel, 0},
+                                         {ImGuiCol_PopupBg, &Shades::popup},
+                                         {ImGuiCol_Border, &Shades::line},
+                                         {ImGuiCol_Separator, &Shades::line},
+                                         {ImGuiCol_TableBorderLight, &Shades::line},
+                                         {ImGuiCol_TableBorderStrong, &Shades::line},
+                                         {ImGuiCol_ScrollbarBg, &Shades::panel, 0},
+                                         {ImGuiCol_ScrollbarGrab, &Shades::field_active},
+                                         {ImGuiCol_ScrollbarGrabHovered, &Shades::faint},
+                                         {ImGuiCol_ScrollbarGrabActive, &Shades::faint},
+                                         {ImGuiCol_FrameBg, &Shades::field},
+                                         {ImGuiCol_FrameBgHovered, &Shades::field_hovered},
+                                         {ImGuiCol_FrameBgActive, &Shades::field_active},
+                                         {ImGuiCol_Button, &Shades::field},
+                                         {ImGuiCol_ButtonHovered, &Shades::field_hovered},
+                                         {ImGuiCol_ButtonActive, &Shades::field_active},
+                                         {ImGuiCol_Header, &Shades::accent, 0.25f},
+                                         {ImGuiCol_HeaderHovered, &Shades::field_hovered},
+                                         {ImGuiCol_HeaderActive, &Shades::field_active}};
 
 }  // namespace
 
@@ -103,9 +90,9 @@ void set_style(Theme theme, double scale) {
   style = ImGuiStyle();
   set_sizes(style);
   const Shades& shades = shades_of(theme);
-  set_text(style, shades);
-  set_surfaces(style, shades);
-  set_frames(style, shades);
+  for (const auto& [index, shade, alpha] : kStyleColours) {
+    style.Colors[index] = vector(shades.*shade, alpha);
+  }
   style.ScaleAllSizes(static_cast<float>(scale));
 }
 

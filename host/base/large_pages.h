@@ -5,6 +5,12 @@
 
 namespace pillarfield {
 
+inline constexpr std::size_t kPageSize = 4096;
+
+constexpr std::size_t page_aligned(std::size_t bytes) {
+  return (bytes + kPageSize - 1) / kPageSize * kPageSize;
+}
+
 struct FreeLargePages {
   void operator()(std::byte* memory) const;
 };

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstddef>
 #include <cstdio>
 #include <memory>
@@ -54,7 +52,7 @@ class ChildProgram {
 
   std::unique_ptr<std::FILE, Close> errors_;
   int input_ = -1;
-  pid_t process_ = -1;
+  int process_ = -1;  ///< its id
 };
 
 }  // namespace pillarfield

@@ -1,4 +1,4 @@
-#include "device/large_pages.h"
+#include "base/large_pages.h"
 
 #include <new>
 

@@ -1,10 +1,11 @@
-#include "device/lane_slot.h"
+#include "lanes/lane_solver.h"
 
 #include <algorithm>
 #include <thread>
 
 #include "skin/quads.h"
 #include "solve/activation_thresholds.h"
+#include "solve/curvature_follower.h"
 #include "solve/sensor_corrections.h"
 #include "solve/stages.h"
 #include "solve/whole_numbers.h"
@@ -99,43 +100,94 @@ void convert_row(const FrameView& frame, std::size_t row, float* to) {
   convert<float>(frame, row, to);
 }
 
-}  // namespace
+/// No program has a single lane.
+bool is_narrow(const SolverPlan& plan) { return quad_cols(plan.skin) == 1; }
 
-LaneSettings::LaneSettings(const SolverPlan& plan, const LaneProgram& chosen)
-    : program(&chosen),
-      whole(is_whole(plan) &&
-            quad_cols(plan.skin) >= static_cast<std::uint32_t>(chosen.whole_lanes)),
-      division{whole ? chosen.whole_lanes : chosen.lanes, bands_of(plan)} {}
-
-std::vector<CalibrationPlane> lane_planes(const SolverPlan& plan, const LaneSettings& settings) {
-  return calibration_planes(plan, !settings.whole);
+/// A plan with a single column of blocks of 2 x 2 sensels as one of two, of which the second is
+/// absent.
+SolverPlan widened(SolverPlan plan) {
+  const std::size_t cols = plan.skin.cols;  // 2, or 3 with one under no pillar
+  plan.skin.cols = 4;
+  const auto widen = [&](auto& plane, auto absent, std::size_t kept = 2) {
+    if (plane.empty()) return;
+    auto wide = std::vector(plan.skin.sensels(), absent);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      if (i % cols < kept) wide[i / cols * 4 + i % cols] = plane[i];
+    }
+    plane = std::move(wide);
+  };
+  Calibration& planes = plan.calibration;
+  if (planes.mask.empty()) planes.mask.assign(plan.skin.rows * cols, kGood);
+  widen(planes.mask, kAbsent);
+  widen(planes.gain, 1.0F);
+  widen(planes.tare, 0.0F, cols);
+  for (auto* const plane :
+       {&planes.dead_zone, &planes.noise, &planes.bend_x, &planes.bend_y, &planes.bend_xy}) {
+    widen(*plane, 0.0F);
+  }
+  return plan;
 }
 
-LaneSlot::LaneSlot(const SolverPlan& plan, const LaneSettings& settings,
-                   const CalibrationMemory& calibration, FrameOrder& order, ThreadPool* pool)
-    : LaneSlot(plan, settings, calibration, order, pool,
-               SlotLayout(plan, settings.division, true, calibration)) {}
+SlotLayout slot_layout(const SolverPlan& plan, const LaneSettings& settings,
+                       const CalibrationMemory& calibration) {
+  if (is_narrow(plan)) return slot_layout(widened(plan), settings, calibration);
+  return {plan, settings.division, true, calibration};
+}
 
-LaneSlot::LaneSlot(const SolverPlan& plan, const LaneSettings& settings,
-                   const CalibrationMemory& calibration, FrameOrder& order, ThreadPool* pool,
-                   const SlotLayout& slot)
-    : Slot(plan.skin, order),
-      program_(settings.program),
+/// Copies the first columns of results.
+void copy_columns(const ResultMemory& from, const ResultMemory& to) {
+  const std::size_t cols = to.layout().cols;
+  const auto copy_plane = [&](const auto* plane, auto* first) {
+    for (std::size_t row = 0; row < to.layout().rows; ++row) {
+      std::copy_n(plane + row * from.layout().cols, cols, first + row * cols);
+    }
+  };
+  copy_plane(from.status(), to.status());
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    if (to.plane(i) == nullptr) continue;
+    copy_plane(reinterpret_cast<const float*>(from.plane(i)),
+               reinterpret_cast<float*>(to.plane(i)));
+  }
+}
+
+}  // namespace
+
+LaneSettings::LaneSettings(const SolverPlan& plan, int most)
+    : program(&lane_program(quad_cols(plan.skin), most)),
+      whole(is_whole(plan) &&
+            quad_cols(plan.skin) >= static_cast<std::uint32_t>(program->whole_lanes)),
+      division{whole ? program->whole_lanes : program->lanes, bands_of(plan)} {}
+
+CalibrationMemory lane_calibration(const SolverPlan& plan, const LaneSettings& settings) {
+  if (is_narrow(plan)) return lane_calibration(widened(plan), settings);
+  return {plan, calibration_planes(plan, !settings.whole), SenselType::f32};
+}
+
+LaneSolver::LaneSolver(const SolverPlan& plan, const LaneSettings& settings,
+                       const CalibrationMemory& calibration, ThreadPool* pool)
+    : LaneSolver(plan, settings, calibration, pool, slot_layout(plan, settings, calibration)) {}
+
+LaneSolver::LaneSolver(const SolverPlan& plan, const LaneSettings& settings,
+                       const CalibrationMemory& calibration, ThreadPool* pool,
+                       const SlotLayout& slot)
+    : program_(settings.program),
       bands_{1, settings.division.bands},
       tiles_{slot.tiles_across, slot.tiles_down},
       pool_(pool),
       memory_(slot.results),
-      padded_cols_(padded_cols(plan.skin)) {
+      padded_cols_(calibration.stride()) {
   set_plan(plan, settings, calibration);
+  if (is_narrow(plan)) narrow_.emplace(ResultLayout(plan, 0));
   frame_.results = reinterpret_cast<unsigned char*>(memory_.bytes());
   frame_.layout = slot.layout;
-  const bool in_place =
-      plan.sensel_type == SenselType::f32 && padded_sensels(plan.skin) == plan.skin.sensels();
-  if (!settings.whole && !in_place) readings_.resize(padded_sensels(plan.skin));
+  const std::size_t padded = padded_rows(plan.skin) * padded_cols_;
+  const bool in_place = plan.sensel_type == SenselType::f32 && padded == plan.skin.sensels();
+  if (!settings.whole && !in_place) readings_.resize(padded);
 }
 
-void LaneSlot::set_plan(const SolverPlan& plan, const LaneSettings& settings,
-                        const CalibrationMemory& calibration) {
+void LaneSolver::set_plan(const SolverPlan& plan, const LaneSettings& settings,
+                          const CalibrationMemory& calibration) {
+  if (is_narrow(plan)) return set_plan(widened(plan), settings, calibration);
   plan_ = {lane_stages(plan, settings.whole), settings.whole, places_of(calibration.planes()),
            activation_of(plan, settings.whole), wires_of(plan)};
   corrects_ = corrects_forces(plan);
@@ -144,7 +196,7 @@ void LaneSlot::set_plan(const SolverPlan& plan, const LaneSettings& settings,
 }
 
 template <class Work>
-void LaneSlot::share(std::size_t pieces, const Work& work) {
+void LaneSolver::share(std::size_t pieces, const Work& work) {
   if (pool_ == nullptr || pieces == 1) {
     for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
     return;
@@ -152,7 +204,7 @@ void LaneSlot::share(std::size_t pieces, const Work& work) {
   pool_->run(pieces, [&](std::size_t piece, std::size_t) { work(piece); });
 }
 
-void LaneSlot::read(const FrameView& frame) {
+void LaneSolver::read(const FrameView& frame) {
   if (readings_.empty()) {
     frame_.raw = frame.data;
     frame_.layout.row_stride = frame.row_stride;
@@ -169,28 +221,39 @@ void LaneSlot::read(const FrameView& frame) {
   frame_.layout.row_stride = padded_cols_;
 }
 
-void LaneSlot::run(LaneProgram::Run work, LaneRange range) {
+void LaneSolver::run(LaneProgram::Run work, LaneRange range) {
   share(range.down, [&](std::size_t piece) { work(plan_, frame_, range, piece, piece + 1); });
 }
 
-void LaneSlot::submit(const FrameView& frame, const std::optional<Curvature>& bent,
-                      const single_precision::Drift& drift) {
+void LaneSolver::solve(const FrameView& frame, const FrameStep& step) {
   read(frame);
-  frame_.layout.frame = ++order().frame;
-  if (bent) {
-    program_->bend_tare(
-        plan_, frame_,
-        {static_cast<float>(bent->x), static_cast<float>(bent->y), static_cast<float>(bent->xy)});
+  if (narrow_) memory_.clear_flags();  // Its few pillars are solved anew.
+  frame_.layout.frame = step.number;
+  if (step.bent) {
+    program_->bend_tare(plan_, frame_,
+                        {static_cast<float>(step.bent->x), static_cast<float>(step.bent->y),
+                         static_cast<float>(step.bent->xy)});
   }
   if (plan_.stages.wires) run(program_->find_wires, tiles_);
   run(program_->solve_frame, bands_);
-  if (order().follows_baseline) {
-    program_->follow_baseline(plan_, frame_, order().rate, drift, order().first_row(),
-                              order().interval);
+  if (step.baseline) {
+    const BaselineTurn& turn = *step.baseline;
+    program_->follow_baseline(plan_, frame_, turn.rate, turn.drift, turn.first_row, turn.interval);
   }
   if (plan_.stages.pillar_leak) run(program_->remove_pillar_leak, bands_);
   if (plan_.stages.lean) run(program_->find_shear_ratios, bands_);
   if (corrects_) run(program_->correct_forces, bands_);
+  if (narrow_) copy_columns(memory_, *narrow_);
+}
+
+ForceField solve_in_lanes(const SolverPlan& plan, const FrameView& frame) {
+  const LaneSettings settings(plan, lane_programs().front()->lanes);
+  const CalibrationMemory calibration = lane_calibration(plan, settings);
+  LaneSolver solver(plan, settings, calibration);
+  FrameStep step;
+  if (!plan.calibration.bend_x.empty()) step.bent = CurvatureFollower(plan).follow(frame);
+  solver.solve(frame, step);
+  return ForceField(solver.memory().forces());
 }
 
 }  // namespace pillarfield
