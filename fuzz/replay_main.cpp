@@ -48,6 +48,8 @@ constexpr int kRefused = 11;
 constexpr int kOtherException = 12;
 /// Exit status of a process that the HDF5 library crashes (hdf5/crash_guard.h).
 constexpr int kCrashOfHdf5 = 1;
+/// Of one whose memory HDF5 damages before AddressSanitizer's eyes (PillarfieldTesting.cmake).
+constexpr int kSanitizer = 99;
 
 void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
   const rlimit both = {most, most};
@@ -88,7 +90,11 @@ double seconds_of(const rusage& used) {
 }
 
 /// `used`: resources of the child and its own children.
-Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::string& message) {
+Outcome outcome_of(int status, const rusage& used, const std::string& name,
+                   const std::string& message) {
+  const bool is_seed = name.starts_with("seed_");
+  // Files on which HDF5 crashes, of its own code.
+  const bool breaks_hdf5 = name.starts_with("sig") || name.starts_with("hang_");
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMaxWait)};
@@ -106,6 +112,9 @@ Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::stri
       return {is_seed, true, "refused: HDF5 crashes or loops"};
     case kOtherException:
       return {true, false, "ends in an exception other than Error: " + message};
+    case kSanitizer:
+      if (breaks_hdf5) return {false, true, "refused: HDF5 damages memory"};
+      [[fallthrough]];
     default:
       return {true, false, fmt::format("ends with exit status {}", WEXITSTATUS(status))};
   }
@@ -137,7 +146,7 @@ Outcome replay(const Target& target, const std::filesystem::path& path) {
   int status = 0;
   rusage used{};
   wait4(child, &status, 0, &used);
-  return outcome_of(status, used, path.filename().string().starts_with("seed_"), message);
+  return outcome_of(status, used, path.filename().string(), message);
 }
 
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {

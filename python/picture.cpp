@@ -18,9 +18,16 @@ namespace {
 using viewer::Colour;
 using viewer::Quantity;
 
+std::optional<Quantity> quantity_named(const std::string& name) {
+  for (int i = 0; i < viewer::kQuantities; ++i) {
+    if (name == viewer::info_of(static_cast<Quantity>(i)).name) return static_cast<Quantity>(i);
+  }
+  return std::nullopt;
+}
+
 Quantity quantity_of(const std::string& name, const py::dict& planes, SkinLayout layout,
                      bool has_skin) {
-  const std::optional<Quantity> quantity = viewer::quantity_named(name);
+  const std::optional<Quantity> quantity = quantity_named(name);
   viewer::SourceInfo source;
   source.skin.layout = layout;
   source.has_angles = planes.contains("theta");
@@ -91,7 +98,7 @@ py::tuple paint(const py::dict& planes, const std::string& name,
 
 /// The colour bar of a quantity, low to high, then the background: uint8 [257, 3].
 py::array_t<std::uint8_t> colours(const std::string& name, bool light) {
-  const auto quantity = viewer::quantity_named(name).value_or(Quantity::normal);
+  const auto quantity = quantity_named(name).value_or(Quantity::normal);
   std::vector<std::uint8_t> pixels;
   for (const Colour& colour :
        viewer::table_of(viewer::default_map(viewer::info_of(quantity).scale))) {

@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "base/large_pages.h"
 #include "bench/frames.h"
 #include "bench/timing/copy_source.h"
 #include "device/device_state.h"
-#include "base/large_pages.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield::bench {

@@ -59,10 +59,11 @@ void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std:
     if (touched++ == 0) first = fmt::format("row {}, column {}", side * row, side * col);
   });
   if (touched < kTouchedPillars) return;
-  throw Error(unloaded.name(),
-              fmt::format("{} {} read as if something touched them, the first at {}",
-                          side * side * touched, name_of(unloaded.skin().layout), first),
-              "record while nothing touches the skin, or declare the skin preloaded");
+  throw Error(
+      unloaded.name(),
+      fmt::format("{} {} read as if something touched them, the first at {}",
+                  std::size_t{side} * side * touched, name_of(unloaded.skin().layout), first),
+      "record while nothing touches the skin, or declare the skin preloaded");
 }
 
 /// Fills tare and noise; zero for masked sensels.

@@ -72,7 +72,8 @@ PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes
   const Real size = fabs(reading);
   const Real distance =
       size <= PF_VALUE(Real, largest) ? threshold - reading : PF_CONSTANT(Real, -1.0f);
-  range.largest = size > range.largest ? size : range.largest;
+  /* An infinite reading is active; as a bound it would make others idle. */
+  range.largest = size <= PF_VALUE(Real, largest) && size > range.largest ? size : range.largest;
 #else
   const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
   range.largest = max(reading, range.largest);

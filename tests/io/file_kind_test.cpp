@@ -70,7 +70,7 @@ TEST(FileKind, OtherFormatsAreNamedWithALineOfPython) {
            Case{"PAR1"s, "Parquet", "read_parquet"},
            Case{"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"s, "XLS", "read_excel"},
            Case{"\x1f\x8b\x08"s, "gzip", "gzip.open"},
-           Case{"{\"frames\": [[1, 2], [3, 4]]}"s, "JSON", "json.load"},
+           Case{R"({"frames": [[1, 2], [3, 4]]})"s, "JSON", "json.load"},
            Case{"[[1, 2], [3, 4]]"s, "JSON", "json.load"},
            Case{"<?xml version='1.0'?><a/>"s, "XML", "etree"},
            Case{"#ROSBAG V2.0\n"s, "ROS 1", "rosbags"},

@@ -100,7 +100,8 @@ TEST(HeightMap, RefusesOtherFilesOfNumpyInOneLine) {
       {npy_of("<f8", "(2, 3)", with_nan), "row 1, column 1 is nan; heights must be finite"},
   };
   for (const auto& [file, message] : cases) {
-    EXPECT_EQ(message_of([&] { static_cast<void>(parsed_npy(file)); }), "a.npy: " + message);
+    EXPECT_EQ(message_of([&, text = file] { static_cast<void>(parsed_npy(text)); }),
+              "a.npy: " + message);
   }
   EXPECT_TRUE(message_of([] { static_cast<void>(parsed_npy("root:x")); }).starts_with("a.npy: "));
 }

@@ -368,23 +368,26 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
   const std::string skin = "skin.size_mm = [20, 20]\n";
   const std::string at = "position_mm = [0, 0]\nload_n = 1\nfriction = 1\n";
   std::set<std::string> keys;
-  for (const std::string& text : std::vector<std::string>{
-           "[skin]\nsize_mm = [20, 20]", skin + "[sensor]", skin + "[sensor.wires]\nsensel_ohm = 9",
-           skin + "[time]", skin + "[solver]",
-           skin + "[surface]\nshape = \"cylinder\"\nradius_mm = 60", "[direction_sweep]",
-           skin +
-               "[[contact]]\nshape = \"cylinder\"\nmotion = \"roll\"\ncontact_radius_mm = 3\n"
-               "length_mm = 9\ntangential_ratio = 0.4\n" +
-               at,
-           skin +
-               "[[contact]]\nshape = \"flat_punch\"\nmotion = \"spin\"\ncontact_radius_mm = 2\n" +
-               at,
-           skin + "[[indenter]]\nshape = \"ellipsoid\"\nradii_mm = [9, 8, 7]\n" + at,
-           skin + "[[indenter]]\nshape = \"cylinder\"\nradius_mm = 9\nlength_mm = 9\n" + at,
-           skin +
-               "[[indenter]]\nshape = \"height_map\"\nheight_map = \"a.npy\"\n"
-               "height_map_size_mm = [9, 9]\nheight_map_depth_mm = 1\n" +
-               at}) {
+  const std::vector<std::string> texts = {
+      "[skin]\nsize_mm = [20, 20]",
+      skin + "[sensor]",
+      skin + "[sensor.wires]\nsensel_ohm = 9",
+      skin + "[time]",
+      skin + "[solver]",
+      skin + "[surface]\nshape = \"cylinder\"\nradius_mm = 60",
+      "[direction_sweep]",
+      skin +
+          "[[contact]]\nshape = \"cylinder\"\nmotion = \"roll\"\ncontact_radius_mm = 3\n"
+          "length_mm = 9\ntangential_ratio = 0.4\n" +
+          at,
+      skin + "[[contact]]\nshape = \"flat_punch\"\nmotion = \"spin\"\ncontact_radius_mm = 2\n" + at,
+      skin + "[[indenter]]\nshape = \"ellipsoid\"\nradii_mm = [9, 8, 7]\n" + at,
+      skin + "[[indenter]]\nshape = \"cylinder\"\nradius_mm = 9\nlength_mm = 9\n" + at,
+      skin +
+          "[[indenter]]\nshape = \"height_map\"\nheight_map = \"a.npy\"\n"
+          "height_map_size_mm = [9, 9]\nheight_map_depth_mm = 1\n" +
+          at};
+  for (const std::string& text : texts) {
     const auto beside = keys_beside(text);
     EXPECT_GT(beside.size(), 2U) << text;
     keys.insert(beside.begin(), beside.end());

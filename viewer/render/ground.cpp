@@ -51,7 +51,7 @@ double Ground::height_of_corner(int row, int col) const {
     }
     const std::size_t at = static_cast<std::size_t>(r) * forces.cols + static_cast<std::size_t>(c);
     const auto normal = static_cast<double>(forces.normal[at]);
-    if ((forces.status[at] & status::kUsable) == 0 || std::isnan(normal)) continue;
+    if ((forces.status[at] & status::kLoaded) == 0 || std::isnan(normal)) continue;
     sum += std::clamp(normal * relief_.mm_per_newton, 0.0, relief_.most_mm);
   }
   return sum / 4;

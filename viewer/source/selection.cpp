@@ -82,7 +82,7 @@ class SumBuilder {
     sums_.ambiguous += (state & status::kAmbiguous) != 0 ? 1 : 0;
     sums_.saturated += (state & status::kSaturated) != 0 ? 1 : 0;
     sums_.inconsistent += (state & status::kInconsistent) != 0 ? 1 : 0;
-    if ((state & status::kUsable) != 0 && is_finite(forces_, at)) add_force(pillar, at);
+    if ((state & status::kLoaded) != 0 && is_finite(forces_, at)) add_force(pillar, at);
   }
 
   [[nodiscard]] bool is_idle_block(PillarIndex first) const {

@@ -156,9 +156,7 @@ StatusClass status_class(std::uint8_t status) {
   return (status & status::kAmbiguous) != 0 ? StatusClass::ambiguous : StatusClass::determined;
 }
 
-bool is_pressed(std::uint8_t status) {
-  return (status & (status::kUsable | status::kSaturated)) != 0;
-}
+bool is_pressed(std::uint8_t status) { return (status & status::kLoaded) != 0; }
 
 bool is_available(Quantity quantity, const SourceInfo& source) {
   return kInfos.at(static_cast<std::size_t>(quantity)).is_in(source);

@@ -111,9 +111,9 @@ void stream(const StreamOptions& options) {
   const SolverPlan plan = plan_of(options, *source);
   tell_assumptions(options, *source, plan.skin);
   const Device device = open_device(options.device).for_plan(plan);
-  Processor processor(device, plan,
-                      {.frames_in_flight = options.frames_in_flight,
-                       .on_compiling = terminal_line(options.quiet)});
+  Processor processor(
+      device, plan,
+      {.frames_in_flight = options.frames_in_flight, .on_compiling = terminal_line(options.quiet)});
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
   session.run(is_live_source(options.source) ? waited : std::chrono::nanoseconds(0));
   session.print_summary();

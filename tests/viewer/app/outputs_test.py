@@ -60,7 +60,7 @@ class Outputs(unittest.TestCase):
         self.assert_refused("forces.h5", "--frames", "1:3", "--png", "forces.png",
                             says="forces_02.png: is a file that is read")
         self.assert_refused("forces.h5", "--video", "forces.mp4", says="is a file that is read")
-        self.assert_refused("forces.h5", "--csv", "rec.h5", says="holds a recording")
+        self.assert_refused("forces.h5", "--csv", "rec.h5", says="is not an earlier result of this kind")
         for path, content in before.items():
             self.assertEqual(path.read_bytes(), content, path)
 

@@ -130,7 +130,7 @@ std::string format_status(std::uint8_t status) {
 std::string format_sensel_status(std::uint8_t status) {
   if ((status & status::kSaturated) != 0) return "saturated";
   if ((status & status::kInconsistent) != 0) return "no reading";
-  return (status & status::kUsable) != 0 ? "in contact" : "no contact";
+  return (status & status::kLoaded) != 0 ? "in contact" : "no contact";
 }
 
 std::string format_value(double value, double deviation) {
