@@ -48,7 +48,7 @@ constexpr int kRefused = 11;
 constexpr int kOtherException = 12;
 /// Exit status of a process that the HDF5 library crashes (hdf5/crash_guard.h).
 constexpr int kCrashOfHdf5 = 1;
-/// Of one whose memory HDF5 damages before AddressSanitizer's eyes (PillarfieldTesting.cmake).
+/// Exit status if HDF5 damages memory before AddressSanitizer's eyes (PillarfieldTesting.cmake).
 constexpr int kSanitizer = 99;
 
 void limit(decltype(RLIMIT_AS) resource, rlim_t most) {

@@ -43,7 +43,7 @@ void BandedFactor::factorise() {
     const double root = std::sqrt(column[0]);
     for (std::size_t i = 0; i < below; ++i) {
       column[i] /= root;
-      // What couples distant unknowns decays to numbers whose products are slow.
+      // Entries of distant unknowns decay to numbers whose products are slow.
       if (std::abs(column[i]) < kNothing * root) column[i] = 0;
     }
   }

@@ -179,7 +179,7 @@ class FaultFinder::Classifier {
     return pillarfield::is_still(read(sensel), noise(sensel), finder_.options_.still_factor);
   }
 
-  /// Whether the prediction of parity moves by more than the noise of three readings.
+  /// True if the prediction of parity moves by more than the noise of three readings.
   [[nodiscard]] bool should_move(std::size_t sensel) const {
     const Prediction& prediction = finder_.predictions_[sensel];
     if (prediction.frames < std::max(2U, finder_.options_.least_frames)) return false;

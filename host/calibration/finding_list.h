@@ -15,7 +15,7 @@ class FindingList {
   /// `mask` is Calibration::mask before the step; `statistics` are those of the step's frames.
   FindingList(std::vector<std::uint8_t> mask, const FrameStatistics& statistics);
 
-  /// Whether the sensel is not masked, neither before nor by the step.
+  /// True if the sensel is masked neither before nor by the step.
   [[nodiscard]] bool good(std::size_t sensel) const { return mask_[sensel] == kGood; }
   [[nodiscard]] std::size_t count_good() const;
 

@@ -19,8 +19,8 @@ inline constexpr std::array<std::size_t, 4> kPressedSensels = {15, 14, 20, 21};
 /// V of the pressed pillar's sensels.
 using PressedLoad = std::array<double, 4>;
 
-/// What a patch reads under a load, and its derivatives by the leaks. Sensels read V above the dead
-/// zone `zone`, counts.
+/// Readings of a patch under a load, and their derivatives by the leaks. Sensels read V above the
+/// dead zone `zone`, counts.
 struct LeakedPatch {
   SenselPatch readings;
   std::array<SenselPatch, 4> derivatives;

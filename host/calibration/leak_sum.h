@@ -15,13 +15,13 @@ namespace pillarfield {
   return 1 + 2 * sensel.inside + (2 - missing) * sensel.across;
 }
 
-/// What a pillar with eight neighbours carries under a uniform load, as a multiple.
+/// Load that a pillar with eight neighbours carries under a uniform load, as a multiple.
 [[nodiscard]] inline double pillar_leak_sum(const SensorEffects& effects) {
   const PillarLeak pillar = effects.pillar_leak.value_or(PillarLeak{});
   return 1 + 4 * pillar.edge + 4 * pillar.corner;
 }
 
-/// What a sensel reads under a uniform load, as a multiple.
+/// Reading of a sensel under a uniform load, as a multiple.
 [[nodiscard]] inline double full_leak_sum(const SensorEffects& effects) {
   return sensel_leak_sum(effects) * pillar_leak_sum(effects);
 }

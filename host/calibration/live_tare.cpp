@@ -26,7 +26,7 @@ constexpr double kLeastChangeCounts = 3;
 /// Most by which unlike drift of the sensels may raise that.
 constexpr double kUnlikeDrift = 4;
 
-/// How much more sensels read than at a tare before, without the change that all have in common.
+/// Rise of the readings since a tare before, without the change that all sensels have in common.
 struct TareChange {
   TareChange(const FrameStatistics& unloaded, const std::vector<float>& before,
              const Calibration& now);

@@ -68,7 +68,7 @@ struct NormalSum {
   std::uint64_t saturated = 0;
 };
 
-/// Whether neither diagonal has two usable sensels, so that parity does not determine the sum.
+/// True if neither diagonal has two usable sensels, so that parity does not determine the sum.
 bool has_ambiguous_sum(std::uint8_t bits) {
   constexpr std::uint8_t kRising = status::kSensel1 | status::kSensel3;
   constexpr std::uint8_t kFalling = status::kSensel2 | status::kSensel4;

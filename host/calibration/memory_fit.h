@@ -24,8 +24,8 @@ struct CurveStretch {
   double slope = 1;  ///< of the curve that c follows there
 };
 
-/// What fit_memory() fits. A piece that few frames hold takes its slope, times that of the curve
-/// that c follows, from its neighbours.
+/// Model that fit_memory() fits. A piece that few frames hold takes its slope, times that of the
+/// curve that c follows, from its neighbours.
 struct MemoryModelling {
   std::vector<CurveStretch> pieces;  ///< of c
   std::optional<double> dead_zone;   ///< unset: fitted

@@ -8,7 +8,7 @@
 
 namespace pillarfield {
 
-/// What lies beside a sensel: up to eight sensels, those at its edges first.
+/// Neighbours of a sensel: up to eight, those at its edges first.
 class Neighbours {
  public:
   Neighbours(const Skin& skin, std::size_t sensel) {

@@ -84,7 +84,7 @@ struct StepFrames {
   [[nodiscard]] std::string name() const { return file.empty() ? "frames" : file; }
 };
 
-/// What a step tells. Programs read the facts, people the lines of text.
+/// Report of a step. Programs read the facts, people the lines of text.
 struct StepReport {  // NOLINT(bugprone-exception-escape): JSON's move constructor does not throw
   std::string headline;
   nlohmann::ordered_json facts;
@@ -100,7 +100,7 @@ struct StepReport {  // NOLINT(bugprone-exception-escape): JSON's move construct
   void add_residual(const SensorEffects& effects);
 };
 
-/// What a step may use of the wires in the calibration that it extends.
+/// Use that a step may make of the wires in the calibration that it extends.
 enum class WireUse : std::uint8_t {
   loaded,    ///< crosstalk is removed
   unloaded,  ///< nothing touches the skin: tares that are an offset behind the wires stay

@@ -1,4 +1,4 @@
-// What the errors of a WeightFit do to other weights on other bases.
+// Effect of a WeightFit's errors on other weights on other bases.
 
 #include <algorithm>
 #include <cmath>

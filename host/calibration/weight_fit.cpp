@@ -125,7 +125,7 @@ void WeightFit::linearise() {
   }
 }
 
-/// Of a residual: by noise, guesses and misfit.
+/// Variance of a residual: by noise, guesses and misfit.
 double WeightFit::variance(std::size_t frame) const {
   return noise_squares_[frame] + squared(kGuessError * frames_[frame].guessed) + squared(misfit_);
 }

@@ -42,7 +42,7 @@ struct WeightResponse {
   [[nodiscard]] Point at(double reading) const;
 };
 
-/// What is known of the array before.
+/// Facts of the array that are known before the fit.
 struct WeighedArray {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
@@ -51,7 +51,7 @@ struct WeighedArray {
   std::vector<double> copies;  ///< 1 + the missing sensels for which a sensel stands
   std::vector<float> zones;    ///< as Calibration::dead_zone
 
-  /// What a reading above the threshold adds to V.
+  /// Amount that a reading above the threshold adds to V.
   [[nodiscard]] double zone(std::uint32_t sensel, double reading) const {
     return zones.empty() || !(reading > threshold) ? 0 : zones[sensel];
   }
@@ -78,7 +78,7 @@ class WeightFit {
   /// Relative, of the sum of a frame beyond noise: now, and as it was at first.
   [[nodiscard]] double misfit() const { return misfit_; }
   [[nodiscard]] double first_misfit() const { return first_misfit_; }
-  /// Of the logarithmic gains from sensel to sensel, as the visited ones show.
+  /// Spread of the logarithmic gains between sensels, as the visited ones show.
   [[nodiscard]] double spread() const { return spread_; }
   /// Information of each frame; 0: left out.
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }

@@ -72,7 +72,7 @@ std::vector<double> copies_of(const Calibration& planes, const Skin& skin) {
 
 namespace {
 
-/// Whether the weight may stand beyond this sensel: at the edge, or beside an absent sensel.
+/// True if the weight may stand beyond this sensel: at the edge, or beside an absent sensel.
 bool is_at_edge(const Calibration& planes, const Skin& skin, std::size_t sensel) {
   const Neighbours neighbours(skin, sensel);
   return neighbours.all().size() < 8 || std::ranges::any_of(neighbours.all(), [&](std::size_t i) {

@@ -177,7 +177,7 @@ class WireFit {
             WireCrosstalk{tile_.rows, tile_.cols, at[0], at[1], at[2], tare_origin_}, tares_};
   }
 
-  /// What the wires make too small, of each bare sensel.
+  /// Factors by which the correction raises the bare sensels.
   [[nodiscard]] std::vector<double> corrected_gains(WireCorrection& correct,
                                                     const FrameBuffer& mean) const {
     const FrameView corrected = correct.unlimited(mean.view());
@@ -280,7 +280,7 @@ namespace {
 
 const char* name_of(TareOrigin tares) { return tares == TareOrigin::offset ? "offset" : "conduct"; }
 
-/// What the frames tell of the tares, and how they are taken.
+/// Text on the tares: how they are taken, and what the frames tell of them.
 std::string tares_text(const WireResult& result) {
   const std::string taken = result.wires.tares == TareOrigin::offset
                                 ? "Tares are taken as an offset behind the wires"

@@ -47,7 +47,7 @@ std::vector<fs::path> usual_places() {
   return places;
 }
 
-/// Whether PoCL may have given a directory this name: digits of a hash, as letters from A on.
+/// True if PoCL may have given a directory this name: digits of a hash, as letters from A on.
 bool is_hash(const fs::path& name) {
   return std::ranges::all_of(name.string(), [](char c) { return c >= 'A' && c <= 'P'; });
 }
@@ -108,7 +108,7 @@ KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary) 
     std::error_code absent;
     for (const auto& entry : fs::directory_iterator(cache.directory, absent)) remove_old(entry);
   } catch (const fs::filesystem_error&) {
-    // What cannot be removed stays.
+    // Entries that cannot be removed stay.
   }
   if (cache.not_kept.empty() && environment("POCL_KERNEL_CACHE") == "0") {
     cache.not_kept = "POCL_KERNEL_CACHE is 0";

@@ -53,7 +53,7 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
-/// Whether stores may bypass the caches: of sensels without pillars, two rows are written at once,
+/// True if stores may bypass the caches: of sensels without pillars, two rows are written at once,
 /// each of which must begin on a cache line.
 bool rows_are_aligned(const Skin& skin) {
   constexpr std::uint32_t kFloatsOfLine = 16;
@@ -166,7 +166,7 @@ struct Processor::State {
     order.frame = 0;
   }
 
-  /// What frames leave to the next ones, as a plan begins.
+  /// Begins the states that frames of a plan leave to the next ones.
   void begin_states(const SolverPlan& wanted) {
     order.is_needed = has_memory_on_device(wanted);
     order.each_writes = wanted.baseline_rate || wanted.calibration.effects.memory;

@@ -30,9 +30,9 @@ class ContactStage {
   ContactEstimator estimator_;
 };
 
-/// What frames leave to the next one on the device: the tare of a followed baseline or of a bent
-/// skin, and the states of sensels. Frames in flight are then ordered: a reader waits for the last
-/// writer, a writer for all readers.
+/// State that frames leave to the next one on the device: the tare of a followed baseline or of a
+/// bent skin, and the states of sensels. Frames in flight are then ordered: a reader waits for the
+/// last writer, a writer for all readers.
 struct FrameOrder {
   bool is_needed = false;
   bool each_writes = false;  ///< every frame; else those with a change of curvature
@@ -61,7 +61,7 @@ class Slot {
 
   virtual void wait() = 0;
 
-  /// Whether wait() would return at once.
+  /// True if wait() would return at once.
   [[nodiscard]] virtual bool is_done() = 0;
 
   /// The results of the frame, after wait().
@@ -73,7 +73,7 @@ class Slot {
   /// Results of the frame, after wait().
   [[nodiscard]] ForceFieldView results() const { return memory().forces(); }
 
-  /// Where a frame with pillars has no contacts, after wait(), if the host sees that.
+  /// Blocks without contacts of a frame with pillars, after wait(), if the host sees them.
   [[nodiscard]] FoundContacts contacts() const;
 
  protected:

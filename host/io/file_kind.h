@@ -12,7 +12,7 @@ namespace pillarfield {
 /// The extension of a file name in lower case, ".csv"; empty if it has none.
 [[nodiscard]] std::string extension_of(const std::filesystem::path& path);
 
-/// Whether the extension is that of HDF5.
+/// True if the extension is that of HDF5.
 [[nodiscard]] bool is_hdf5_name(const std::filesystem::path& path);
 
 /// The files of a series: those given, and those of folders, in natural order of their names, in

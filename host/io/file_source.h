@@ -97,7 +97,7 @@ class FileSource : public FrameSource {
   bool mirrors_ = false;  ///< falling readings
 
  private:
-  /// What sensels read in so many of the frames, evenly spaced.
+  /// Evidence of the sensels in so many of the frames, evenly spaced.
   [[nodiscard]] std::vector<SenselEvidence> looked_at(std::uint64_t looks);
 
   std::optional<double> rate_hz_;

@@ -15,7 +15,7 @@ namespace pillarfield {
 /// frame_source.cpp.
 struct SourceFormat {
   const char* name = "";  ///< "Tekscan ASCII export"
-  /// Whether a file has the format, by its first 4096 bytes.
+  /// True if a file has the format, by its first 4096 bytes.
   bool (*recognises)(std::string_view head) = nullptr;
   std::unique_ptr<FileSource> (*open)(const std::filesystem::path& path,
                                       const ReadOptions& options) = nullptr;

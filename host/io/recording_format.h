@@ -42,7 +42,7 @@ inline constexpr const char* kEffects = "/calibration/effects";
 inline constexpr const char* kTruth = "/truth";
 inline constexpr const char* kTruthPlanes[] = {"/truth/shear_x", "/truth/shear_y", "/truth/normal"};
 
-/// Whether a skin's truth has the plane of this index; without pillars, normal force alone.
+/// True if a skin's truth has the plane of this index; without pillars, normal force alone.
 [[nodiscard]] inline bool has_truth_plane(const Skin& skin, std::size_t plane) {
   constexpr std::size_t kNormal = 2;
   return skin.has_pillars() || plane == kNormal;

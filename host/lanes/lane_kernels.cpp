@@ -65,7 +65,7 @@ using ulong = std::uint64_t;
 #define PF_COLUMN_PER_COUNT (given->wires.column_per_count)
 #define PF_IDLE_PER_COUNT (given->wires.idle_per_count)
 
-/// What both programs have: the work-item that runs.
+/// Base of both programs: the work-item that runs.
 struct WorkItem {
   const LanePlan* given;
   LaneRange range{};

@@ -43,7 +43,7 @@ struct LaneWires {
   float idle_per_count = 0;
 };
 
-/// What a program of lanes knows of a plan: what OpenCL programs have as macros.
+/// Part of a plan that a program of lanes knows, and that OpenCL programs have as macros.
 struct LanePlan {
   single_precision::Stages stages{};  ///< constants in units of whole numbers, if `whole`
   bool whole = false;                 ///< counts are whole numbers: 8-bit readings as they are

@@ -15,7 +15,7 @@ constexpr double kDriftDeviations = 6;
 constexpr double kDriftPart = 0.25;            // of the threshold
 constexpr double kLeastUntouchedTiles = 0.15;  // fraction of the tiles
 constexpr double kSlopeRidge = 1e-3;
-constexpr double kSettlingTimes = 3;  // time constants in which a tare takes in what it was off by
+constexpr double kSettlingTimes = 3;  // time constants after which a corrected tare is trusted
 
 double value_at(const PatternTriple& factors, const PatternTriple& pattern) {
   return factors[0] * pattern[0] + factors[1] * pattern[1] + factors[2] * pattern[2];
@@ -69,7 +69,7 @@ double DriftFollower::mean(const Tile& tile, Value value) const {
   return sum / static_cast<double>(tile.end - tile.first);
 }
 
-/// Whether a tile is as far off its tare as untouched ones were in the last frame.
+/// True if a tile is as far off its tare as untouched ones were in the last frame.
 bool DriftFollower::is_near(const Tile& tile) const {
   const auto sensels = static_cast<double>(tile.end - tile.first);
   const double most = std::max(kDriftDeviations * noise_ / std::sqrt(sensels), kDriftPart * limit_);

@@ -22,7 +22,7 @@ class DriftFollower {
   /// The plan must have a baseline_rate.
   explicit DriftFollower(const SolverPlan& plan);
 
-  /// What is added to the touched tares of the pillar rows whose turn it is after this frame;
+  /// Amount to add to the touched tares of the pillar rows whose turn it is after this frame;
   /// `bent` is what was applied before it. Zero with crosstalk of wires, whose untouched sensels
   /// depend on loads.
   single_precision::Drift follow(const FrameView& frame, const std::optional<Curvature>& bent = {});

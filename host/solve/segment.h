@@ -27,7 +27,7 @@ namespace pillarfield {
   return usable == 3 || usable == 9 ? 1.0F : -1.0F;
 }
 
-/// What the segments of a sensor depend on besides the forces.
+/// Properties of a sensor on which its segments depend, besides the forces.
 struct SegmentModel {
   float point = 0;     ///< segment point of direct forces; 0: forces anywhere on their segments
   float hidden_n = 0;  ///< normal force below the threshold, N, if `point` is 0

@@ -25,7 +25,7 @@ std::size_t place_of(int row, int col) {
 
 double at(const Patch& patch, int row, int col) { return patch[place_of(row, col)]; }
 
-/// What the place of a patch receives from the sensels beside it.
+/// Leak that the place of a patch receives from the sensels beside it.
 double sensel_receives(const Patch& from, int row, int col, const SenselLeak& leak) {
   double sum = 0;
   for (const int step : {-1, 1}) {

@@ -89,9 +89,9 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
 
 constexpr int kMaxBaselineInterval = 1024;
 
-/// Frames over which a time constant of so many frames lets the update of the tare be spread: a
-/// hundredth of it, and without the divisors 2, 3 and 5 of usual frame rates, so that hum of 50 or
-/// 60 Hz does not stand still from turn to turn.
+/// Number of frames over which the tare update may be spread: a hundredth of the time constant, and
+/// without the divisors 2, 3 and 5 of usual frame rates, so that hum of 50 or 60 Hz does not stand
+/// still from turn to turn.
 int baseline_interval(double time_constant_frames) {
   constexpr double kTurnsInTimeConstant = 100;
   const double most = time_constant_frames / kTurnsInTimeConstant;

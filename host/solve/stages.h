@@ -32,7 +32,7 @@ struct Stage {
 /// The stages that a plan names, in order.
 [[nodiscard]] std::vector<Stage> stages_of(const SolverPlan& plan);
 
-/// How a constant is written in a program of whole numbers: kernels/frame/stage_table.h.
+/// Form of a constant in a program of whole numbers: kernels/frame/stage_table.h.
 enum class ConstantKind : std::uint8_t { exact, above, from, per_count, fraction };
 
 /// A constant of the stages.

@@ -10,8 +10,8 @@
 
 namespace pillarfield {
 
-/// How the wires of a plan act on the readings of a frame, as kernels/frame/find_wires.cl finds it;
-/// nothing if the plan has no crosstalk of wires.
+/// Factors by which the wires of a plan act on the readings of a frame, as
+/// kernels/frame/find_wires.cl finds them; nothing if the plan has no crosstalk of wires.
 class WireFactors {
  public:
   WireFactors() = default;

@@ -76,7 +76,7 @@ TEST(BendingCalibration, FindsThePatterns) {
   EXPECT_LT(result.residual_after, 0.1);
 }
 
-TEST(BendingCalibration, StoresNothingForASkinThatDoesNotMind) {
+TEST(BendingCalibration, StoresNothingIfTaresDoNotChange) {
   PressedSkin skin = bendable_skin(0);
   const BendingResult result = bent_in_three_directions(skin);
   EXPECT_FALSE(result.found);

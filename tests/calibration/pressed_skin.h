@@ -21,7 +21,7 @@ class PressedSkin {
   [[nodiscard]] Scene& scene() { return scene_; }
   [[nodiscard]] const Skin& skin() const { return scene_.skin; }
 
-  /// What a faultless calibration would find.
+  /// Result of a faultless calibration.
   [[nodiscard]] Calibration truth() const { return Simulator(scene_).calibration(); }
 
   /// Statistics of `frames` frames in which each pillar carries `force_n` straight down.

@@ -119,7 +119,7 @@ class WeighedPad {
     return take_tare(blank_calibration(skin()), bare, {}).calibration;
   }
 
-  /// Where a body of this reach may stand wholly.
+  /// Moves a body of this reach to a random place, wholly on the pad.
   void place(Body& body, double reach) {
     body.row = reach + uniform() * (model_.rows - 2 * reach);
     body.col = reach + uniform() * (model_.cols - 2 * reach);

@@ -85,7 +85,7 @@ TEST(ContactEstimator, RemembersThePressureOfAContact) {
   }
 }
 
-/// What was pressed before the contact lifted off says nothing of the next contact.
+/// Forces before the contact lifted off say nothing of the next contact.
 TEST(ContactEstimator, ForgetsAContactThatLiftsOff) {
   const Simulator simulator(turned(ball(), 2.2));
   const SolverPlan direct = plan_of(simulator.scene(), Estimator::direct);

@@ -29,8 +29,8 @@ struct Mask {
     }
   }
 
-  /// Which bit is usable depends on the place, so that each of them is tried; so do the bits that
-  /// must not count.
+  /// The usable bit depends on the place, so that each of them is tried; so do the bits that must
+  /// not count.
   void set(std::uint32_t row, std::uint32_t col, bool loaded) {
     const std::size_t place = std::size_t{row} * cols + col;
     const unsigned unusual = status::kAmbiguous | status::kFromNeighbours |

@@ -137,7 +137,7 @@ const Story kStories[] = {
     {"one that vanishes and returns is new",
      {},
      {{bare().disc(4, 4, 2), {1}}, {bare(), {}, {1}}, {bare().disc(4, 4, 2), {2}}}},
-    {"shared pillars come before distance",  // Of the one at 9, 1 is nearest; 2 shares a column.
+    {"shared pillars come before distance",  // The box at 15 shares a column with 2.
      {},
      {{bare().box(2, 4, 4, 4).box(2, 12, 4, 4), {1, 2}},
       {bare().box(2, 15, 4, 4).box(2, 9, 4, 2), {1, 2}}}},

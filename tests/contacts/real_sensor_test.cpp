@@ -17,7 +17,7 @@ namespace {
 constexpr double kFriction = 1.6;
 constexpr Indenter (*kIndenters[])() = {fingertip, ball, punch};
 
-/// What a sensor has that an ideal one has not.
+/// Properties that distinguish a sensor from an ideal one.
 struct Sensor {
   const char* name = "ideal";
   double most_above_ideal = 0;  ///< of the ratio to the paper's midpoint

@@ -116,7 +116,7 @@ TEST_P(SenselsOnDevice, CorrectedHaveTheBitsOfTheHost) {
 
 TEST_P(SenselsOnDevice, BentHaveTheBitsOfTheHost) { expect_host_bits(bent_plan(GetParam())); }
 
-/// What does not exist is absent.
+/// Planes that sensels cannot determine are absent.
 TEST_P(SenselsOnDevice, HaveNeitherShearNorAngles) {
   const Path& path = GetParam();
   SolverPlan plan = without_pillars(bare_plan(path.rows, path.cols, path.type));

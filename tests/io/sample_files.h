@@ -105,7 +105,7 @@ std::string error_of(Action action) {
   return {};
 }
 
-/// Whether `text` contains all of `parts`.
+/// Succeeds if `text` contains all of `parts`.
 inline ::testing::AssertionResult has_all(const std::string& text,
                                           const std::vector<std::string>& parts) {
   for (const auto& part : parts) {

@@ -323,7 +323,7 @@ double reach_of(const ClosedFormContact& contact, const ContactKey& state) {
                                                  : radius;
 }
 
-/// Where contacts overlap, the closed forms no longer solve the contact problem.
+/// The closed forms no longer solve the contact problem if contacts overlap.
 TEST(ShippedScenes, KeepTheirContactsApart) {
   for (const auto& path : shipped_scenes()) {
     const Scene scene = load_scene(path);

@@ -63,7 +63,7 @@ TEST(SenselLeakOfAScene, AddsTheSumOfItsFractionsInsideAndLosesWhatLeavesTheArra
   EXPECT_NEAR(v[9 * 7 - 1], 10.4, 1e-12);  // an odd last row and column have no pillar
 }
 
-/// What a sensel reads whose V follows `loads`, one frame each.
+/// Readings of a sensel whose V follows `loads`, one frame each.
 std::vector<double> readings_of(const SensorModel& model, double rate_hz,
                                 const std::vector<double>& loads) {
   Scene scene = sensels(2, 2);

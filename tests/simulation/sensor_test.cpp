@@ -22,7 +22,7 @@ Scene scene_with(const SensorModel& model) {
   return scene;
 }
 
-/// What the sensor makes of the same V at every sensel.
+/// Frame that the sensor makes of the same V at every sensel.
 FrameBuffer reading_of(double v, const Scene& scene, std::uint64_t frame = 0) {
   const Sensor sensor(scene);
   FrameBuffer raw(sensor.sensel_type(), scene.skin.rows, scene.skin.cols);

@@ -88,7 +88,7 @@ TEST(ShearCoefficient, ComesBackInAllRegions) {
 
 // --- Leak between pillars ---
 
-/// What pillars carry of these forces, which are zero at the skin's edge.
+/// Forces that leaking pillars carry under these ones, which are zero at the skin's edge.
 ForceField carried(const ForceField& truth, const PillarLeak& leak) {
   ForceField sum(truth.rows, truth.cols);
   const auto side = static_cast<int>(truth.cols);

@@ -124,7 +124,7 @@ SensorEffects with_leak(const SenselLeak& leak) {
   return effects;
 }
 
-/// What sensels read that leak: V and fractions of the four around, by the definition.
+/// Readings of sensels that leak: V and fractions of the four around, by the definition.
 std::vector<double> leaked(const std::vector<double>& v, std::size_t cols, const SenselLeak& leak) {
   std::vector<double> readings = v;
   const auto add = [&](std::size_t to, std::size_t from, bool inside) {

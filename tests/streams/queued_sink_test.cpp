@@ -19,7 +19,7 @@
 namespace pillarfield {
 namespace {
 
-/// What a consumer did; the test controls when it goes on.
+/// Actions of a consumer; the test controls when it goes on.
 struct Log {
   std::mutex mutex;
   std::condition_variable changed;

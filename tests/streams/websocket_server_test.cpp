@@ -86,7 +86,7 @@ class RawClient {
     return content;
   }
 
-  /// Whether the server ends the connection, whatever it sends before.
+  /// True if the server ends the connection, whatever it sends before.
   bool is_closed() {
     while (receive()) received_.clear();
     return !timed_out_;
@@ -249,8 +249,8 @@ std::string repeated(int times, const std::string& bytes) {
   return all;
 }
 
-/// What clients write after they have greeted, or instead; they are disconnected, and another one
-/// loses nothing.
+/// Clients that write these bytes after they have greeted, or instead, are disconnected, and
+/// another one loses nothing.
 TEST_F(WebSocketServerTest, HostileClientsAreDisconnected) {
   serve({.handshake_s = 0.5});
   RawClient honest(server_->port());

@@ -7,8 +7,8 @@
 
 namespace pillarfield::viewer {
 
-/// The load that a range of colours is made for: rises at once, and falls only after some seconds
-/// of less than half of it. A pause without a touch changes nothing.
+/// Load at the top of the colour range: rises at once, and falls only after some seconds of less
+/// than half of it. A pause without a touch changes nothing.
 class LoadRange {
  public:
   static constexpr double kPatienceS = 8;
@@ -42,8 +42,8 @@ class LoadRange {
   }
 
   float load_ = 0;        ///< N
-  float lately_ = 0;      ///< largest of the time that is less, N
-  double touched_s_ = 0;  ///< of less than half the load
+  float lately_ = 0;      ///< largest load since it fell below half, N
+  double touched_s_ = 0;  ///< time of touch below half the load
   double last_s_ = 0;
 };
 

@@ -61,7 +61,7 @@ Skin with_full_scale(Skin skin, SenselType type) {
   return skin;
 }
 
-/// Of the kept frames.
+/// Statistics of the kept frames.
 std::vector<SenselStatistics> statistics_of(const KeptFrames& kept, double full_scale) {
   std::vector<SenselStatistics> statistics(kept.sensels());
   for (std::size_t frame = 0; frame < kept.frames(); ++frame) {

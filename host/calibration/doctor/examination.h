@@ -26,7 +26,7 @@ struct LinePair {
   std::uint32_t second;
 };
 
-/// What the findings are found in: kept frames as signals, and what is known of each sensel.
+/// Evidence of the findings: kept frames as signals, and what is known of each sensel.
 struct Examination {
   const FrameStatistics& statistics;        ///< of all frames
   std::vector<SenselStatistics> read = {};  ///< of the frames that are not missing
@@ -74,18 +74,18 @@ struct Examination {
 /// True if a contact is on few sensels.
 [[nodiscard]] bool is_small_contact(const Examination& seen, std::uint32_t frame);
 
-/// Whether small contacts moved over most lines.
+/// True if small contacts moved over most lines.
 [[nodiscard]] bool is_swept(const Examination& seen, LineAxis axis);
 
-/// How much each line and the next one differ, relative to their signals, but for gains of single
+/// Difference of each line and the next one, relative to their signals, but for gains of single
 /// sensels; unset: too little signal.
 [[nodiscard]] std::vector<std::optional<double>> neighbour_differences(const Examination& seen,
                                                                        LineAxis axis);
 
-/// Which way readings go under load: loads are local and large, drift and offsets common and slow.
+/// Direction of readings under load: loads are local and large, drift and offsets common and slow.
 [[nodiscard]] Polarity find_polarity(const Examination& seen);
 
-/// Whether the layout is pillars, or might be.
+/// True if the layout is pillars, or might be.
 [[nodiscard]] bool may_have_pillars(const Diagnosis& found);
 
 // Each step writes what it finds into the examination and into the diagnosis, in this order.
@@ -96,7 +96,7 @@ void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis
 void find_signals(Examination& seen, Diagnosis& found);
 /// Verdicts by readings alone; sensels that have one are not good for the next steps.
 void find_odd_readings(Examination& seen, const Diagnosis& found);
-/// Whether groups of 2 x 2 sensels share their loads.
+/// The layout: pillars if groups of 2 x 2 sensels share their loads.
 void find_layout(const Examination& seen, Diagnosis& found);
 /// Two lines with the same signals, of different pillars.
 void find_shorts(Examination& seen, Diagnosis& found);

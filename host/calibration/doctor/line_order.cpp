@@ -119,7 +119,7 @@ LineLoads find_loads(const Examination& seen, LineAxis axis) {
   return result;
 }
 
-/// Whether contacts moved so much that the order of lines can be judged.
+/// True if contacts moved so much that the order of lines can be judged.
 bool shows_order(const Examination& seen, const LineLoads& loads, LineAxis axis) {
   return loads.frames >= kLeastOrderFrames &&
          static_cast<double>(loads.frames) >

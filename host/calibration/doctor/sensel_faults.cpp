@@ -25,7 +25,7 @@ class LyingSignals {
 
   [[nodiscard]] float of(std::size_t sensel) const { return signals_[sensel]; }
 
-  /// What three quarters of the good neighbours exceed; 0 with fewer than three of them.
+  /// Signal that three quarters of the good neighbours exceed; 0 with fewer than three of them.
   [[nodiscard]] float least_under_contact(std::uint32_t row, std::uint32_t col) const;
 
   /// The same for one small contact, without holes: what lies between two loaded neighbours is

@@ -56,9 +56,9 @@ class LineSignals {
     }
   }
 
-  /// How much the signals of two lines differ, relative to those of the weaker line: the root of
-  /// the mean squares of the differences, without noise, and of the smaller eigenvalues of the
-  /// second moments, which no gain of a single sensel changes. Unset: too little signal.
+  /// Difference of the signals of two lines, relative to those of the weaker line: the root of the
+  /// mean squares of the differences, without noise, and of the smaller eigenvalues of the second
+  /// moments, which no gain of a single sensel changes. Unset: too little signal.
   [[nodiscard]] std::optional<LineDifference> difference(std::size_t a, std::size_t b) const {
     const std::size_t lines = seen_.lines(axis_);
     double unequal = 0;

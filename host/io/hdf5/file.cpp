@@ -208,7 +208,7 @@ Handle access_within_file(const File& file) {
   return access;
 }
 
-/// Whether the link `path`, whose parents are valid, leads to an object of this file.
+/// True if the link `path`, whose parents are valid, leads to an object of this file.
 bool leads_within_file(const File& file, const std::string& path, const Handle& access) {
   H5L_info_t link = {};
   require(H5Lget_info(file.id.get(), path.c_str(), &link, access.get()), file.path,

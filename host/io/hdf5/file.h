@@ -57,7 +57,7 @@ void close(File& file);
 /// Creates a group whose parents exist.
 [[nodiscard]] Handle create_group(const File& file, const char* name);
 
-/// Whether an object with this absolute path exists; its groups may be absent too. Throws Error if
+/// True if an object with this absolute path exists; its groups may be absent too. Throws Error if
 /// a link on the path leads to another file or to nothing.
 [[nodiscard]] bool exists(const File& file, std::string_view path);
 

@@ -36,7 +36,7 @@ class StoredFrames {
     return {storage_.extent.begin() + 1, storage_.extent.end()};
   }
 
-  /// Whether the values are an enumeration, such as NumPy's booleans; type() is its integer.
+  /// True if the values are an enumeration, such as NumPy's booleans; type() is its integer.
   [[nodiscard]] bool is_enumeration() const { return is_enumeration_; }
   [[nodiscard]] hid_t type() const { return type_.get(); }
   [[nodiscard]] H5T_class_t value_class() const { return H5Tget_class(type_.get()); }

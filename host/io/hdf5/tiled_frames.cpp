@@ -112,7 +112,7 @@ void TiledFrames::put(const std::byte* frame, Tile& tile) {
   }
 }
 
-/// Whether the values of a tile lie in a frame as in the file.
+/// True if the values of a tile lie in a frame as in the file.
 bool TiledFrames::is_in_place(const Tile& tile) const {
   return chunk_frames_ == 1 && tile.cols == cols_ && tile.rows == tile_rows_;
 }

@@ -58,7 +58,7 @@ class LockedPart {
   [[nodiscard]] PartBytes& bytes() { return *bytes_; }
   [[nodiscard]] bool was_there() const { return was_there_; }
 
-  /// Whether the part's name still refers to this file.
+  /// True if the part's name still refers to this file.
   [[nodiscard]] bool has_its_name() const;
 
  private:
@@ -72,7 +72,7 @@ class LockedPart {
   bool was_there_ = false;
 };
 
-/// Whether a part exists that LockedPart would open. Throws Error in the cases of LockedPart.
+/// True if a part exists that LockedPart would open. Throws Error in the cases of LockedPart.
 [[nodiscard]] bool is_part_left_over(const OutputPlace& place);
 
 }  // namespace pillarfield

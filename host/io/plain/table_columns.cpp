@@ -50,7 +50,7 @@ bool has_any(const std::vector<std::string>& words, const NameWords& among) {
   return std::ranges::any_of(words, [&](const auto& word) { return among.contains(word); });
 }
 
-/// Whether a column has the name of a time, and in which unit, s; 0 if the name states none.
+/// Unit, s, of a column with the name of a time; 0 if the name states none; unset for other names.
 std::optional<double> time_unit_of(std::string_view name) {
   const auto words = words_in(name);
   if (words.empty() || has_digit(name) || has_any(words, kNoReadings)) return std::nullopt;

@@ -11,13 +11,13 @@
 
 namespace pillarfield {
 
-/// Which columns of a table are its readings and its times. Indices count from 0.
+/// Columns of a table that are its readings and its times. Indices count from 0.
 struct TableColumns {
   std::vector<std::size_t> readings;  ///< in their order in a frame
   std::optional<std::size_t> time;
   double time_unit_s = 0;             ///< 0 if the name states none
   std::vector<std::string> left_out;  ///< names of columns that are no readings
-  /// Of a frame in a line whose columns are numbered alike in each row, "R_ch0" to "L_ch15".
+  /// Size of a frame in a line whose columns are numbered alike in each row, "R_ch0" to "L_ch15".
   std::optional<FrameSize> size;
 };
 

@@ -18,7 +18,7 @@
 namespace pillarfield {
 namespace {
 
-/// Whether cells count 0, 1, 2, ... as the names that programs give to columns without one.
+/// True if cells count 0, 1, 2, ... as the names that programs give to columns without one.
 bool are_column_numbers(const std::vector<std::string>& cells) {
   if (cells.size() < 3) return false;
   for (std::size_t i = 0; i < cells.size(); ++i) {

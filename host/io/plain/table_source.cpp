@@ -35,7 +35,7 @@ bool resembles_numbers(std::string_view line) {
          });
 }
 
-/// Whether all readings are whole numbers of 16 bits.
+/// True if all readings are whole numbers of 16 bits.
 bool are_counts(const std::vector<float>& readings) {
   return std::ranges::all_of(readings, [](float reading) {
     return reading >= 0 && reading <= 65535 && reading == std::floor(reading);
@@ -126,7 +126,7 @@ std::unique_ptr<FileSource> open_table(const std::filesystem::path& path,
   return open_table_after(path, options, 0);
 }
 
-/// Whether a text begins with two or more numbers in a line, after a line of names or none.
+/// True if a text begins with two or more numbers in a line, after a line of names or none.
 bool looks_like_table(std::string_view head) {
   if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
   const auto is_text = [](char letter) {

@@ -67,7 +67,7 @@ std::optional<double> take_clock(std::string_view& text, bool is_whole) {
   return time_s + fraction;
 }
 
-/// Where the first cell of a line ends.
+/// End of the first cell of a line.
 std::size_t end_of_cell(std::string_view line, char separator) {
   const std::size_t end = std::min(line.find(separator), line.size());
   if (separator != ' ' || end == line.size()) return end;

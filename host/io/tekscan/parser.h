@@ -31,7 +31,7 @@ struct TekscanHeader {
   /// invalid.
   void parse_line(std::string_view line, const std::string& place);
 
-  /// Whether cells are forces or pressures instead of raw counts.
+  /// True if cells are forces or pressures instead of raw counts.
   [[nodiscard]] bool is_calibrated() const { return newtons_per_unit || mpa_per_unit; }
 
   /// Area of a sensel: SENSEL_AREA, else the product of the spacings; unset if neither is given.

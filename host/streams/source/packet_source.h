@@ -35,7 +35,7 @@ class PacketSource {
   /// Allocates the memory for frames of this shape; the last packet received stays valid.
   virtual void prepare(const FrameShape& /*shape*/) {}
 
-  /// Whether anyone may send to it: then frames of another size need not be the sensor's.
+  /// True if anyone may send to it: then frames of another size need not be the sensor's.
   [[nodiscard]] virtual bool is_open_to_all() const { return false; }
 
   /// Reason why bytes but no packet came, for the user who waits; empty: unknown.

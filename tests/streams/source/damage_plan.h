@@ -54,7 +54,7 @@ inline std::vector<SentPacket> damage(const std::vector<std::vector<SentPacket>>
   return arriving;
 }
 
-/// What must come of arriving packets.
+/// Outcome that arriving packets must have.
 struct Expected {
   StreamHealth health;
   /// By sequence of the frames delivered: the packets that came in time.

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 constexpr FrameShape kBoard = {SenselType::u8, 12, 11};
 const std::string kMarks = "\xAA\x55";
 
-/// What a parser made of bytes.
+/// Output of a parser.
 struct Parsed {
   std::vector<std::string> frames;
   std::vector<std::uint64_t> sequences;

@@ -229,7 +229,7 @@ TEST(ResultStream, FollowsANewRingOfTheSameLayoutAlone) {
   EXPECT_EQ(stream->health().restarts, 1);
 }
 
-TEST(ResultStream, IsNoneOfFramesNorOfAnEarlierVersion) {
+TEST(ResultStream, RefusesRingsOfOtherKindsAndVersions) {
   const std::string source = "shm:" + results_name();
   const auto message = [&] {
     return core_test::message_of([&] { (void)open_result_stream(source, {}); });

@@ -43,7 +43,7 @@ class Name {
   std::string text_;
 };
 
-/// What opening the source says.
+/// Message with which opening the source is refused.
 std::string refusal_of(const std::string& source) {
   return message_of([&] { (void)open_live_source(source, {.stop = [] { return true; }}); });
 }
