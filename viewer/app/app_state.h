@@ -19,7 +19,7 @@ namespace pillarfield::viewer {
 /// One line about the last action: "wrote field.png".
 class Notice : public std::string {
  public:
-  Notice& operator=(std::string words) {
+  Notice& operator=(const std::string& words) {
     assign(words);
     is_failure = false;
     return *this;

@@ -62,7 +62,7 @@ void Application::toggle_recording() {
     throw Error(place_.source->name, "only a sensor can be recorded", "open a live source");
   }
   if (!live->status().recording.empty()) return live->stop_recording();
-  const auto path = free_path(*place_.source, "recording", ".h5");
+  auto path = free_path(*place_.source, "recording", ".h5");
   live->record(path);
   state_.notice = "recording " + path.string();
 }

@@ -136,7 +136,7 @@ void Application::watch_notice() {
     redraws_.forget_notice();
     redraws_.field();
   }
-  last_notice_ = state_.notice;
+  last_notice_.assign(state_.notice);
 }
 
 }  // namespace pillarfield::viewer

@@ -69,7 +69,7 @@ void Curves::set_rects(std::span<const PillarRect> rects) {
   curves_ = std::move(next);
 }
 
-void Curves::append(Points& points, const CurvePoint& point) {
+void Curves::append(Points& points, const CurvePoint& point) const {
   if (!points.empty() && point.index <= points.back().index) return;
   if (points.size() == most_points_) points.pop_front();
   points.push_back(point);

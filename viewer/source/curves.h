@@ -64,7 +64,7 @@ class Curves {
     PillarRect rect;
     Points points;
   };
-  void append(Points& points, const CurvePoint& point);
+  void append(Points& points, const CurvePoint& point) const;
 
   Pitch pitch_mm_;
   std::size_t most_points_;

@@ -53,9 +53,9 @@ float nan_unless(bool holds, double value) {
 
 }  // namespace
 
-ForceFileProducer::ForceFileProducer(const std::filesystem::path& path, const ReadOptions& options)
+ForceFileProducer::ForceFileProducer(const std::filesystem::path& path, ReadOptions options)
     : file_(path),
-      read_(options),
+      read_(std::move(options)),
       reader_(std::in_place, path, read_),
       info_(info_of(path, *reader_)),
       blocks_(kMostShown, [this] {

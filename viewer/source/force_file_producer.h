@@ -15,7 +15,7 @@ namespace pillarfield::viewer {
 class ForceFileProducer final : public FieldProducer {
  public:
   /// Throws Error where the file cannot be read or has no frames.
-  ForceFileProducer(const std::filesystem::path& path, const ReadOptions& options);
+  ForceFileProducer(const std::filesystem::path& path, ReadOptions options);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
   [[nodiscard]] ShownField produce(std::uint64_t index) override;

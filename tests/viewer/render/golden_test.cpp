@@ -58,6 +58,7 @@ Options options_of(const GoldenPicture& picture) {
   words[0] = std::string(PILLARFIELD_SCENES) + "/" + words[0];
   words.insert(words.begin(), "pillarfield-viewer");
   std::vector<char*> arguments;
+  arguments.reserve(words.size());
   for (std::string& word : words) arguments.push_back(word.data());
   Options options;
   EXPECT_FALSE(parse_options(static_cast<int>(arguments.size()), arguments.data(), options));

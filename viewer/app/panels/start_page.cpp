@@ -78,7 +78,7 @@ bool picture_button(const char* title, const TexturePlace& place, double scale) 
 
 std::string picture_row(const StartChoices& choices, double scale) {
   std::string chosen;
-  const float gap = static_cast<float>((kStartPageWidth - 4 * kStartPictureWidth) / 3 * scale);
+  const auto gap = static_cast<float>((kStartPageWidth - 4 * kStartPictureWidth) / 3 * scale);
   bool first = true;
   for (std::size_t i = 0; i < choices.pictures.size(); ++i) {
     const std::string name(embedded_pictures()[i].scene);

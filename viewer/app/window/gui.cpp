@@ -29,9 +29,9 @@ bool has_curves(const AppState& state) {
 
 /// A panel of the column.
 struct Panel {
-  const char* title;
-  bool (*has_contents)(const AppState& state);
-  void (*draw)(const Command& command);
+  const char* title = nullptr;
+  bool (*has_contents)(const AppState& state) = nullptr;
+  void (*draw)(const Command& command) = nullptr;
   bool (*unfolds)(const AppState& state) = nullptr;
 };
 

@@ -51,37 +51,37 @@ void set_sizes(ImGuiStyle& style) {
 }
 
 struct StyleColour {
-  int index;
-  unsigned Shades::*shade;
+  unsigned Shades::*shade = nullptr;
+  int index = 0;
   float alpha = 1;
 };
 
-constexpr StyleColour kStyleColours[] = {{ImGuiCol_Text, &Shades::text},
-                                         {ImGuiCol_TextDisabled, &Shades::faint},
-                                         {ImGuiCol_TextSelectedBg, &Shades::accent, 0.35f},
-                                         {ImGuiCol_CheckMark, &Shades::accent},
-                                         {ImGuiCol_SliderGrab, &Shades::accent},
-                                         {ImGuiCol_SliderGrabActive, &Shades::accent},
-                                         {ImGuiCol_WindowBg, &Shades::panel},
-                                         {ImGuiCol_ChildBg, &Shades::panel, 0},
-                                         {ImGuiCol_PopupBg, &Shades::popup},
-                                         {ImGuiCol_Border, &Shades::line},
-                                         {ImGuiCol_Separator, &Shades::line},
-                                         {ImGuiCol_TableBorderLight, &Shades::line},
-                                         {ImGuiCol_TableBorderStrong, &Shades::line},
-                                         {ImGuiCol_ScrollbarBg, &Shades::panel, 0},
-                                         {ImGuiCol_ScrollbarGrab, &Shades::field_active},
-                                         {ImGuiCol_ScrollbarGrabHovered, &Shades::faint},
-                                         {ImGuiCol_ScrollbarGrabActive, &Shades::faint},
-                                         {ImGuiCol_FrameBg, &Shades::field},
-                                         {ImGuiCol_FrameBgHovered, &Shades::field_hovered},
-                                         {ImGuiCol_FrameBgActive, &Shades::field_active},
-                                         {ImGuiCol_Button, &Shades::field},
-                                         {ImGuiCol_ButtonHovered, &Shades::field_hovered},
-                                         {ImGuiCol_ButtonActive, &Shades::field_active},
-                                         {ImGuiCol_Header, &Shades::accent, 0.25f},
-                                         {ImGuiCol_HeaderHovered, &Shades::field_hovered},
-                                         {ImGuiCol_HeaderActive, &Shades::field_active}};
+constexpr StyleColour kStyleColours[] = {{&Shades::text, ImGuiCol_Text},
+                                         {&Shades::faint, ImGuiCol_TextDisabled},
+                                         {&Shades::accent, ImGuiCol_TextSelectedBg, 0.35f},
+                                         {&Shades::accent, ImGuiCol_CheckMark},
+                                         {&Shades::accent, ImGuiCol_SliderGrab},
+                                         {&Shades::accent, ImGuiCol_SliderGrabActive},
+                                         {&Shades::panel, ImGuiCol_WindowBg},
+                                         {&Shades::panel, ImGuiCol_ChildBg, 0},
+                                         {&Shades::popup, ImGuiCol_PopupBg},
+                                         {&Shades::line, ImGuiCol_Border},
+                                         {&Shades::line, ImGuiCol_Separator},
+                                         {&Shades::line, ImGuiCol_TableBorderLight},
+                                         {&Shades::line, ImGuiCol_TableBorderStrong},
+                                         {&Shades::panel, ImGuiCol_ScrollbarBg, 0},
+                                         {&Shades::field_active, ImGuiCol_ScrollbarGrab},
+                                         {&Shades::faint, ImGuiCol_ScrollbarGrabHovered},
+                                         {&Shades::faint, ImGuiCol_ScrollbarGrabActive},
+                                         {&Shades::field, ImGuiCol_FrameBg},
+                                         {&Shades::field_hovered, ImGuiCol_FrameBgHovered},
+                                         {&Shades::field_active, ImGuiCol_FrameBgActive},
+                                         {&Shades::field, ImGuiCol_Button},
+                                         {&Shades::field_hovered, ImGuiCol_ButtonHovered},
+                                         {&Shades::field_active, ImGuiCol_ButtonActive},
+                                         {&Shades::accent, ImGuiCol_Header, 0.25f},
+                                         {&Shades::field_hovered, ImGuiCol_HeaderHovered},
+                                         {&Shades::field_active, ImGuiCol_HeaderActive}};
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void set_style(Theme theme, double scale) {
   style = ImGuiStyle();
   set_sizes(style);
   const Shades& shades = shades_of(theme);
-  for (const auto& [index, shade, alpha] : kStyleColours) {
+  for (const auto& [shade, index, alpha] : kStyleColours) {
     style.Colors[index] = vector(shades.*shade, alpha);
   }
   style.ScaleAllSizes(static_cast<float>(scale));
