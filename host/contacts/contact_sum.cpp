@@ -50,7 +50,7 @@ PF_WIDE_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& st
 }
 
 PF_WIDE_INLINE void convert(const Floats& values, EightDoubles& doubles) {
-  std::array<HalfFloats, 2> halves;
+  std::array<HalfFloats, 2> halves{};
   std::memcpy(halves.data(), &values, sizeof values);
   doubles.low = __builtin_convertvector(halves[0], Doubles);
   doubles.high = __builtin_convertvector(halves[1], Doubles);

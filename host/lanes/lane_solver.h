@@ -74,8 +74,8 @@ class LaneSolver {
   LanePlan plan_;
   const LaneProgram* program_;
   LaneRange bands_;
-  LaneRange tiles_;  ///< none without crosstalk of wires
-  bool corrects_;    ///< forces, by those of the pillars around
+  LaneRange tiles_;        ///< none without crosstalk of wires
+  bool corrects_ = false;  ///< forces, by those of the pillars around
   ThreadPool* pool_;
   HostMemory memory_;
   std::optional<HostMemory> narrow_;  ///< the first column of `memory_`, of a skin without others

@@ -156,11 +156,11 @@ double first_reading(double v, const Scene& scene) {
 TEST(Sensor, ReadsOneForceThroughDeadZonePowerLawAndConverter) {
   const PowerLaw law = {1.25, 64};
   const struct {
-    double dead_zone_counts;
+    double dead_zone_counts = 0;
     std::optional<PowerLaw> power_law;
     std::optional<int> adc_bits;
-    double v;
-    double expected;
+    double v = 0;
+    double expected = 0;
   } cases[] = {
       {2.5, {}, {}, 10, 7.5},    {2.5, {}, {}, 2.5, 0},
       {2.5, {}, {}, 1, 0},       {2, law, {}, 66, 64},

@@ -75,6 +75,7 @@ std::vector<SenselStatistics> statistics_of(const KeptFrames& kept, double full_
 
 std::vector<std::uint8_t> constant_sensels(const std::vector<SenselStatistics>& sensels) {
   std::vector<std::uint8_t> constant;
+  constant.reserve(sensels.size());
   for (const SenselStatistics& sensel : sensels) {
     constant.push_back(sensel.readings == 0 || sensel.lowest == sensel.highest ? 1 : 0);
   }

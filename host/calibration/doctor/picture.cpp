@@ -118,6 +118,30 @@ std::uint32_t width_of(std::uint32_t number) {
   return kLetterStep * static_cast<std::uint32_t>(std::to_string(number).size());
 }
 
+/// The places of the sensels, in pixels.
+struct SenselPlaces {
+  std::uint32_t side;
+  std::uint32_t left;
+  std::uint32_t right;
+  std::uint32_t bottom;
+};
+
+/// Marks sensels, and lines at both ends.
+void mark_finding(Sheet& sheet, const ArrayFinding& finding, const SenselPlaces& places) {
+  const auto& [side, left, right, bottom] = places;
+  for (const auto& [row, col] : finding.sensels) {
+    sheet.mark(kTop + row * side, left + col * side, side, finding.fault);
+  }
+  const bool is_row = is_of_rows(finding.fault);
+  for (const std::uint32_t line : finding.lines) {
+    const std::uint32_t at = (is_row ? kTop : left) + line * side;
+    for (const std::uint32_t end : {(is_row ? left : kTop) - kMark, is_row ? right : bottom}) {
+      if (is_row) sheet.paint(at, end, side, kMark, colour_of(finding.fault));
+      if (!is_row) sheet.paint(end, at, kMark, side, colour_of(finding.fault));
+    }
+  }
+}
+
 }  // namespace
 
 RgbPicture draw(const Diagnosis& diagnosis, const std::string& title) {
@@ -158,17 +182,7 @@ RgbPicture draw(const Diagnosis& diagnosis, const std::string& title) {
   std::set<ArrayFault> named;
   for (const ArrayFinding& finding : diagnosis.findings) {
     const ArrayFault fault = finding.fault;
-    for (const auto& [row, col] : finding.sensels) {
-      sheet.mark(kTop + row * side, left + col * side, side, fault);
-    }
-    for (const std::uint32_t line : finding.lines) {
-      const bool is_row = is_of_rows(fault);
-      const std::uint32_t at = (is_row ? kTop : left) + line * side;
-      for (const std::uint32_t end : {(is_row ? left : kTop) - kMark, is_row ? right : bottom}) {
-        if (is_row) sheet.paint(at, end, side, kMark, colour_of(fault));
-        if (!is_row) sheet.paint(end, at, kMark, side, colour_of(fault));
-      }
-    }
+    mark_finding(sheet, finding, {side, left, right, bottom});
     if (finding.sensels.empty() && finding.lines.empty()) continue;
     if (!named.insert(fault).second) continue;
     const std::uint32_t at = kTop + 100 + static_cast<std::uint32_t>(named.size()) * kTextLine;

@@ -105,7 +105,7 @@ class Changes {
   }
 
   [[nodiscard]] bool has_still() const {
-    const double steady = static_cast<double>(changing_.size() + still_.size());
+    const auto steady = static_cast<double>(changing_.size() + still_.size());
     return static_cast<double>(still_.size()) >=
            std::max<double>(kLeastStill, kStillShare * steady);
   }
@@ -116,6 +116,7 @@ class Changes {
     Evidence evidence;
     const auto reading = [](const std::vector<float>& of, const std::vector<std::size_t>& sensels) {
       std::vector<double> values;
+      values.reserve(sensels.size());
       for (const std::size_t i : sensels) values.push_back(of[i]);
       return values;
     };

@@ -91,7 +91,7 @@ class LineSignals {
       unexplained += (xx + yy) / 2 - std::hypot((xx - yy) / 2, xy);
       first_power += xx;
       second_power += yy;
-      const double deviation =
+      const auto deviation =
           std::max<double>({seen_.noise[first], seen_.noise[second], seen_.typical_noise});
       noise += frames * deviation * deviation;
       ++shared;

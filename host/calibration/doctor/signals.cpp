@@ -229,18 +229,22 @@ class Baseline {
     return rest;
   }
 
+  /// The sensels that are at rest in `least` windows.
+  static std::vector<const RestWindows*> resting(const std::vector<RestWindows>& rest,
+                                                 std::size_t least) {
+    std::vector<const RestWindows*> found;
+    for (const RestWindows& each : rest) {
+      const auto count = std::ranges::count_if(each, [](const auto& m) { return m.has_value(); });
+      if (static_cast<std::size_t>(count) >= least) found.push_back(&each);
+    }
+    return found;
+  }
+
   /// Levels of sensels and a curve that explain the windows: medians of either, by turns. By the
   /// sensels that are mostly at rest, if there are enough of them.
   void find_common(const std::vector<RestWindows>& rest) {
-    std::vector<const RestWindows*> used;
-    for (const std::size_t least : {2 * windows_ / 3, std::size_t{1}}) {
-      used.clear();
-      for (const RestWindows& each : rest) {
-        const auto count = std::ranges::count_if(each, [](const auto& m) { return m.has_value(); });
-        if (static_cast<std::size_t>(count) >= least) used.push_back(&each);
-      }
-      if (used.size() >= std::max<std::size_t>(4, rest.size() / 10)) break;
-    }
+    std::vector<const RestWindows*> used = resting(rest, 2 * windows_ / 3);
+    if (used.size() < std::max<std::size_t>(4, rest.size() / 10)) used = resting(rest, 1);
     std::vector<double> levels(used.size());
     std::vector<double> values;
     for (int turn = 0; turn < 4; ++turn) {

@@ -176,22 +176,11 @@ class SectionParser {
     words.add(line, statements);
     bool begins_frame = false;
     for (Statement& stated : statements) {
-      if (stated.has_any({"frame", "pict", "picture", "image", "sample", "scan"}) &&
-          stated.has_only(
-              {"frame", "pict", "picture", "image", "sample", "scan", "no", "nr", "number"}) &&
-          stated.value == std::floor(stated.value) && stated.unit.empty()) {
+      if (is_frame_number(stated)) {
         begins_frame = true;
-        if (number_ != stated.value) ordinal_ = 0;
-        number_ = stated.value;
-        time_s_.reset();
-        open_.name.clear();
-        if (blocks.empty() || !blocks[0].stated.empty()) open_.stated.clear();
+        begin_frame(stated.value);
       }
-      const auto unit_s = stated.is_clock ? 1.0 : unit_size(Dimension::time, stated.unit);
-      if (!time_s_ && (stated.has_only({"time", "timestamp", "t", "frame", "at"}) ||
-                       (stated.words.empty() && begins_frame && unit_s))) {
-        if (!begins_frame || unit_s) time_s_ = stated.value * unit_s.value_or(1);
-      }
+      if (!time_s_) time_s_ = time_in(stated, begins_frame);
       if (is_sum(stated) || is_largest(stated)) open_.stated.push_back(std::move(stated));
     }
     open_.labels = cells_;
@@ -199,6 +188,31 @@ class SectionParser {
     const bool is_text =
         cells_.size() > 1 && !cells_[1].empty() && !has_digit(cells_[1].substr(0, 1));
     if (!begins_frame && is_text) open_.name = fmt::format("{} {}", cells_[0], cells_[1]);
+  }
+
+  static bool is_frame_number(const Statement& stated) {
+    return stated.has_any({"frame", "pict", "picture", "image", "sample", "scan"}) &&
+           stated.has_only(
+               {"frame", "pict", "picture", "image", "sample", "scan", "no", "nr", "number"}) &&
+           stated.value == std::floor(stated.value) && stated.unit.empty();
+  }
+
+  /// The time of a frame, s, if a statement is one; `begins_frame`: it is in the line of its
+  /// number.
+  static std::optional<double> time_in(const Statement& stated, bool begins_frame) {
+    const auto unit_s = stated.is_clock ? 1.0 : unit_size(Dimension::time, stated.unit);
+    const bool is_time = stated.has_only({"time", "timestamp", "t", "frame", "at"}) ||
+                         (stated.words.empty() && begins_frame && unit_s);
+    if (!is_time || (begins_frame && !unit_s)) return std::nullopt;
+    return stated.value * unit_s.value_or(1);
+  }
+
+  void begin_frame(double number) {
+    if (number_ != number) ordinal_ = 0;
+    number_ = number;
+    time_s_.reset();
+    open_.name.clear();
+    if (blocks.empty() || !blocks[0].stated.empty()) open_.stated.clear();
   }
 
   void end_block() {
@@ -240,6 +254,20 @@ class SectionParser {
       for (std::size_t j = begin; j < cols_end; ++j)
         block.cells.push_back(static_cast<float>(rows[i][j]));
     }
+    add_checks(block, rows, {begin, cols_end, rows_end});
+  }
+
+  /// Where cells end and sums begin in the rows of a block.
+  struct CellRange {
+    std::size_t first_col;
+    std::size_t cols_end;
+    std::size_t rows_end;
+  };
+
+  /// Checks the sums behind the rows and below the columns.
+  static void add_checks(CellBlock& block, const std::vector<std::vector<double>>& rows,
+                         const CellRange& range) {
+    const std::size_t width = rows[0].size();
     const auto add = [&](const std::string& name, double value, std::size_t row, std::size_t from,
                          std::size_t step, std::size_t count) {
       Statement stated{
@@ -248,17 +276,16 @@ class SectionParser {
       for (std::size_t i = 0; i < count; ++i) cells.push_back(block.cells[from + i * step]);
       if (std::isfinite(value)) add_check(block, stated, cells);
     };
-    for (std::size_t j = cols_end; j < width; ++j) {
-      for (std::size_t i = 0; i < rows_end; ++i) {
-        add(block.labels.size() == width ? block.labels[j] : "", rows[i][j], i, i * block.cols, 1,
-            block.cols);
-      }
+    for (std::size_t j = range.cols_end; j < width; ++j) {
+      const std::string name = block.labels.size() == width ? block.labels[j] : "";
+      for (std::size_t i = 0; i < range.rows_end; ++i)
+        add(name, rows[i][j], i, i * block.cols, 1, block.cols);
     }
-    for (std::size_t i = rows_end; i < rows.size(); ++i) {
-      for (std::size_t j = begin; j < cols_end; ++j) {
-        add(block.names[i], rows[i][j], i, j - begin, block.cols, rows_end);
-      }
-      if (cols_end < width) add(block.names[i], rows[i][cols_end], i, 0, 1, block.cells.size());
+    for (std::size_t i = range.rows_end; i < rows.size(); ++i) {
+      for (std::size_t j = range.first_col; j < range.cols_end; ++j)
+        add(block.names[i], rows[i][j], i, j - range.first_col, block.cols, range.rows_end);
+      if (range.cols_end < width)
+        add(block.names[i], rows[i][range.cols_end], i, 0, 1, block.cells.size());
     }
   }
 

@@ -93,6 +93,11 @@ std::vector<Statement> statements_in(std::string_view line, std::uint64_t number
 }
 
 void StatedWords::add(std::string_view line, const std::vector<Statement>& statements) {
+  add_unit(line);
+  for (const Statement& stated : statements) add_number(stated);
+}
+
+void StatedWords::add_unit(std::string_view line) {
   const std::vector<std::string> tokens = tokens_of(line);
   std::vector<std::string> words;
   for (const std::string& token : tokens)
@@ -106,39 +111,41 @@ void StatedWords::add(std::string_view line, const std::vector<Statement>& state
     unit = token;
     is_unit_sure = is_sure;
   }
-  for (const Statement& stated : statements) {
-    if (!(stated.value > 0) || stated.is_clock) continue;
-    const bool is_count = stated.unit.empty() && stated.value == std::floor(stated.value);
-    const auto mm = unit_size(Dimension::length, stated.unit);
-    const auto mm2 = unit_size(Dimension::area, stated.unit);
-    const auto seconds = unit_size(Dimension::time, stated.unit);
-    if (mm && stated.has_any({"sensel", "cell", "element", "spacing", "pitch", "distance"})) {
-      const bool is_height = stated.has_any({"height", "row", "rows"});
-      (is_height ? height_mm : width_mm) = stated.value * *mm;
-    } else if (mm2 && stated.has_only({"sensel", "sensor", "cell", "element", "area"})) {
-      area_mm2 = stated.value * *mm2;
-    } else if (stated.has_any({"rate", "frequency", "fps"}) && !mm && !seconds) {
-      period_s = 1 / stated.value;
-    } else if (seconds && stated.has_any({"per", "picture", "interval", "period"})) {
-      period_s = stated.value * *seconds;
-    } else if (is_count && stated.has_only({"row", "rows", "number", "of"})) {
-      rows = stated.value;
-    } else if (is_count && stated.has_only({"column", "columns", "cols", "number", "of"})) {
-      cols = stated.value;
-    }
+}
+
+void StatedWords::add_number(const Statement& stated) {
+  if (!(stated.value > 0) || stated.is_clock) return;
+  const bool is_count = stated.unit.empty() && stated.value == std::floor(stated.value);
+  const auto mm = unit_size(Dimension::length, stated.unit);
+  const auto mm2 = unit_size(Dimension::area, stated.unit);
+  const auto seconds = unit_size(Dimension::time, stated.unit);
+  if (mm && stated.has_any({"sensel", "cell", "element", "spacing", "pitch", "distance"})) {
+    const bool is_height = stated.has_any({"height", "row", "rows"});
+    (is_height ? height_mm : width_mm) = stated.value * *mm;
+  } else if (mm2 && stated.has_only({"sensel", "sensor", "cell", "element", "area"})) {
+    area_mm2 = stated.value * *mm2;
+  } else if (stated.has_any({"rate", "frequency", "fps"}) && !mm && !seconds) {
+    period_s = 1 / stated.value;
+  } else if (seconds && stated.has_any({"per", "picture", "interval", "period"})) {
+    period_s = stated.value * *seconds;
+  } else if (is_count && stated.has_only({"row", "rows", "number", "of"})) {
+    rows = stated.value;
+  } else if (is_count && stated.has_only({"column", "columns", "cols", "number", "of"})) {
+    cols = stated.value;
   }
+}
+
+std::optional<Pitch> StatedWords::pitch() const {
+  if (width_mm || height_mm)
+    return Pitch(height_mm ? *height_mm : *width_mm, width_mm ? *width_mm : *height_mm);
+  return area_mm2 ? std::optional(Pitch(std::sqrt(*area_mm2))) : std::nullopt;
 }
 
 std::optional<double> StatedWords::newtons_per_cell(std::optional<double> by_forces,
                                                     ReadOptions& options,
                                                     std::vector<std::string>& notes,
                                                     const std::string& place) const {
-  std::optional<Pitch> stated;
-  if (width_mm || height_mm) {
-    stated = Pitch(height_mm ? *height_mm : *width_mm, width_mm ? *width_mm : *height_mm);
-  } else if (area_mm2) {
-    stated = std::sqrt(*area_mm2);
-  }
+  const std::optional<Pitch> stated = pitch();
   if (!options.sensel_pitch_mm) options.sensel_pitch_mm = stated;
   auto sensel_mm2 = area_mm2;
   if (!sensel_mm2 && stated) sensel_mm2 = stated->area_mm2();

@@ -49,6 +49,11 @@ struct StatedWords {
                                                        ReadOptions& options,
                                                        std::vector<std::string>& notes,
                                                        const std::string& place) const;
+
+ private:
+  void add_unit(std::string_view line);
+  void add_number(const Statement& stated);
+  [[nodiscard]] std::optional<Pitch> pitch() const;
 };
 
 }  // namespace pillarfield

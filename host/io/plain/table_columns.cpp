@@ -254,8 +254,11 @@ bool is_header(std::span<const std::string> cells, char separator) {
   return is_leading_name(cells[1]) || count_columns(cells.subspan(1));
 }
 
-TableColumns choose_columns(std::span<const std::string> header, std::span<const std::string> first,
-                            char separator, const ReadOptions& options, const std::string& place) {
+namespace {
+
+/// Sorts the columns by their names and the cells of the first line.
+TableColumns sorted_columns(std::span<const std::string> header, std::span<const std::string> first,
+                            char separator) {
   TableColumns found;
   std::optional<std::size_t> dated;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -282,6 +285,14 @@ TableColumns choose_columns(std::span<const std::string> header, std::span<const
     found.time = dated;
     found.time_unit_s = 1;
   }
+  return found;
+}
+
+}  // namespace
+
+TableColumns choose_columns(std::span<const std::string> header, std::span<const std::string> first,
+                            char separator, const ReadOptions& options, const std::string& place) {
+  TableColumns found = sorted_columns(header, first, separator);
   if (!options.columns.empty()) take_chosen(found, header, first.size(), options.columns, place);
   if (found.readings.empty()) {
     throw Error(place, "has no column of readings", "choose them with --columns");

@@ -138,7 +138,7 @@ std::optional<double> parse_iso_time(std::string_view text) {
                                          std::chrono::day(static_cast<unsigned>(numbers[2]))};
   if (!clock_s || !offset || !date.ok()) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return static_cast<double>(days * 86400 - *offset * 60) + *clock_s;
+  return static_cast<double>(days * 86400 - std::int64_t{*offset} * 60) + *clock_s;
 }
 
 std::optional<double> parse_time(std::string_view text) {

@@ -74,7 +74,7 @@ class SerialSource final : public PacketSource {
 };
 
 std::string SerialSource::complaint() const {
-  const std::string words = parser_->complaint();
+  std::string words = parser_->complaint();
   if (!words.ends_with("no packet")) return words;
   return fmt::format("{}: a FlexiTac board? 'serial:{}?protocol=flexitac&rows=ROWS&cols=COLS'",
                      words, printable(device_));

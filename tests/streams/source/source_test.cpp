@@ -262,6 +262,7 @@ TEST(StdinSource, TakesTheConstantsThatPacketsState) {
   EXPECT_FALSE(assumed.stated.layout || assumed.states_pitch() ||
                assumed.states_counts_per_newton());
 
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): a macro of C for positive numbers
   const SentPacket frame = stating(silent, PILLARFIELD_STATED(PILLARFIELD_PILLARS, 5), 47);
   SentPacket constants = {frame.header, ""};
   constants.header.content = PILLARFIELD_CONSTANTS;

@@ -99,7 +99,7 @@ class FakeGui {
     ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
     ImGui::LogToBuffer();
     draw();
-    const std::string words = context_->LogBuffer.c_str();
+    std::string words = context_->LogBuffer.c_str();
     ImGui::LogFinish();
     ImGui::End();
     ImGui::Render();
