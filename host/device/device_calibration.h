@@ -8,8 +8,8 @@
 namespace pillarfield {
 
 /// The calibration planes of a plan in the memory of a device.
-// NOLINTNEXTLINE(bugprone-exception-escape): cl::Buffer moves without an exception, and does not
-// say so
+// cl::Buffer moves without an exception, and does not say so.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 class DeviceCalibration {
  public:
   /// A null context keeps the planes in the host's memory.

@@ -257,7 +257,7 @@ class SectionParser {
     add_checks(block, rows, {begin, cols_end, rows_end});
   }
 
-  /// Where cells end and sums begin in the rows of a block.
+  /// Cells in the rows of a block; behind them come sums.
   struct CellRange {
     std::size_t first_col;
     std::size_t cols_end;

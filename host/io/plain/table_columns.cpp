@@ -256,6 +256,12 @@ bool is_header(std::span<const std::string> cells, char separator) {
 
 namespace {
 
+/// True if the first column numbers the rows.
+bool begins_with_index(std::span<const std::string> header, std::span<const std::string> first) {
+  const bool has_times = first.size() > 1 && parse_time(first[1]).has_value();
+  return is_whole(first[0]) && (!header.empty() || has_times);
+}
+
 /// Sorts the columns by their names and the cells of the first line.
 TableColumns sorted_columns(std::span<const std::string> header, std::span<const std::string> first,
                             char separator) {
@@ -267,9 +273,7 @@ TableColumns sorted_columns(std::span<const std::string> header, std::span<const
     const bool is_time = parse_time(first[i]).has_value();
     double value = 0;
     const bool is_text = !header.empty() && !read_cell(first[i], separator, value);
-    const bool is_index =
-        i == 0 && name.empty() && is_whole(first[0]) &&
-        (!header.empty() || (first.size() > 1 && parse_time(first[1]).has_value()));
+    const bool is_index = i == 0 && name.empty() && begins_with_index(header, first);
     if (!found.time && unit_s && (is_time || !is_text)) {
       found.time = i;
       found.time_unit_s = is_time ? 1 : *unit_s;
