@@ -62,7 +62,7 @@ void Application::toggle_recording() {
     throw Error(place_.source->name, "only a sensor can be recorded", "open a live source");
   }
   if (!live->status().recording.empty()) return live->stop_recording();
-  auto path = free_path(*place_.source, "recording", ".h5");
+  const auto path = free_path(*place_.source, "recording", ".h5");
   live->record(path);
   state_.notice = "recording " + path.string();
 }
@@ -94,7 +94,7 @@ Pixels Application::pixels() {
 /// A new file of the working folder.
 std::filesystem::path Application::new_file(const std::string& detail, const char* ending,
                                             OutputKind kind) const {
-  const auto path = free_path(*place_.source, detail, ending);
+  auto path = free_path(*place_.source, detail, ending);
   check_outputs({options_.source}, {{path, kind}}, Replace::nothing);
   return path;
 }
