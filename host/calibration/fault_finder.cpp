@@ -32,7 +32,7 @@ struct Others {
 };
 constexpr std::array<Others, 4> kOthers = {{{1, 3, 2}, {0, 2, 3}, {1, 3, 0}, {0, 2, 1}}};
 
-/// A plan by which the force on each sensel by itself is its corrected reading, counts; zero where
+/// A plan whose force on each sensel is its corrected reading, counts; zero where
 /// that is not usable.
 SolverPlan plan_of_sensels(SolverPlan plan) {
   Skin& skin = plan.skin;

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "cli/options/arguments.h"
+#include "pillarfield/crash.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
 
@@ -40,6 +41,7 @@ int run(int argc, char** argv) {
 }  // namespace pillarfield::cli
 
 int main(int argc, char** argv) {
+  pillarfield::exit_after_crashes();
   try {
     return pillarfield::cli::run(argc, argv);
   } catch (const pillarfield::cli::WrongCommandLine& error) {

@@ -103,8 +103,7 @@ void convert_row(const FrameView& frame, std::size_t row, float* to) {
 /// No program has a single lane.
 bool is_narrow(const SolverPlan& plan) { return quad_cols(plan.skin) == 1; }
 
-/// A plan with a single column of blocks of 2 x 2 sensels as one of two, of which the second is
-/// absent.
+/// A plan with a single column of blocks of 2 x 2 sensels as one of two, the second absent.
 SolverPlan widened(SolverPlan plan) {
   const std::size_t cols = plan.skin.cols;  // 2, or 3 with one under no pillar
   plan.skin.cols = 4;
@@ -227,7 +226,7 @@ void LaneSolver::run(LaneProgram::Run work, LaneRange range) {
 
 void LaneSolver::solve(const FrameView& frame, const FrameStep& step) {
   read(frame);
-  if (narrow_) memory_.clear_flags();  // Its few pillars are solved anew.
+  if (narrow_) memory_.clear_flags();  // Its few pillars are solved again.
   frame_.layout.frame = step.number;
   if (step.bent) {
     program_->bend_tare(plan_, frame_,

@@ -233,7 +233,7 @@ TEST(Processor, EverySizeUpToTwiceTheLanesIsSolved) {
   }
 }
 
-/// The host solves a single column of pillars as two, of which the second is absent.
+/// The host solves a single column of pillars as two, the second absent.
 TEST(Processor, ASingleColumnHasTheBitsOfTheHost) {
   for (const auto& [cols, layout] :
        {std::pair{2U, SkinLayout::pillars}, {3U, SkinLayout::pillars}, {2U, SkinLayout::sensels}}) {

@@ -31,7 +31,7 @@ struct GroupParity {
   std::size_t frames = 0;
 };
 
-/// Adds a frame to the group of which a sensel is the first one, unless one of it is not good.
+/// Adds a frame to the group that begins with a sensel, unless one of its sensels is not good.
 void add_frame(const Examination& seen, std::span<const float> signals, std::size_t first,
                GroupParity& parity) {
   double load = 0;

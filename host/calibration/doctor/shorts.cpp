@@ -197,7 +197,7 @@ void find_shorts(Examination& seen, Diagnosis& found) {
   if (seen.contacts.size() < 10) return;
   find_shorted_lines(seen, LineAxis::rows, found);
   find_shorted_lines(seen, LineAxis::columns, found);
-  // Lines that lie apart show contacts in two places, of which one is wrong.
+  // Lines that lie apart show contacts in two places; one of them is wrong.
   for (const auto& [axis, first, second] : seen.shorted) {
     if (second - first == 1) continue;
     for (const std::uint32_t line : {first, second}) {

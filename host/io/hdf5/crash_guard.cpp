@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "pillarfield/crash.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::hdf5 {
@@ -23,6 +24,9 @@ thread_local const CrashGuard* guarding = nullptr;
 
 /// A line on the file that was read last, for crashes after it.
 std::atomic<const std::string*> last_read = nullptr;
+
+/// See exit_after_crashes().
+std::atomic<bool> exits = false;
 
 /// Actions of the fatal signals before ours.
 std::map<int, struct sigaction>& former_actions() {
@@ -54,7 +58,8 @@ void CrashGuard::end_process(int signal, siginfo_t* facts, void*) {
                                 : is_late           ? guarding->late_
                                                     : guarding->crashed_;
   [[maybe_unused]] const ssize_t put = ::write(STDERR_FILENO, line.data(), line.size());
-  _exit(1);
+  if (guarding != nullptr || exits) _exit(1);
+  sigaction(signal, &former, nullptr);
 }
 
 void CrashGuard::handle_signals() {
@@ -103,3 +108,9 @@ CrashGuard::~CrashGuard() {
 }
 
 }  // namespace pillarfield::hdf5
+
+namespace pillarfield {
+
+void exit_after_crashes() { hdf5::exits = true; }
+
+}  // namespace pillarfield

@@ -13,7 +13,7 @@ namespace pillarfield::hdf5 {
 /// standard error. Damaged files do both to HDF5 1.10. A guard of a trusted file, or within
 /// another, does nothing, and signals in other threads have their former actions. Where a signal
 /// has none and no guard exists, as when HDF5 has damaged memory, the line names the file that was
-/// read last.
+/// read last, and the signal stays, but for exit_after_crashes().
 class CrashGuard {
  public:
   explicit CrashGuard(const std::filesystem::path& file, bool trusted = false);
