@@ -6,8 +6,8 @@
 #include "pillarfield/error.h"
 #include "pillarfield/pressure_unit.h"
 #include "pillarfield/version.h"
-#include "pipeline/plan_settings.h"
 #include "python/bindings.h"
+#include "solve/plan_settings.h"
 
 namespace {
 

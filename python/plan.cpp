@@ -10,7 +10,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,11 +22,12 @@
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/tuning.h"
 #include "pillarfield/version.h"
-#include "pipeline/plan_settings.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/frames.h"
 #include "python/pitch.h"
+#include "skin/limits.h"
+#include "solve/plan_settings.h"
 
 namespace pillarfield::python {
 namespace {
@@ -39,20 +39,23 @@ sensel_type: 'uint8', 'uint16' or 'float32'
 calibration: Calibration, or the path of its file
 scene: Scene, or the path of its file; its constants and options replace those of skin
 layout: 'pillars' or 'sensels'; replaces that of skin and calibration
+pitch_mm: distance between sensels; replaces that of the skin
 estimator: 'direct', 'paper' or 'contact'
 outputs: of 'angles' and 'uncertainty', beside the forces, and 'pressure', which files of them then hold
-friction: friction coefficient if it is known to 3 %, 0.1..9.9
-friction_bound: its upper bound, 0.1..100
 friction_prior: (median, spread of the logarithm) of the friction
 unrelated_frames: consecutive frames are unrelated; nothing is carried over
-pitch_mm, threshold_counts, counts_per_newton, full_scale_counts: replace constants of the skin
-parity_tolerance_counts: tolerance of V1 + V3 = V2 + V4; None: no test
-noise_counts: standard deviation of a raw reading, counts
-baseline_time_s: time constant with which the tare follows drift, s; None: it is fixed
-baseline_interval: frames over which its update is spread, 1..1024; None: 1/100 of that time
-frame_interval_s: time from frame to frame, s
-
+{}
 Raises Error for a value out of range or options that exclude each other.)";
+
+/// The documentation of Plan; a line for each setting of the table.
+std::string plan_words() {
+  std::string lines;
+  for (const PlanSetting& setting : kPlanSettings) {
+    lines += fmt::format("{}: {}; {} in {}\n", setting.name, setting.help, setting.unit,
+                         setting.range.bounds());
+  }
+  return fmt::format(fmt::runtime(kPlan), lines);
+}
 
 template <class T>
 using ValueOrPath = std::variant<T, std::filesystem::path>;
@@ -63,32 +66,28 @@ T value_of(const ValueOrPath<T>& given, Read read) {
   return std::get<T>(given);
 }
 
-template <class Choice, std::size_t n>
-Choice choice_named(const std::string& name, const std::array<Choice, n>& choices,
-                    const char* what) {
+template <class Value, std::size_t count>
+Value choice_named(const std::string& name, const std::array<Named<Value>, count>& choices,
+                   const char* what) {
+  if (const Named<Value>* const row = row_named(choices, name)) return row->value;
   std::string names;
-  for (const Choice choice : choices) {
-    if (name == name_of(choice)) return choice;
-    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", name_of(choice));
+  for (const Named<Value>& each : choices) {
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", each.name);
   }
   throw Error("Plan", fmt::format("'{}' is not a known {}", name, what),
               fmt::format("give one of {}", names));
 }
 
-constexpr std::array kTypes = {SenselType::u8, SenselType::u16, SenselType::f32};
-constexpr std::array kLayouts = {SkinLayout::pillars, SkinLayout::sensels};
-constexpr std::array kEstimators = {Estimator::direct, Estimator::paper, Estimator::contact};
+constexpr std::array<Named<SenselType>, 3> kTypes = {
+    {{"uint8", SenselType::u8}, {"uint16", SenselType::u16}, {"float32", SenselType::f32}}};
 
-std::vector<std::string> outputs_of(const py::handle& given) {
-  auto outputs = argument<std::vector<std::string>>(given, "outputs");
+void take_outputs(const std::vector<std::string>& outputs, PlanSettings& settings) {
   for (const std::string& output : outputs) {
-    if (std::ranges::find(kPlanOutputs, output) == std::end(kPlanOutputs)) {
-      throw Error("Plan", fmt::format("'{}' is not an output", output),
-                  "give a list of 'angles', 'uncertainty' and 'pressure'");
-    }
+    if (std::ranges::find(kPlanOutputs, output, &PlanOutput::name) != kPlanOutputs.end()) continue;
+    throw Error("Plan", fmt::format("'{}' is not an output", output),
+                "give a list of 'angles', 'uncertainty' and 'pressure'");
   }
-  outputs.emplace_back("forces");  // An empty list replaces the outputs of a scene.
-  return outputs;
+  set_outputs(outputs, settings);
 }
 
 /// Sets a setting by its name; false if there is none of this name.
@@ -96,7 +95,7 @@ bool set(PlanSettings& settings, const std::string& name, const py::handle& valu
   for (const PlanSetting& setting : kPlanSettings) {
     if (name != setting.name) continue;
     settings.*setting.member =
-        setting.whole ? argument<int>(value, name) : argument<double>(value, name);
+        setting.has(kIsWhole) ? argument<int>(value, name) : argument<double>(value, name);
     return true;
   }
   if (name == "pitch_mm") {
@@ -106,7 +105,7 @@ bool set(PlanSettings& settings, const std::string& name, const py::handle& valu
   } else if (name == "estimator") {
     settings.estimator = choice_named(argument<std::string>(value, name), kEstimators, "estimator");
   } else if (name == "outputs") {
-    settings.outputs = outputs_of(value);
+    take_outputs(argument<std::vector<std::string>>(value, name), settings);
   } else if (name == "friction_prior") {
     const auto [median, spread] = argument<std::pair<double, double>>(value, name);
     settings.friction_prior = {median, spread};
@@ -189,24 +188,31 @@ SolverPlan plan_of(Frames& frames, const Skin& skin, const CalibrationOrPath& ca
   });
 }
 
-/// The scalars of a plan that are neither its skin nor its calibration.
-auto scalars_of(auto& plan) {
-  return std::tie(plan.parity_tolerance_counts, plan.noise_counts, plan.segment_point,
-                  plan.friction.median, plan.friction.spread, plan.friction.given,
-                  plan.friction.bound, plan.friction.memory, plan.baseline_rate,
-                  plan.baseline_interval, plan.frame_interval_s, plan.angles, plan.uncertainty,
-                  plan.pressure);
-}
+/// The numbers of a plan that are neither of its skin, its calibration nor of the settings.
+constexpr PlanNumber kOtherNumbers[] = {
+    kNumber<&SolverPlan::segment_point>,
+    kNumber<&SolverPlan::friction, &FrictionKnowledge::median>,
+    kNumber<&SolverPlan::friction, &FrictionKnowledge::spread>,
+    kNumber<&SolverPlan::friction, &FrictionKnowledge::memory>,
+    kNumber<&SolverPlan::baseline_rate>,
+    kNumber<&SolverPlan::angles>,
+    kNumber<&SolverPlan::uncertainty>,
+    kNumber<&SolverPlan::pressure>,
+};
 
-auto values_of(const auto& references) {
-  return std::apply([](const auto&... value) { return std::make_tuple(value...); }, references);
+/// Calls `use` with each number of a pickled plan.
+void for_each_number(const std::function<void(const PlanNumber&)>& use) {
+  for (const PlanSetting& setting : kPlanSettings) use(setting.number);
+  for (const PlanNumber& number : kOtherNumbers) use(number);
 }
 
 py::tuple plan_state(const SolverPlan& plan) {
   SkinCalibration calibration = blank_calibration(plan.skin);
   calibration.planes = plan.calibration;
+  std::vector<std::optional<double>> numbers;
+  for_each_number([&](const PlanNumber& number) { numbers.push_back(number.get(plan)); });
   return py::make_tuple(kVersion, plan.skin, name_of(plan.sensel_type), name_of(plan.estimator),
-                        calibration, values_of(scalars_of(plan)));
+                        calibration, numbers);
 }
 
 SolverPlan plan_from(const py::tuple& state) {
@@ -216,7 +222,9 @@ SolverPlan plan_from(const py::tuple& state) {
   plan.sensel_type = choice_named(state[2].cast<std::string>(), kTypes, "type of readings");
   plan.estimator = choice_named(state[3].cast<std::string>(), kEstimators, "estimator");
   plan.calibration = state[4].cast<SkinCalibration>().planes;
-  scalars_of(plan) = state[5].cast<decltype(values_of(scalars_of(plan)))>();
+  const auto numbers = state[5].cast<std::vector<std::optional<double>>>();
+  std::size_t next = 0;
+  for_each_number([&](const PlanNumber& number) { number.set(plan, numbers.at(next++)); });
   check(plan, "Plan");
   return plan;
 }
@@ -231,7 +239,7 @@ std::string plan_text(const SolverPlan& plan) {
 
 void bind_plan(py::module_& module) {
   const py::none unset;
-  py::class_<SolverPlan>(module, "Plan", kPlan)
+  py::class_<SolverPlan>(module, "Plan", plan_words().c_str())
       .def(py::init(&make_plan), py::arg("skin"), py::kw_only(), py::arg("sensel_type") = "uint8",
            py::arg("calibration") = unset, py::arg("scene") = unset)
       .def_readonly("skin", &SolverPlan::skin, "its Skin, with all constants applied")

@@ -273,7 +273,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                                "Frame to show first, counted from 1 [1; headless: the most loaded]",
                                1, std::uint64_t{1} << 50);
   cli::add_plain_data(&app, options.plain, true);
-  cli::add_constants(&app, options.plain);
+  cli::add_shown_settings(&app, options.settings);
   add_picture(app, options);
   add_layers(app, options);
   add_files(app, options);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "pillarfield/read_options.h"
+#include "pillarfield/plan_builder.h"
 #include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
@@ -15,9 +15,10 @@ struct Options {
   std::filesystem::path source;       ///< a file, or a live source; empty: the start page
   std::filesystem::path beside;       ///< a second source, shown at the right; empty: none
   std::filesystem::path calibration;  ///< of a sensor
-  ReadOptions plain;   ///< of plain data: array, times, size of a frame, rate, constants, tare
-  std::string device;  ///< OpenCL device that solves
-  std::string gpu;     ///< Vulkan device that draws
+  ReadOptions plain;      ///< of plain data: array, times, size of a frame, rate, layout, tare
+  PlanSettings settings;  ///< those of the command line that the viewer has, too
+  std::string device;     ///< OpenCL device that solves
+  std::string gpu;        ///< Vulkan device that draws
   std::uint32_t width = 1280;
   std::uint32_t height = 720;
   double scale = 0;          ///< 0: the display's scale, 1 without a display

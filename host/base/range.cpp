@@ -10,9 +10,10 @@ bool Range::contains(double value) const {
   return above && below;
 }
 
-std::string Range::text() const {
-  return fmt::format("a number in {}{}, {}{}", open_low ? '(' : '[', low, high,
-                     open_high ? ')' : ']');
+std::string Range::bounds() const {
+  return fmt::format("{}{}, {}{}", open_low ? '(' : '[', low, high, open_high ? ')' : ']');
 }
+
+std::string Range::text() const { return "a number in " + bounds(); }
 
 }  // namespace pillarfield

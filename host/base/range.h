@@ -11,6 +11,7 @@ struct Range {
   bool open_high = false;
 
   [[nodiscard]] bool contains(double value) const;  ///< false for NaN
+  [[nodiscard]] std::string bounds() const;         ///< "[0, 1)"
   [[nodiscard]] std::string text() const;           ///< "a number in [0, 1)"
 };
 

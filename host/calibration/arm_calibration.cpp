@@ -1,5 +1,3 @@
-#include "pillarfield/arm_calibration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "base/number_text.h"
 #include "calibration/steps.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"

@@ -1,5 +1,3 @@
-#include "pillarfield/bending_calibration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "calibration/linear_readings.h"
 #include "calibration/normal_equations.h"
 #include "calibration/steps.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {

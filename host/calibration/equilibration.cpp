@@ -1,5 +1,3 @@
-#include "pillarfield/equilibration.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -13,6 +11,7 @@
 #include "calibration/leak_sum.h"
 #include "calibration/response_fit.h"
 #include "calibration/steps.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"

@@ -1,5 +1,3 @@
-#include "pillarfield/leak_calibration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "calibration/linear_readings.h"
 #include "calibration/normal_equations.h"
 #include "calibration/steps.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
 #include "skin/pillar_sensels.h"

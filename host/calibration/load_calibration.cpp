@@ -1,5 +1,3 @@
-#include "pillarfield/load_calibration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "base/number_text.h"
 #include "calibration/golden_section.h"
 #include "calibration/steps.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"

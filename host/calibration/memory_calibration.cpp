@@ -1,5 +1,3 @@
-#include "pillarfield/memory_calibration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "calibration/linear_readings.h"
 #include "calibration/memory_fit.h"
 #include "calibration/steps.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
 

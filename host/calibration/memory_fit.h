@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "pillarfield/memory_calibration.h"
+#include "pillarfield/calibration_steps.h"
 
 namespace pillarfield {
 

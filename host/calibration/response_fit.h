@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pillarfield/equilibration.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/sensor_effects.h"
 
 namespace pillarfield {

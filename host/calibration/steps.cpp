@@ -11,6 +11,20 @@
 #include "pillarfield/error.h"
 
 namespace pillarfield {
+
+// Each is defined in the file of its step.
+StepKind wires_step();
+StepKind tare_step();
+StepKind equilibrate_step();
+StepKind load_step();
+StepKind shear_step();
+StepKind arm_step();
+StepKind leak_step();
+StepKind memory_step();
+StepKind bending_step();
+StepKind faults_step();
+StepKind weight_step();
+
 namespace {
 
 void check_number(const StepArgument& argument, double value) {

@@ -171,17 +171,4 @@ inline constexpr const char* kTareIdle = "calibrate tare idle.h5 -o tared.h5";
 inline constexpr const char* kEquilibratePressed =
     "calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration tared.h5 -o equal.h5";
 
-// Each stands in the file of its step.
-[[nodiscard]] StepKind tare_step();
-[[nodiscard]] StepKind equilibrate_step();
-[[nodiscard]] StepKind load_step();
-[[nodiscard]] StepKind shear_step();
-[[nodiscard]] StepKind arm_step();
-[[nodiscard]] StepKind leak_step();
-[[nodiscard]] StepKind memory_step();
-[[nodiscard]] StepKind bending_step();
-[[nodiscard]] StepKind wires_step();
-[[nodiscard]] StepKind faults_step();
-[[nodiscard]] StepKind weight_step();
-
 }  // namespace pillarfield

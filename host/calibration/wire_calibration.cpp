@@ -1,5 +1,3 @@
-#include "pillarfield/wire_calibration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "calibration/normal_equations.h"
 #include "calibration/steps.h"
 #include "calibration/wire_correction.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/error.h"
 #include "skin/limits.h"
 

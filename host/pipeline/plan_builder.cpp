@@ -33,42 +33,6 @@ void apply_calibration(const SkinCalibration& calibration, bool keeps_tare,
   plan.calibration.noise = std::move(noise);
 }
 
-/// Sets a member to a value that was given.
-template <class Member>
-void set_given(Member& member, const std::optional<double>& value) {
-  if (value) member = *value;
-}
-
-void apply_numbers(const PlanSettings& settings, SolverPlan& plan) {
-  if (settings.sensel_pitch_mm) plan.skin.sensel_pitch_mm = *settings.sensel_pitch_mm;
-  plan.skin.stated.sensel_pitch |= settings.sensel_pitch_mm.has_value();
-  plan.skin.stated.counts_per_newton |= settings.counts_per_newton.has_value();
-  set_given(plan.skin.threshold_counts, settings.threshold_counts);
-  set_given(plan.skin.counts_per_newton, settings.counts_per_newton);
-  set_given(plan.skin.full_scale_counts, settings.full_scale_counts);
-  set_given(plan.parity_tolerance_counts, settings.parity_tolerance_counts);
-  set_given(plan.noise_counts, settings.noise_counts);
-  set_given(plan.frame_interval_s, settings.frame_interval_s);
-}
-
-void apply_friction(const PlanSettings& settings, FrictionKnowledge& friction) {
-  set_given(friction.given, settings.friction);
-  set_given(friction.bound, settings.friction_bound);
-  if (!settings.friction_prior.empty()) {
-    friction.median = settings.friction_prior[0];
-    friction.spread = settings.friction_prior[1];
-  }
-  if (settings.unrelated_frames) friction.memory = false;
-}
-
-void apply_outputs(const PlanSettings& settings, SolverPlan& plan) {
-  const std::vector<std::string>& outputs = settings.outputs;
-  if (outputs.empty()) return;
-  plan.angles = std::ranges::find(outputs, "angles") != outputs.end();
-  plan.uncertainty = std::ranges::find(outputs, "uncertainty") != outputs.end();
-  plan.pressure = std::ranges::find(outputs, "pressure") != outputs.end();
-}
-
 /// Sets the threshold of a tare if the noise is known and nothing states a threshold.
 void set_default_threshold(SolverPlan& plan) {
   const bool has_noise = plan.noise_counts || !plan.calibration.noise.empty();
@@ -120,21 +84,14 @@ SolverPlan build_plan(SolverPlan plan, const PlanSources& from, const std::strin
   if (from.scene != nullptr) {
     set_skin(plan.skin, *from.scene);
     set_solver(plan, *from.scene);
-    baseline_time_s = from.scene->baseline_time_s;
+    baseline_time_s = from.scene->solver.baseline_time_s;
   }
   if (from.calibration != nullptr) {
     apply_calibration(*from.calibration, from.keeps_tare, where, plan);
   }
-  if (settings.layout) {
-    plan.skin.layout = *settings.layout;
-    plan.skin.stated.layout = true;
-  }
-  apply_numbers(settings, plan);
+  apply(settings, plan);
   if (!settings.threshold_counts) set_default_threshold(plan);
   if (settings.baseline_time_s) baseline_time_s = settings.baseline_time_s;
-  if (settings.estimator) plan.estimator = *settings.estimator;
-  apply_friction(settings, plan.friction);
-  apply_outputs(settings, plan);
   if (settings.everything) {
     enable_everything(plan);
     if (!baseline_time_s) baseline_time_s = kBaselineTimeDefaultS;

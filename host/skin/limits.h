@@ -1,7 +1,11 @@
 #pragma once
 
+#include <array>
+
+#include "base/named.h"
 #include "base/range.h"
 #include "pillarfield/sensor_effects.h"
+#include "pillarfield/skin.h"
 
 namespace pillarfield {
 
@@ -14,6 +18,11 @@ inline constexpr Range kShearCoefficient = {0.1, 10};
 inline constexpr Range kPillarArmMm = {1e-3, 1e3};
 inline constexpr Range kTileSensels = {2, 1024};  ///< rows or columns that share wires
 inline constexpr Range kCurveCounts = {0, 1e9, true};
+
+inline constexpr std::array<Named<SkinLayout>, 2> kLayouts = {{
+    {"pillars", SkinLayout::pillars},
+    {"sensels", SkinLayout::sensels},
+}};
 
 inline constexpr Range kBaselineTimeS = {1e-6, 1e9};  ///< of a followed baseline
 

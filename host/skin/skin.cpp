@@ -41,15 +41,11 @@ const char* name_of(SenselType type) {
   return "float32";
 }
 
-const char* name_of(SkinLayout layout) {
-  return layout == SkinLayout::pillars ? "pillars" : "sensels";
-}
+const char* name_of(SkinLayout layout) { return name_in(kLayouts, layout); }
 
 std::optional<SkinLayout> layout_named(std::string_view name) {
-  for (const SkinLayout layout : {SkinLayout::pillars, SkinLayout::sensels}) {
-    if (name == name_of(layout)) return layout;
-  }
-  return std::nullopt;
+  const Named<SkinLayout>* const row = row_named(kLayouts, name);
+  return row == nullptr ? std::nullopt : std::optional(row->value);
 }
 
 bool Skin::states_pitch() const {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -9,17 +10,17 @@
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "skin/limits.h"
+#include "solve/plan_settings.h"
 #include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 namespace {
 
-/// Throws Error if a value is given and lies outside [0, high].
-void check_counts(std::optional<double> value, const char* name, double high,
-                  std::string_view where) {
-  if (!value || (*value >= 0 && *value <= high)) return;
-  throw Error(where, fmt::format("{} is {}", name, *value),
-              fmt::format("it must lie in [0, {}]", high));
+/// Throws Error if a value lies outside its range.
+void require_within(const char* name, double value, const Range& range, std::string_view where) {
+  if (range.contains(value)) return;
+  throw Error(where, fmt::format("{} is {}", name, value),
+              fmt::format("it must lie in {}", range.bounds()));
 }
 
 /// Largest RMS error of the polynomial of a response curve, of the largest load.
@@ -87,7 +88,21 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
   refuse(effects.arm_mm.has_value(), "an arm of pillars");
 }
 
-constexpr int kMaxBaselineInterval = 1024;
+/// Throws Error if a number is out of range.
+void check_numbers(const SolverPlan& plan, std::string_view where) {
+  require_within("segment_point", plan.segment_point, {0, 1, true}, where);
+  if (plan.baseline_rate) require_within("baseline_rate", *plan.baseline_rate, {0, 1, true}, where);
+  for (const PlanSetting& setting : kPlanSettings) {
+    const std::optional<double> value = setting.number.get(plan);
+    if (value) require_within(setting.name, *value, setting.range, where);
+  }
+}
+
+/// Sets a member to a value that was given.
+template <class Member, class Value>
+void set_given(Member& member, const std::optional<Value>& value) {
+  if (value) member = *value;
+}
 
 /// Number of frames over which the tare update may be spread: a hundredth of the time constant, and
 /// without the divisors 2, 3 and 5 of usual frame rates, so that hum of 50 or 60 Hz does not stand
@@ -95,11 +110,10 @@ constexpr int kMaxBaselineInterval = 1024;
 int baseline_interval(double time_constant_frames) {
   constexpr double kTurnsInTimeConstant = 100;
   const double most = time_constant_frames / kTurnsInTimeConstant;
-  int interval = static_cast<int>(std::fmin(std::fmax(most, 1), kMaxBaselineInterval));
+  int interval = static_cast<int>(std::fmin(std::fmax(most, 1), kBaselineIntervals.high));
   while (std::gcd(interval, 2 * 3 * 5) != 1) --interval;
   return interval;
 }
-constexpr double kMaxFrameIntervalS = 1e6;
 
 /// Threshold over standard deviation of a reading, assumed where no noise is given.
 constexpr double kThresholdDeviations = 4;
@@ -107,57 +121,57 @@ constexpr double kThresholdDeviations = 4;
 }  // namespace
 
 void check(const FrictionKnowledge& friction, std::string_view where) {
-  const auto require = [&](const char* name, double value, double least, double most) {
-    if (value >= least && value <= most) return;
-    throw Error(where, fmt::format("{} is {}", name, value),
-                fmt::format("it must lie in [{}, {}]", least, most));
-  };
-  require("the median of the friction's prior", friction.median, kFrictions.low, kFrictions.high);
-  require("the spread of the friction's prior", friction.spread, kPriorSpread.low,
-          kPriorSpread.high);
-  if (friction.given) {
-    require("the friction", *friction.given, kFrictions.low, kFrictions.high);
-  }
+  require_within("the median of the friction's prior", friction.median, kFrictions, where);
+  require_within("the spread of the friction's prior", friction.spread, kPriorSpread, where);
+  if (friction.given) require_within("the friction", *friction.given, kFrictions, where);
   if (friction.bound) {
-    require("the bound of the friction", *friction.bound, kFrictionBound.low, kFrictionBound.high);
+    require_within("the bound of the friction", *friction.bound, kFrictionBound, where);
   }
 }
 
-const char* name_of(Estimator estimator) {
-  switch (estimator) {
-    case Estimator::direct:
-      return "direct";
-    case Estimator::paper:
-      return "paper";
-    case Estimator::contact:
-      break;
+const char* name_of(Estimator estimator) { return name_in(kEstimators, estimator); }
+
+void apply(const PlanSettings& settings, SolverPlan& plan) {
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (settings.*setting.member) setting.number.set(plan, settings.*setting.member);
   }
-  return "contact";
+  for (const PlanOutput& output : kPlanOutputs) {
+    set_given(plan.*output.flag, settings.*output.member);
+  }
+  set_given(plan.estimator, settings.estimator);
+  set_given(plan.skin.layout, settings.layout);
+  set_given(plan.skin.sensel_pitch_mm, settings.sensel_pitch_mm);
+  plan.skin.stated.layout |= settings.layout.has_value();
+  plan.skin.stated.sensel_pitch |= settings.sensel_pitch_mm.has_value();
+  plan.skin.stated.counts_per_newton |= settings.counts_per_newton.has_value();
+  if (!settings.friction_prior.empty()) {
+    plan.friction.median = settings.friction_prior[0];
+    plan.friction.spread = settings.friction_prior[1];
+  }
+  if (settings.unrelated_frames) plan.friction.memory = !*settings.unrelated_frames;
+}
+
+void set_outputs(const std::vector<std::string>& words, PlanSettings& settings) {
+  for (const PlanOutput& output : kPlanOutputs) {
+    settings.*output.member = std::ranges::find(words, output.name) != words.end();
+  }
+}
+
+void check(const PlanSettings& settings, std::string_view where) {
+  for (const PlanSetting& setting : kPlanSettings) {
+    const std::optional<double>& value = settings.*setting.member;
+    if (!value || setting.range.contains(*value)) continue;
+    throw Error(where, fmt::format("{} is {}", setting.name, *value),
+                fmt::format("it must be {}", setting.range.text()));
+  }
 }
 
 void check(const SolverPlan& plan, std::string_view where) {
   check(plan.skin, where);
   check_layout(plan, where);
   check(plan.calibration, plan.skin, where, plan.sensel_type);
-  check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
-  check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
-  if (!(plan.segment_point > 0 && plan.segment_point <= 1)) {
-    throw Error(where, fmt::format("segment_point is {}", plan.segment_point),
-                "it must lie in (0, 1]");
-  }
-  if (plan.baseline_rate && !(*plan.baseline_rate > 0 && *plan.baseline_rate <= 1)) {
-    throw Error(where, fmt::format("baseline_rate is {}", *plan.baseline_rate),
-                "it must lie in (0, 1]");
-  }
-  if (plan.baseline_interval < 1 || plan.baseline_interval > kMaxBaselineInterval) {
-    throw Error(where, fmt::format("baseline_interval is {}", plan.baseline_interval),
-                fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
-  }
   check(plan.friction, where);
-  if (!(plan.frame_interval_s > 0 && plan.frame_interval_s <= kMaxFrameIntervalS)) {
-    throw Error(where, fmt::format("frame_interval_s is {}", plan.frame_interval_s),
-                fmt::format("it must lie in (0, {}]", kMaxFrameIntervalS));
-  }
+  check_numbers(plan, where);
   if (plan.skin.power_law && !plan.calibration.effects.curve.empty()) {
     throw Error(where, "the skin has a power law and a response curve", "give one of the two");
   }

@@ -23,7 +23,7 @@ Scene real_sensor(double noise_counts, std::uint64_t seed) {
   scene.sensor.tare_counts = 12;
   scene.sensor.tare_spread_counts = 2;
   scene.sensor.adc_bits = 12;
-  scene.uncertainty = true;
+  scene.solver.uncertainty = true;
   scene.seed = seed;
   return scene;
 }

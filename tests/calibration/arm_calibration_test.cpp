@@ -1,13 +1,12 @@
 // The arm of off-centre pressure from indenters pressed straight down.
 
-#include "pillarfield/arm_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"

@@ -1,11 +1,10 @@
 // Patterns of bending from known cylinders.
 
-#include "pillarfield/bending_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"

@@ -1,13 +1,12 @@
 // Equilibration: gains, dead zones and counts per newton from uniform pressure.
 
-#include "pillarfield/equilibration.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"

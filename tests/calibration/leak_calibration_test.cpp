@@ -1,7 +1,5 @@
 // Leaks between sensels and between pillars from a fine tip.
 
-#include "pillarfield/leak_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,8 +8,7 @@
 
 #include "base/quantile.h"
 #include "calibration/normal_equations.h"
-#include "pillarfield/equilibration.h"
-#include "pillarfield/memory_calibration.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"

@@ -1,12 +1,10 @@
 // Counts per newton and power laws from known loads.
 
-#include "pillarfield/load_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "pillarfield/equilibration.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"

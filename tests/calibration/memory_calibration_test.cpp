@@ -1,13 +1,11 @@
 // Hysteresis and creep from uniform pressure that rises, rests and falls.
 
-#include "pillarfield/memory_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "pillarfield/equilibration.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/tare.h"
 #include "pillarfield/untouched_skin.h"
 #include "tests/base/message.h"

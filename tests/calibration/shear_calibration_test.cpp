@@ -1,12 +1,10 @@
 // Shear coefficients from known tangential loads.
 
-#include "pillarfield/shear_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "pillarfield/equilibration.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"

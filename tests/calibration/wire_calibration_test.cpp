@@ -1,12 +1,11 @@
 // Resistance of wires from a body that rests while another one presses elsewhere.
 
-#include "pillarfield/wire_calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "calibration/wire_correction.h"
+#include "pillarfield/calibration_steps.h"
 #include "simulation/effects/wire_network.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"

@@ -13,7 +13,7 @@ import numpy as np
 
 from command import PROGRAM, SOURCE, CommandTest, on_terminal, run
 
-STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "weight", "apply"]
+STEPS = re.findall(r"^  (\w+) ", run("calibrate", "--help").stdout.split("\n\n")[2], re.MULTILINE)
 COMMANDS = [["simulate"], ["solve"], ["stream"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["info"], ["doctor"], ["completion"]]
 
@@ -183,17 +183,6 @@ class Numbers(CommandTest):
     """Every numeric option of every command refuses other text."""
 
     def test_other_text_is_refused(self):
-        scene = SOURCE / "scenes/spin.toml"
-        recording, output = self.folder / "recording.h5", self.folder / "output.h5"
-        run("simulate", scene, "-o", recording)
-        needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording], "doctor": [recording],
-                  "apply": [recording, recording, "-o", output],
-                  "compare": [recording, recording],
-                  "solve": [recording, "-o", output, "--contacts", output]}
-        step = [recording, "--calibration", recording, "-o", output]
-        needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
-                   "load": [*step, "--load-n", 10], "weight": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"], "arm": step, "leak": step, "memory": [*step, "--pressure", "log.csv"],
-                   "wires": [recording, "-o", output], "bending": [*step, "--radius-mm", 60, "--axis-deg", 0]}
         tried = 0
         for command in COMMANDS:
             text = run(*command, "--help").stdout
@@ -203,11 +192,9 @@ class Numbers(CommandTest):
                                             "SOCKET")]:
                 value = ("nan", "-inf", "1e999", "x")[tried % 4]
                 with self.subTest(command=command, option=option, value=value):
-                    self.assert_fails(*command, *needed[command[-1]], f"{option}={value}",
-                                      status=2, names=[option, value])
+                    self.assert_fails(*command, f"{option}={value}", status=2, names=[option, value])
                 tried += 1
         self.assertGreater(tried, 35)
-        self.assert_folder_holds("recording.h5")
 
     def test_whole_numbers(self):
         for option, words, *values in (

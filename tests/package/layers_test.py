@@ -10,7 +10,7 @@ LAYERS = ["kernels", "base", "skin", "solve", "lanes", "contacts", "calibration"
           "device", "io", "streams", "pipeline", "cli"]
 PRODUCT = ["host", "kernels", "python", "shaders", "viewer"]
 # Public headers without a source file of their name.
-HEADER_MODULES = {"version": "base", "indenter": "simulation", "closed_form_contact": "simulation",
+HEADER_MODULES = {"version": "base", "calibration_steps": "calibration", "indenter": "simulation", "closed_form_contact": "simulation",
                   "scene": "simulation", "friction": "solve", "host_solve": "solve",
                   "read_options": "io", "rgb_picture": "base", "layout_note": "io", "frame_stream": "io", "recording": "io", "force_file": "io",
                   "contact_file": "io", "live": "streams", "stream_format": "streams"}

@@ -13,7 +13,7 @@ constexpr double kIntervalS = 0.001;
 Scene following_scene() {
   Scene scene;
   scene.rate_hz = 1 / kIntervalS;
-  scene.baseline_time_s = kTimeS;
+  scene.solver.baseline_time_s = kTimeS;
   return scene;
 }
 

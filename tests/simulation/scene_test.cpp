@@ -1,5 +1,6 @@
 #include "pillarfield/scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +16,8 @@
 #include "pillarfield/simulator.h"
 #include "simulation/closed_form/contact_traction.h"
 #include "simulation/indenter/indenter_path.h"
+#include "simulation/scene/scene_limits.h"
+#include "solve/plan_settings.h"
 
 namespace pillarfield {
 namespace {
@@ -41,18 +44,9 @@ title = "All keys"
 [skin]
 pillars = [30, 40]
 sensel_pitch_mm = 0.5
-counts_per_newton = 200
-threshold_counts = 1.5
 [sensor]
 adc_bits = 10
 full_scale_counts = 1000
-noise_counts = 0.25
-dead_zone_counts = 2
-gain_spread = 0.125
-tare_counts = 5
-tare_spread_counts = 0.75
-drift_counts_per_s = 0.375
-dead_share = 0.0625
 power_law_exponent = 1.25
 power_law_reference_counts = 90
 pillar_leak_edge = 0.01
@@ -74,11 +68,11 @@ frames = 12
 seed = 99
 recording = 3
 [solver]
-parity_tolerance_counts = 4
-baseline_time_s = 30
 estimator = "direct"
 angles = true
 uncertainty = true
+friction_prior = [0.8, 0.3]
+memory = false
 [[contact]]
 shape = "cylinder"
 motion = "roll"
@@ -103,24 +97,13 @@ load_n = 0.5
   EXPECT_EQ(scene.skin.rows, 60U);
   EXPECT_EQ(scene.skin.cols, 80U);
   EXPECT_EQ(scene.skin.sensel_pitch_mm, 0.5);
-  EXPECT_EQ(scene.skin.counts_per_newton, 200);
-  EXPECT_EQ(scene.skin.threshold_counts, 1.5);
   EXPECT_EQ(scene.skin.full_scale_counts, 1000);
   EXPECT_EQ(scene.sensor.adc_bits, 10);
-  EXPECT_EQ(scene.sensor.noise_counts, 0.25);
-  EXPECT_EQ(scene.sensor.dead_zone_counts, 2);
-  EXPECT_EQ(scene.sensor.gain_spread, 0.125);
-  EXPECT_EQ(scene.sensor.tare_counts, 5);
-  EXPECT_EQ(scene.sensor.tare_spread_counts, 0.75);
-  EXPECT_EQ(scene.sensor.drift_counts_per_s, 0.375);
-  EXPECT_EQ(scene.sensor.dead_share, 0.0625);
   ASSERT_TRUE(scene.skin.power_law);
   EXPECT_EQ(scene.skin.power_law->exponent, 1.25);
   EXPECT_EQ(scene.skin.power_law->reference_counts, 90);
   EXPECT_EQ(scene.sensor.shear_coefficient->y, 0.9);
   EXPECT_EQ(scene.sensor.hysteresis_range_counts, 150);
-  EXPECT_EQ(scene.sensor.hysteresis, 0.06);
-  EXPECT_EQ(scene.sensor.creep_per_decade, 0.04);
   const SensorEffects effects = Simulator(scene).calibration().effects;
   EXPECT_EQ(effects.pillar_leak->edge, 0.01);
   EXPECT_EQ(effects.pillar_leak->corner, 0.003);
@@ -147,11 +130,11 @@ load_n = 0.5
   EXPECT_EQ(scene.frames, 12U);
   EXPECT_EQ(scene.seed, 99U);
   EXPECT_EQ(scene.recording, 3U);
-  EXPECT_EQ(scene.parity_tolerance_counts, 4);
-  EXPECT_EQ(scene.baseline_time_s, 30);
-  EXPECT_EQ(scene.estimator, Estimator::direct);
-  EXPECT_TRUE(scene.angles);
-  EXPECT_TRUE(scene.uncertainty);
+  EXPECT_EQ(scene.solver.estimator, Estimator::direct);
+  EXPECT_EQ(scene.solver.angles, true);
+  EXPECT_EQ(scene.solver.uncertainty, true);
+  EXPECT_EQ(scene.solver.unrelated_frames, true);
+  EXPECT_EQ(scene.solver.friction_prior, (std::vector{0.8, 0.3}));
   const auto& contacts = std::get<std::vector<ClosedFormContact>>(scene.load);
   ASSERT_EQ(contacts.size(), 2U);
   const ClosedFormContact& roller = contacts[0];
@@ -175,15 +158,39 @@ load_n = 0.5
   EXPECT_EQ(punch.path[0].load_n, 0.5);
 }
 
+/// A number in a range.
+double within(const Range& range) { return range.low + std::min(range.high - range.low, 1.0) / 4; }
+
+TEST(Scene, EveryNumberOfATableReachesItsPlace) {
+  const auto scene_with = [](const char* section, std::string_view key, const Range& range) {
+    return parse_scene(fmt::format("skin.pillars = [2, 2]\n{}{} = {}", section, key, within(range)),
+                       "number.toml");
+  };
+  for (const auto& [key, member, range] : kSkinQuantities) {
+    EXPECT_EQ(scene_with("skin.", key, range).skin.*member, within(range)) << key;
+  }
+  for (const auto& [key, member, range] : kSensorQuantities) {
+    EXPECT_EQ(scene_with("sensor.", key, range).sensor.*member, within(range)) << key;
+  }
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (!setting.has(kIsKey)) continue;
+    const Scene scene = scene_with("solver.", setting.name, setting.range);
+    EXPECT_EQ(scene.solver.*setting.member, within(setting.range)) << setting.name;
+    SolverPlan plan;
+    set_solver(plan, scene);
+    const std::optional<double> value = setting.number.get(plan);
+    EXPECT_EQ(value.value_or(within(setting.range)), within(setting.range)) << setting.name;
+  }
+}
+
 TEST(Scene, WhatIsNotListedIsAbsent) {
   const Scene scene = parse_scene("[skin]\nsize_mm = [20, 10]", "bare.toml");
   EXPECT_TRUE(std::get<std::vector<ClosedFormContact>>(scene.load).empty());
   EXPECT_FALSE(scene.skin.full_scale_counts);
   EXPECT_FALSE(scene.sensor.adc_bits);
-  EXPECT_FALSE(scene.parity_tolerance_counts);
-  EXPECT_EQ(scene.estimator, Estimator::direct);
-  EXPECT_FALSE(scene.angles);
-  EXPECT_FALSE(scene.uncertainty);
+  EXPECT_FALSE(scene.solver.parity_tolerance_counts);
+  EXPECT_FALSE(scene.solver.estimator);
+  EXPECT_FALSE(scene.solver.angles);
   EXPECT_EQ(scene.skin.counts_per_newton, 320);
   EXPECT_EQ(scene.rate_hz, 100);
   EXPECT_TRUE(Simulator(scene).calibration().empty());
@@ -395,6 +402,40 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
   EXPECT_GT(keys.size(), 70U);
   for (const std::string& key : keys) {
     EXPECT_NE(page.find("| `" + key + "`"), std::string::npos) << key;
+  }
+}
+
+/// A number as the page has it: "0.01", "10⁻⁶".
+std::string number_words(double value) {
+  constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const double power = value > 0 ? std::log10(value) : 0;
+  if (std::abs(power) < 4 || power != std::round(power)) {
+    return (value < 0 ? "−" : "") + fmt::format("{}", std::abs(value));
+  }
+  std::string text = power < 0 ? "10⁻" : "10";
+  for (const char digit : fmt::format("{}", std::abs(power))) text += kDigits[digit - '0'];
+  return text;
+}
+
+/// The page states the range of every number of a table.
+TEST(ScenesPage, HasEveryRange) {
+  const std::string page = text_of(PILLARFIELD_SCENES_PAGE);
+  const auto expect_row = [&](std::string_view key, const Range& range) {
+    const std::string row = fmt::format("| `{}` | {}{} to {}{}", key,
+                                        range.open_low ? "above " : "", number_words(range.low),
+                                        range.open_high ? "below " : "", number_words(range.high));
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  };
+  for (const auto& [key, member, range] : kSkinQuantities) expect_row(key, range);
+  for (const auto& [key, member, range] : kSensorQuantities) expect_row(key, range);
+  for (const auto& [key, member, range] : kWireQuantities) expect_row(key, range);
+  for (const auto& each : kContactQuantities) expect_row(each.quantity.key, each.quantity.range);
+  for (const auto& each : kIndenterQuantities) {
+    if (each.quantity.member == &Indenter::edge_radius_mm) continue;  // Up to that of its shape.
+    expect_row(each.quantity.key, each.quantity.range);
+  }
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (setting.has(kIsKey)) expect_row(setting.name, setting.range);
   }
 }
 

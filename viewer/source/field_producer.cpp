@@ -76,13 +76,8 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   info.kind = "scene";
   info.rate_hz = scene.rate_hz;
   const std::uint64_t frames = frames_to_simulate(*simulator, options, info);
-  if (scene.baseline_time_s) {
+  if (scene.solver.baseline_time_s) {
     info.notes.emplace_back("The baseline is fixed: frames are solved in any order.");
-  }
-  if (carries_prior(scene.estimator, scene.friction)) {
-    info.notes.emplace_back(
-        "Played frames carry friction over from the frame before; a frame that is jumped to is "
-        "solved alone.");
   }
   SolverPlan plan;
   plan.skin = scene.skin;
@@ -90,6 +85,11 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   plan.calibration = simulator->calibration();
   set_solver(plan, scene);
   plan = shown_plan(std::move(plan));
+  if (carries_prior(plan.estimator, plan.friction)) {
+    info.notes.emplace_back(
+        "Played frames carry friction over from the frame before; a frame that is jumped to is "
+        "solved alone.");
+  }
   // Before the simulation, so that errors of the device come at once.
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);
@@ -144,6 +144,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
   plan.frame_interval_s = 1 / info.rate_hz;
+  apply(options.settings, plan);
   plan = shown_plan(std::move(plan));
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);

@@ -12,6 +12,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/skin.h"
+#include "pillarfield/solver_plan.h"
 #include "viewer/source/curves.h"
 #include "viewer/source/shown_contacts.h"
 #include "viewer/source/shown_field.h"
@@ -84,7 +85,8 @@ class FieldProducer {
 struct ProducerOptions {
   std::string device = {};  ///< as open_device() takes it
   Memory memory = Memory::automatic;
-  ReadOptions read = {};  ///< for the first opening of a file
+  ReadOptions read = {};       ///< for the first opening of a file
+  PlanSettings settings = {};  ///< of the plan of a recording or sensor
   /// Limit on the frames of a scene, which are all simulated beforehand.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   std::uint64_t most_frames = 0;                              ///< of a scene; 0: all

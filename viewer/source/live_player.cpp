@@ -231,7 +231,9 @@ LiveStatus LivePlayer::status() {
 }
 
 PlanOptions plan_options(const LiveOptions& options) {
-  return {.read = options.producer.read, .calibration = options.calibration.string()};
+  return {.read = options.producer.read,
+          .calibration = options.calibration.string(),
+          .settings = options.producer.settings};
 }
 
 /// Options that calibrate, as the command line names them.

@@ -7,12 +7,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "base/named.h"
 
 namespace pillarfield::cli {
 
@@ -84,6 +87,15 @@ class Group {
         ->type_name(fmt::format("{}", fmt::join(words, "|")))
         ->check(one_of(words))
         ->group(heading_);
+  }
+
+  /// Adds an option that sets `target` to the value of a name of a table.
+  template <class Value, std::size_t count, class Target>
+  CLI::Option* choice(const std::string& name, Target& target,
+                      const std::array<Named<Value>, count>& table, const char* description) {
+    std::vector<std::pair<std::string, Value>> choices;
+    for (const Named<Value>& row : table) choices.emplace_back(row.name, row.value);
+    return choice<Value>(name, target, choices, description);
   }
 
   CLI::Option* flag_callback(const std::string& name, const std::function<void()>& call,

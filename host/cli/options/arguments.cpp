@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,8 +19,6 @@
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
 #include "pillarfield/error.h"
-#include "pipeline/plan_settings.h"
-#include "skin/limits.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -109,16 +106,7 @@ void add_solve(CLI::App& parent, Work& work) {
                     "Track contacts and write force, centre of pressure, area and pressure of each "
                     "and of the patch: " +
                         endings_of(OutputKind::contacts) + "; the .h5 of --output holds them too");
-  ContactOptions& found = options->contacts;
-  contacts
-      .whole("--minimum-pillars", found.minimum_pillars, "N",
-             "Leave out contacts of fewer pillars [1]", 0,
-             std::numeric_limits<std::uint32_t>::max())
-      ->needs(file);
-  contacts
-      .number("--contact-reach", found.reach_mm, "MM",
-              "Largest movement of a contact between frames [10]", kReachMm.low, kReachMm.high)
-      ->needs(file);
+  for (CLI::Option* const option : add_contacts(command, options->contacts)) option->needs(file);
   add_pressure_unit(contacts, options->pressure_unit)->needs(file);
   add_range(command, *options);
   add_device(command, options->device);

@@ -10,7 +10,8 @@
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/tare.h"
-#include "pipeline/plan_settings.h"
+#include "skin/limits.h"
+#include "solve/plan_settings.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -136,9 +137,8 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
     plain.number("--rate", options.rate_hz, "HZ", "Frames per second, if the file has no times",
                  1e-6, 1e9);
   }
-  plain.choice<SkinLayout>(
-      "--layout", options.layout,
-      {{"pillars", SkinLayout::pillars}, {"sensels", SkinLayout::sensels}},
+  plain.choice(
+      "--layout", options.layout, kLayouts,
       "pillars: one on each 2 x 2 sensels, three components of force; sensels: "
       "none, normal force and pressure on each [the file's or sensor's; without a word sensels]");
   plain.flag("--falling", options.falling,
@@ -159,16 +159,22 @@ void add_tare_frames(CLI::App* command, ReadOptions& options) {
              kLeastTareFrames, std::numeric_limits<std::uint32_t>::max());
 }
 
-void add_constants(CLI::App* command, ReadOptions& options) {
-  Group sensor(command, "Sensor");
-  const auto add = [&](std::optional<double> PlanSettings::*member, std::optional<double>& target) {
-    const auto* const setting = std::ranges::find(kPlanSettings, member, &PlanSetting::member);
-    sensor.number(setting->option, target, setting->unit, setting->help, setting->range.low,
-                  setting->range.high);
-  };
-  add(&PlanSettings::threshold_counts, options.threshold_counts);
-  add(&PlanSettings::counts_per_newton, options.counts_per_newton);
-  add(&PlanSettings::full_scale_counts, options.full_scale_counts);
+void add_setting(CLI::App* command, const PlanSetting& setting, PlanSettings& settings) {
+  Group group(command, setting.heading);
+  std::optional<double>& target = settings.*setting.member;
+  const auto& [low, high, open_low, open_high] = setting.range;
+  if (setting.has(kIsWhole)) {
+    group.whole(setting.option, target, setting.unit, setting.help, static_cast<std::uint64_t>(low),
+                static_cast<std::uint64_t>(high));
+  } else {
+    group.number(setting.option, target, setting.unit, setting.help, low, high);
+  }
+}
+
+void add_shown_settings(CLI::App* command, PlanSettings& settings) {
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (setting.has(kIsShown)) add_setting(command, setting, settings);
+  }
 }
 
 CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -10,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/options/argument_group.h"
+#include "solve/plan_settings.h"
 
 // Arguments of several commands.
 namespace pillarfield::cli {
@@ -35,11 +37,12 @@ void add_trust(CLI::App* command, ReadOptions& options);
 /// Adds what files of plain numbers leave open; --rate if the command uses the times of frames.
 void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times);
 void add_tare_frames(CLI::App* command, ReadOptions& options);
-/// Adds the constants of the skin that files of plain numbers lack.
-void add_constants(CLI::App* command, ReadOptions& options);
+void add_setting(CLI::App* command, const PlanSetting& setting, PlanSettings& settings);
+/// Adds the settings that the viewer has, too.
+void add_shown_settings(CLI::App* command, PlanSettings& settings);
 void add_sensor(CLI::App* command, PlanOptions& plan);
 void add_solver(CLI::App* command, PlanOptions& plan);
-void add_contacts(CLI::App* command, ContactOptions& options);
+std::array<CLI::Option*, 2> add_contacts(CLI::App* command, ContactOptions& options);
 void add_device(CLI::App* command, std::string& name);
 /// Adds --pressure-unit.
 CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit);

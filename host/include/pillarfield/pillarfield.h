@@ -84,20 +84,13 @@
 #include "pillarfield/recording.h"
 
 // Calibration of a new skin.
-#include "pillarfield/arm_calibration.h"
-#include "pillarfield/bending_calibration.h"
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/doctor.h"
-#include "pillarfield/equilibration.h"
 #include "pillarfield/fault_finder.h"
-#include "pillarfield/leak_calibration.h"
-#include "pillarfield/load_calibration.h"
-#include "pillarfield/memory_calibration.h"
-#include "pillarfield/shear_calibration.h"
 #include "pillarfield/skin_calibration.h"
 #include "pillarfield/tare.h"
 #include "pillarfield/untouched_skin.h"
 #include "pillarfield/weight_calibration.h"
-#include "pillarfield/wire_calibration.h"
 
 // Simulation and its comparison with the truth.
 #include "pillarfield/comparison.h"

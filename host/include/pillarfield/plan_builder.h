@@ -28,28 +28,6 @@ template <class Frames>
 /// single frame. Throws Error, naming `where`, if the times do not rise.
 [[nodiscard]] double frame_interval_of(FrameSource& source, const std::string& where);
 
-/// Settings that are unset leave what the frames, the scene and the calibration say.
-struct PlanSettings {
-  std::optional<Pitch> sensel_pitch_mm;
-  std::optional<double> threshold_counts;
-  std::optional<double> counts_per_newton;
-  std::optional<double> full_scale_counts;
-  std::optional<double> noise_counts;
-  std::optional<double> baseline_time_s;
-  std::optional<double> baseline_interval;
-  std::optional<double> frame_interval_s;
-  std::optional<double> parity_tolerance_counts;
-  std::optional<double> friction;
-  std::optional<double> friction_bound;
-  std::vector<double> friction_prior;  ///< empty, or median and spread
-  std::optional<Estimator> estimator;
-  std::optional<SkinLayout> layout;
-  std::vector<std::string>
-      outputs;  ///< "forces", "angles", "uncertainty", "pressure"; empty: unset
-  bool unrelated_frames = false;
-  bool everything = false;  ///< all outputs, the parity test and a followed baseline
-};
-
 /// The sources of a plan beside its frames.
 struct PlanSources {
   const Scene* scene = nullptr;                  ///< null: none

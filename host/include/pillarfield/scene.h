@@ -105,20 +105,15 @@ struct Scene {
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
   std::uint32_t recording = 0;  ///< number of this recording of the seed's sensor; sets its noise
-  std::optional<double> parity_tolerance_counts;  ///< as in SolverPlan, like the next four members
-  Estimator estimator = Estimator::direct;
-  FrictionKnowledge friction;
-  bool angles = false;
-  bool uncertainty = false;
-  std::optional<double> baseline_time_s;  ///< time constant with which the tare follows drift
-  std::vector<std::string> warnings;      ///< warnings about its file, such as former names
+  PlanSettings solver;          ///< of [solver]
+  std::vector<std::string> warnings;  ///< warnings about its file, such as former names
   std::variant<std::vector<ClosedFormContact>, DirectionSweep> load;
   std::vector<Indenter> indenters;  ///< combined with contacts, not with a DirectionSweep
   double modulus_kpa = 1000;        ///< Young's modulus of the skin under indenters
 };
 
-/// Sets the solver's options, and the noise of the sensor if any, as the scene says. The skin and
-/// the calibration of the plan stay.
+/// Sets what the scene says of the solver, the time from frame to frame, and the noise of the
+/// sensor if any. The skin and the calibration of the plan stay.
 void set_solver(SolverPlan& plan, const Scene& scene);
 
 /// Gives `skin` the constants of the scene's skin, and its surface if it has one; the size stays.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/friction.h"
@@ -61,6 +62,37 @@ struct SolverPlan {
                              ///< sensels, and an estimator other than `paper`
   bool pressure = false;     ///< files of the forces hold the pressure too
 };
+
+/// A user's settings of a plan. Settings that are unset leave what the frames, the scene and the
+/// calibration say.
+struct PlanSettings {
+  std::optional<Pitch> sensel_pitch_mm;
+  std::optional<SkinLayout> layout;
+  std::optional<double> threshold_counts;
+  std::optional<double> counts_per_newton;
+  std::optional<double> full_scale_counts;
+  std::optional<double> noise_counts;
+  std::optional<double> baseline_time_s;  ///< of set_baseline()
+  std::optional<double> baseline_interval;
+  std::optional<double> frame_interval_s;
+  std::optional<double> parity_tolerance_counts;
+  std::optional<double> friction;
+  std::optional<double> friction_bound;
+  std::vector<double> friction_prior;  ///< empty, or median and spread
+  std::optional<bool> unrelated_frames;
+  std::optional<Estimator> estimator;
+  std::optional<bool> angles;
+  std::optional<bool> uncertainty;
+  std::optional<bool> pressure;
+  bool everything = false;  ///< all outputs, the parity test and a followed baseline
+};
+
+/// Sets the members of the plan for which there are settings: all but `baseline_time_s` and
+/// `everything`, which build_plan() applies.
+void apply(const PlanSettings& settings, SolverPlan& plan);
+
+/// Throws Error, naming `where`, if a number is out of range.
+void check(const PlanSettings& settings, std::string_view where);
 
 /// Throws Error, naming `where`, if a member is out of range or two members exclude each other.
 void check(const SolverPlan& plan, std::string_view where);

@@ -1,38 +1,15 @@
-#include "simulation/scene/indenter_section.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "simulation/scene/named_value.h"
-#include "simulation/scene/path_section.h"
 #include "simulation/scene/scene_limits.h"
+#include "simulation/scene/scene_sections.h"
 
 namespace pillarfield {
 namespace {
 
 std::string shape_text(IndenterShape shape) {
   return fmt::format(R"(shape = "{}")", kIndenterShapes[static_cast<std::size_t>(shape)].name);
-}
-
-/// Refuses a key that does not apply to the shape.
-void refuse_key(const TomlSection& section, std::string_view key, IndenterShape shape) {
-  if (section.has(key)) section.fail(key, "does not apply to " + shape_text(shape), "no such key");
-}
-
-/// Reads the numbers that apply to the shape; refuses others. Friction may be left out where no
-/// shear is felt.
-void read_indenter_quantities(TomlSection& section, SkinLayout layout, Indenter& indenter) {
-  for (const auto& [quantity, required, applies] : kIndenterQuantities) {
-    if (!applies(indenter.shape)) {
-      refuse_key(section, quantity.key, indenter.shape);
-      continue;
-    }
-    const auto value = section.number(quantity.key, quantity.range);
-    const bool unfelt = layout == SkinLayout::sensels && quantity.member == &Indenter::friction;
-    if (!value && required && !unfelt) section.fail_missing(quantity.key, quantity.range.text());
-    if (value) indenter.*quantity.member = *value;
-  }
 }
 
 /// Reads a list of `values`' length.
@@ -59,13 +36,13 @@ void read_indenter_shape(TomlSection& section, const std::filesystem::path& fold
   if (indenter.shape == IndenterShape::ellipsoid) {
     read_sizes(section, "radii_mm", indenter.radii_mm);
   } else {
-    refuse_key(section, "radii_mm", indenter.shape);
+    section.refuse("radii_mm", shape_text(indenter.shape));
   }
   if (indenter.shape == IndenterShape::height_map) {
     read_height_map_keys(section, folder, indenter);
   } else {
-    refuse_key(section, "height_map", indenter.shape);
-    refuse_key(section, "height_map_size_mm", indenter.shape);
+    section.refuse("height_map", shape_text(indenter.shape));
+    section.refuse("height_map_size_mm", shape_text(indenter.shape));
   }
 }
 
@@ -102,7 +79,10 @@ Indenter read_indenter(TomlSection& section, const std::filesystem::path& folder
                        SkinLayout layout) {
   Indenter indenter;
   read_indenter_shape(section, folder, indenter);
-  read_indenter_quantities(section, layout, indenter);
+  read_part(section, kIndenterQuantities, shape_text(indenter.shape), indenter);
+  if (layout == SkinLayout::pillars && !section.has("friction")) {
+    section.fail_missing("friction", kIndenterFriction.text());
+  }
   expect_together(section, "roughness_exponent", "roughness_um");
   expect_together(section, "roughness_length_mm", "roughness_um");
   expect_together(section, "friction_variation_length_mm", "friction_variation");

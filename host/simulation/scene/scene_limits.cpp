@@ -97,8 +97,16 @@ void check_layout(const Scene& scene, const std::string& where) {
   if (std::holds_alternative<DirectionSweep>(scene.load)) {
     throw Error(where, "a direction sweep needs pillars", "give contacts or indenters");
   }
-  if (scene.parity_tolerance_counts) {
+  if (scene.solver.parity_tolerance_counts) {
     throw Error(where, "the parity test needs pillars", "leave parity_tolerance_counts out");
+  }
+}
+
+template <class Part, std::size_t count>
+void check_part(const Part& part, const std::array<PartQuantity<Part>, count>& quantities,
+                const std::string& where) {
+  for (const auto& [quantity, required, applies] : quantities) {
+    if (applies(part)) check_range(where, quantity.key, part.*quantity.member, quantity.range);
   }
 }
 
@@ -107,10 +115,7 @@ void check_contact(const ClosedFormContact& contact, const std::string& where) {
     throw Error(where, "this shape cannot have this motion",
                 "see docs/scenes.md for what goes together");
   }
-  for (const auto& [quantity, required, applies] : kContactQuantities) {
-    if (!applies(contact.shape, contact.motion)) continue;
-    check_range(where, quantity.key, contact.*quantity.member, quantity.range);
-  }
+  check_part(contact, kContactQuantities, where);
   check_path(contact.path, where);
 }
 
@@ -144,10 +149,7 @@ void check_steps(const Indenter& indenter, const Scene& scene, const std::string
 }
 
 void check_indenter(const Indenter& indenter, const Scene& scene, const std::string& where) {
-  for (const auto& [quantity, required, applies] : kIndenterQuantities) {
-    if (!applies(indenter.shape)) continue;
-    check_range(where, quantity.key, indenter.*quantity.member, quantity.range);
-  }
+  check_part(indenter, kIndenterQuantities, where);
   if (indenter.shape == IndenterShape::ellipsoid) {
     for (const double radius : indenter.radii_mm)
       check_range(where, "radii_mm", radius, kIndenterSizeMm);
@@ -226,13 +228,7 @@ void check(const Scene& scene, const char* where) {
   if (scene.bending) check_bending(*scene.bending, where);
   check_range(where, "rate_hz", scene.rate_hz, kRateHz);
   check_range(where, "frames", scene.frames, {1, kMaxFrames});
-  if (scene.parity_tolerance_counts) {
-    check_range(where, "parity_tolerance_counts", *scene.parity_tolerance_counts,
-                kParityToleranceCounts);
-  }
-  if (scene.baseline_time_s) {
-    check_range(where, "baseline_time_s", *scene.baseline_time_s, kBaselineTimeS);
-  }
+  check(scene.solver, where);
   check_indenters(scene, where);
   if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load)) {
     check_direction_sweep(*sweep, scene.skin, where);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/named.h"
 #include "base/range.h"
 #include "pillarfield/scene.h"
 #include "skin/limits.h"
@@ -56,11 +57,12 @@ inline constexpr Range kSurfaceAxisDeg = {-360, 360};
 inline constexpr Range kPowerLawExponent = {kMinExponent, kMaxExponent};
 inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceCounts};
 
-/// A number of a contact, and the shapes and motions to which it applies.
-struct ContactQuantity {
-  Quantity<ClosedFormContact> quantity;
+/// A number of a contact or an indenter, and to which of these it applies.
+template <class Part>
+struct PartQuantity {
+  Quantity<Part> quantity;
   bool required = false;
-  bool (*applies)(ContactShape shape, ContactMotion motion) = nullptr;
+  bool (*applies)(const Part& part) = [](const Part&) { return true; };
 };
 
 /// True if the motion has a direction.
@@ -73,72 +75,53 @@ struct ContactQuantity {
   return motion == ContactMotion::partial_slip || motion == ContactMotion::roll;
 }
 
-inline constexpr std::array<ContactQuantity, 6> kContactQuantities = {{
-    {{"contact_radius_mm", &ClosedFormContact::contact_radius_mm, {1e-3, 1e4}},
-     true,
-     [](ContactShape, ContactMotion) { return true; }},
+inline constexpr std::array<PartQuantity<ClosedFormContact>, 6> kContactQuantities = {{
+    {{"contact_radius_mm", &ClosedFormContact::contact_radius_mm, {1e-3, 1e4}}, true},
     {{"reference_load_n", &ClosedFormContact::reference_load_n, {1e-6, 1e6}},
      false,
-     [](ContactShape shape, ContactMotion) { return shape != ContactShape::flat_punch; }},
+     [](const ClosedFormContact& contact) { return contact.shape != ContactShape::flat_punch; }},
     {{"length_mm", &ClosedFormContact::length_mm, {1e-3, 1e5}},
      true,
-     [](ContactShape shape, ContactMotion) { return shape == ContactShape::cylinder; }},
+     [](const ClosedFormContact& contact) { return contact.shape == ContactShape::cylinder; }},
     {{"friction", &ClosedFormContact::friction, {0, 10}},
      true,
-     [](ContactShape, ContactMotion motion) { return motion != ContactMotion::press; }},
+     [](const ClosedFormContact& contact) { return contact.motion != ContactMotion::press; }},
     {{"direction_deg", &ClosedFormContact::direction_deg, {-360, 360}},
      false,
-     [](ContactShape shape, ContactMotion motion) {
-       return shape == ContactShape::cylinder || is_directed(motion);
+     [](const ClosedFormContact& contact) {
+       return contact.shape == ContactShape::cylinder || is_directed(contact.motion);
      }},
     {{"tangential_ratio", &ClosedFormContact::tangential_ratio, {0, 1, true, true}},
      true,
-     [](ContactShape, ContactMotion motion) { return sticks(motion); }},
+     [](const ClosedFormContact& contact) { return sticks(contact.motion); }},
 }};
 
-/// A number of an indenter, and the shapes to which it applies.
-struct IndenterQuantity {
-  Quantity<Indenter> quantity;
-  bool required = false;
-  bool (*applies)(IndenterShape shape) = nullptr;
-};
-
-/// True if an indenter of this shape has a single radius.
-[[nodiscard]] constexpr bool has_radius(IndenterShape shape) {
-  return shape == IndenterShape::sphere || shape == IndenterShape::cylinder ||
-         shape == IndenterShape::punch;
-}
-
 inline constexpr Range kIndenterSizeMm = {1e-2, 1e4};
-inline constexpr std::array<IndenterQuantity, 10> kIndenterQuantities = {{
-    {{"radius_mm", &Indenter::radius_mm, kIndenterSizeMm}, true, has_radius},
+inline constexpr Range kIndenterFriction = {0, 10};
+inline constexpr std::array<PartQuantity<Indenter>, 10> kIndenterQuantities = {{
+    {{"radius_mm", &Indenter::radius_mm, kIndenterSizeMm},
+     true,
+     [](const Indenter& indenter) {
+       return indenter.shape != IndenterShape::ellipsoid &&
+              indenter.shape != IndenterShape::height_map;
+     }},
     {{"length_mm", &Indenter::length_mm, kIndenterSizeMm},
      true,
-     [](IndenterShape shape) { return shape == IndenterShape::cylinder; }},
+     [](const Indenter& indenter) { return indenter.shape == IndenterShape::cylinder; }},
     {{"edge_radius_mm", &Indenter::edge_radius_mm, {0, 1e4}},
      false,
-     [](IndenterShape shape) {
-       return shape == IndenterShape::cylinder || shape == IndenterShape::punch;
+     [](const Indenter& indenter) {
+       return indenter.shape == IndenterShape::cylinder || indenter.shape == IndenterShape::punch;
      }},
     {{"height_map_depth_mm", &Indenter::height_map_depth_mm, {0, 1e3, true}},
      true,
-     [](IndenterShape shape) { return shape == IndenterShape::height_map; }},
-    {{"roughness_um", &Indenter::roughness_um, {0, 1e4}},
-     false,
-     [](IndenterShape) { return true; }},
-    {{"roughness_exponent", &Indenter::roughness_exponent, {0, 1, true}},
-     false,
-     [](IndenterShape) { return true; }},
-    {{"roughness_length_mm", &Indenter::roughness_length_mm, kIndenterSizeMm},
-     false,
-     [](IndenterShape) { return true; }},
-    {{"friction", &Indenter::friction, {0, 10}}, true, [](IndenterShape) { return true; }},
-    {{"friction_variation", &Indenter::friction_variation, {0, 1}},
-     false,
-     [](IndenterShape) { return true; }},
-    {{"friction_variation_length_mm", &Indenter::friction_variation_length_mm, kIndenterSizeMm},
-     false,
-     [](IndenterShape) { return true; }},
+     [](const Indenter& indenter) { return indenter.shape == IndenterShape::height_map; }},
+    {{"roughness_um", &Indenter::roughness_um, {0, 1e4}}},
+    {{"roughness_exponent", &Indenter::roughness_exponent, {0, 1, true}}},
+    {{"roughness_length_mm", &Indenter::roughness_length_mm, kIndenterSizeMm}},
+    {{"friction", &Indenter::friction, kIndenterFriction}},  // Required where shear is felt.
+    {{"friction_variation", &Indenter::friction_variation, {0, 1}}},
+    {{"friction_variation_length_mm", &Indenter::friction_variation_length_mm, kIndenterSizeMm}},
 }};
 inline constexpr std::int64_t kMaxSubsteps = 1000;
 inline constexpr std::size_t kMaxIndenters = 100;
@@ -152,7 +135,6 @@ inline constexpr Range kPathAngleDeg = {-1e6, 1e6};
 inline constexpr Range kRateHz = {1e-6, 1e6};
 inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr std::uint32_t kMaxRecording = 1'000'000'000;
-inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};
@@ -160,18 +142,6 @@ inline constexpr Range kSweepFactor = {0, 1e3};
 inline constexpr std::uint32_t kMaxPillars = kMaxSensels / 2;   ///< rows or columns
 inline constexpr std::uint64_t kMaxMemorySensels = 10'000'000;  ///< with hysteresis or creep
 inline constexpr std::uint64_t kMaxSkinSensels = 100'000'000;   ///< rows times columns: 40 m²
-
-/// A shape or motion with its name in files.
-template <class Value>
-struct Named {
-  std::string_view name;
-  Value value;
-};
-
-inline constexpr std::array<Named<SkinLayout>, 2> kLayouts = {{
-    {"pillars", SkinLayout::pillars},
-    {"sensels", SkinLayout::sensels},
-}};
 
 inline constexpr std::array<Named<ContactShape>, 3> kShapes = {{
     {"sphere", ContactShape::sphere},
@@ -204,11 +174,6 @@ inline constexpr std::array<Named<SurfaceShape>, 4> kSurfaceShapes = {{
 inline constexpr std::array<Named<TareOrigin>, 2> kTareOrigins = {{
     {"conduct", TareOrigin::conductance},
     {"offset", TareOrigin::offset},
-}};
-inline constexpr std::array<Named<Estimator>, 3> kEstimators = {{
-    {"direct", Estimator::direct},
-    {"paper", Estimator::paper},
-    {"contact", Estimator::contact},
 }};
 
 /// True if a closed form exists for this shape and motion.

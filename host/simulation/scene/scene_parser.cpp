@@ -8,12 +8,10 @@
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
 #include "simulation/closed_form/direction_sweep.h"
-#include "simulation/scene/indenter_section.h"
-#include "simulation/scene/named_value.h"
-#include "simulation/scene/path_section.h"
 #include "simulation/scene/scene_limits.h"
-#include "simulation/scene/surface_section.h"
+#include "simulation/scene/scene_sections.h"
 #include "simulation/scene/toml_section.h"
+#include "solve/plan_settings.h"
 
 namespace pillarfield {
 namespace {
@@ -137,33 +135,35 @@ void read_time(TomlSection section, Scene& scene) {
   section.finish();
 }
 
-/// Reads the prior of friction.
-void read_friction(TomlSection& section, FrictionKnowledge& friction) {
-  friction.given = section.number("friction", kFrictions);
-  friction.bound = section.number("friction_bound", kFrictionBound);
-  if (const auto prior =
-          section.numbers("friction_prior", 2, {kPriorSpread.low, kFrictions.high})) {
-    friction.median = (*prior)[0];
-    friction.spread = (*prior)[1];
-    if (friction.median < kFrictions.low || friction.spread > kPriorSpread.high) {
-      section.fail("friction_prior", "has a median below 0.1 or a spread above 3",
-                   "friction_prior = [1.0, 0.5]");
-    }
+void read_friction_prior(TomlSection& section, PlanSettings& settings) {
+  const auto prior = section.numbers("friction_prior", 2, {kPriorSpread.low, kFrictions.high});
+  if (!prior) return;
+  if ((*prior)[0] < kFrictions.low || (*prior)[1] > kPriorSpread.high) {
+    section.fail("friction_prior", "has a median below 0.1 or a spread above 3",
+                 "friction_prior = [1.0, 0.5]");
   }
-  friction.memory = section.flag("memory").value_or(friction.memory);
+  settings.friction_prior = *prior;
 }
 
-void read_solver(TomlSection section, Scene& scene) {
-  scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
-  scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
-  scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
-  scene.angles = section.flag("angles").value_or(scene.angles);
-  scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
-  if (scene.uncertainty && scene.estimator == Estimator::paper) {
+std::optional<double> read_setting(TomlSection& section, const PlanSetting& setting) {
+  const Range& range = setting.range;
+  if (!setting.has(kIsWhole)) return section.number(setting.name, range);
+  return section.whole_number(setting.name, std::lround(range.low), std::lround(range.high));
+}
+
+void read_solver(TomlSection section, PlanSettings& settings) {
+  for (const PlanSetting& setting : kPlanSettings) {
+    if (setting.has(kIsKey)) settings.*setting.member = read_setting(section, setting);
+  }
+  settings.estimator = read_name(section, "estimator", kEstimators);
+  settings.angles = section.flag("angles");
+  settings.uncertainty = section.flag("uncertainty");
+  if (settings.uncertainty.value_or(false) && settings.estimator == Estimator::paper) {
     section.fail("uncertainty", "comes with the paper's estimator, which has none",
                  R"(estimator = "direct" or "contact")");
   }
-  read_friction(section, scene.friction);
+  read_friction_prior(section, settings);
+  if (const auto memory = section.flag("memory")) settings.unrelated_frames = !*memory;
   section.finish();
 }
 
@@ -291,22 +291,6 @@ void read_motion(TomlSection& section, ClosedFormContact& contact) {
                quoted(possible));
 }
 
-/// Reads the numbers that apply to the shape and motion; refuses others.
-void read_contact_quantities(TomlSection& section, ClosedFormContact& contact) {
-  for (const auto& [quantity, required, applies] : kContactQuantities) {
-    if (!applies(contact.shape, contact.motion)) {
-      if (section.has(quantity.key)) {
-        section.fail(quantity.key, "does not apply to " + name_of(contact.shape, contact.motion),
-                     "no such key");
-      }
-      continue;
-    }
-    const auto value = section.number(quantity.key, quantity.range);
-    if (!value && required) section.fail_missing(quantity.key, quantity.range.text());
-    if (value) contact.*quantity.member = *value;
-  }
-}
-
 /// Reads place and load of a contact, from a key of its path or from the contact itself.
 ContactKey read_state(TomlSection& section) {
   const auto position = section.numbers("position_mm", 2, kPathPositionMm);
@@ -326,7 +310,7 @@ ClosedFormContact read_contact(TomlSection& section) {
   ClosedFormContact contact;
   read_shape(section, contact);
   read_motion(section, contact);
-  read_contact_quantities(section, contact);
+  read_part(section, kContactQuantities, name_of(contact.shape, contact.motion), contact);
   if (contact.motion == ContactMotion::spin) {
     contact.clockwise = section.flag("clockwise").value_or(false);
   }
@@ -379,7 +363,7 @@ Scene read_scene(TomlSection root, const std::filesystem::path& folder) {
   read_sensor(root.table("sensor"), scene);
   read_surface(root.table("surface"), folder, scene);
   read_time(root.table("time"), scene);
-  read_solver(root.table("solver"), scene);
+  read_solver(root.table("solver"), scene.solver);
   root.finish();
   return scene;
 }

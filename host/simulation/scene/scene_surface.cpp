@@ -48,13 +48,9 @@ void set_skin(Skin& skin, const Scene& scene) {
 }
 
 void set_solver(SolverPlan& plan, const Scene& scene) {
-  plan.parity_tolerance_counts = scene.parity_tolerance_counts;
-  plan.estimator = scene.estimator;
-  plan.friction = scene.friction;
-  plan.angles = scene.angles;
-  plan.uncertainty = scene.uncertainty;
+  apply(scene.solver, plan);
   plan.frame_interval_s = 1 / scene.rate_hz;
-  if (scene.baseline_time_s) set_baseline(plan, *scene.baseline_time_s);
+  if (scene.solver.baseline_time_s) set_baseline(plan, *scene.solver.baseline_time_s);
   if (scene.sensor.noise_counts > 0) plan.noise_counts = scene.sensor.noise_counts;
 }
 

@@ -1,13 +1,9 @@
-#include "simulation/scene/surface_section.h"
-
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "simulation/scene/indenter_section.h"
-#include "simulation/scene/named_value.h"
-#include "simulation/scene/path_section.h"
 #include "simulation/scene/scene_limits.h"
+#include "simulation/scene/scene_sections.h"
 
 namespace pillarfield {
 namespace {

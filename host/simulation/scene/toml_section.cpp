@@ -150,6 +150,10 @@ void TomlSection::fail(std::string_view key, std::string_view is, std::string_vi
   fail_at(node ? node->source() : source(), key, is, allowed);
 }
 
+void TomlSection::refuse(std::string_view key, const std::string& kind) const {
+  if (has(key)) fail(key, "does not apply to " + kind, "no such key");
+}
+
 void TomlSection::fail_missing(std::string_view key, std::string_view allowed) const {
   fail_at(source(), key, "is missing", allowed);
 }

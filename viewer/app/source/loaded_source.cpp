@@ -83,7 +83,8 @@ LoadedSource load_one(const Options& options, const std::filesystem::path& sourc
 ProducerOptions producer_options(const Options& options, LoadProgress tell) {
   ProducerOptions wanted;
   wanted.device = options.device;
-  wanted.read = options.plain;
+  wanted.read = frame_options({.read = options.plain, .settings = options.settings});
+  wanted.settings = options.settings;
   if (!tell) return wanted;
   wanted.on_compiling = [tell = std::move(tell)](const std::string& line) {
     try {
