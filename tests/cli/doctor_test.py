@@ -397,7 +397,7 @@ class DoctorTest(CommandTest):
                           names=["pad.npy"])
 
     def test_pillars_are_told_from_sensels(self):
-        for scene in ("sliding", "new_skin_rolled"):
+        for scene in ("touch/sliding", "calibration/new_skin_rolled"):
             run("simulate", SCENES / f"{scene}.toml", "--uncalibrated", "-o", self.folder / "skin.h5", "--overwrite")
             report = run_json("doctor", self.folder / "skin.h5")
             self.assertEqual(report["layout"], "pillars")
