@@ -41,14 +41,15 @@ const std::vector<GoldenPicture>& golden_pictures() {
       {"demo_uncertainty_zoom",
        {"demo.toml", "--frame=31", "--layer=uncertainty", "--zoom=5", "--centre=6,1", "--sectors"}},
       {"demo_contacts", {"demo.toml", "--frame=31", "--contacts", "--no-arrows"}},
-      {"pad_pressure", {"pad.toml", "--frame=71", "--layer=pressure", "--contacts"}},
-      {"sliding_shear_x", {"sliding.toml", "--frame=21", "--layer=shear_x"}},
+      {"pad_pressure", {"touch/pad.toml", "--frame=71", "--layer=pressure", "--contacts"}},
+      {"sliding_shear_x", {"touch/sliding.toml", "--frame=21", "--layer=shear_x"}},
       {"sliding_cylinder",
-       {"sliding.toml", "--frame=26", "--layer=shear", "--view=orbit:-45.83662361,28.64788976",
-        "--surface=cylinder:25"}},
-      {"spin_phi", {"spin.toml", "--layer=phi"}},
-      {"spin_theta_light", {"spin.toml", "--layer=theta", "--light"}},
-      {"spin_parity_large_letters", {"spin.toml", "--layer=parity", "--scale=1.5", "--no-arrows"}},
+       {"touch/sliding.toml", "--frame=26", "--layer=shear",
+        "--view=orbit:-45.83662361,28.64788976", "--surface=cylinder:25"}},
+      {"spin_phi", {"touch/spin.toml", "--layer=phi"}},
+      {"spin_theta_light", {"touch/spin.toml", "--layer=theta", "--light"}},
+      {"spin_parity_large_letters",
+       {"touch/spin.toml", "--layer=parity", "--scale=1.5", "--no-arrows"}},
   };
   return pictures;
 }
