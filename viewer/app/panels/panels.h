@@ -21,9 +21,8 @@ namespace pillarfield::viewer {
 void hover_panel(const AppState& state);
 
 /// The inspected pillar, after the paper's testbed interface (Figure 7): readings as bars; theta,
-/// phi and magnitude with uncertainty; the region diagram (Figure 3) with the current point, its
-/// uncertainty and, in region 3, the contour of Figure 4. Of a sensel reading, force and pressure.
-/// Selects and removes pins.
+/// phi and magnitude with uncertainty. Of a sensel reading, force and pressure. Selects and removes
+/// pins.
 void pillar_panel(AppState& state);
 
 /// The selection: total force, centre of pressure, area, peak, mean; of pillars the shares of the

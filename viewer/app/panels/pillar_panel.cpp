@@ -8,7 +8,6 @@
 #include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/region_plot.h"
 #include "viewer/app/panels/widgets.h"
 
 namespace pillarfield::viewer {
@@ -99,28 +98,6 @@ void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
   readouts(style, shown_direction(values), std::min(width, kMost * style.unit));
 }
 
-/// The last pin in the second before the field on display.
-std::vector<CurvePoint> points_before(const AppState& state) {
-  constexpr double kSeconds = 1;
-  constexpr std::size_t kMostPoints = 256;
-  if (state.curves == nullptr) return {};
-  const double now_s = state.field->time_s;
-  auto points = state.curves->of(rect_of(state.pins.back()), now_s - kSeconds, now_s, kMostPoints);
-  std::erase_if(points, [&](const CurvePoint& point) { return point.time_s > now_s; });
-  return points;
-}
-
-void draw_diagram(const PanelStyle& style, const AppState& state, const PillarValues& values,
-                  ImU32 colour) {
-  const std::string section = section_name(values.status);
-  heading(style, "θ over φ, in degrees", section.empty() ? "" : "region " + section);
-  const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  const double height = std::clamp(0.5 * width, 120 * style.unit, 230 * style.unit);
-  const Viewport outer = reserve(0, height);
-  draw_region_plot(*ImGui::GetWindowDrawList(), outer, values, points_before(state), style, colour,
-                   state.settings.theme);
-}
-
 bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
   return pillar.row < forces.rows && pillar.col < forces.cols;
 }
@@ -155,8 +132,6 @@ void pillar_panel(AppState& state) {
   draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);
   value_table(style, shown_components(values));
-  leave_gap(style, 4);
-  draw_diagram(style, state, values, colour);
 }
 
 }  // namespace pillarfield::viewer
