@@ -7,7 +7,6 @@
 
 #include "viewer/app/named_boxes.h"
 #include "viewer/app/panels/time_window.h"
-#include "viewer/app/trails.h"
 #include "viewer/source/live_control.h"
 #include "viewer/source/player.h"
 #include "viewer/source/selection.h"
@@ -84,8 +83,6 @@ struct Marks {
   std::optional<Selection> selection;
   std::vector<NamedBox> boxes;  ///< at most NamedBoxes::kMost
   bool names_box = false;       ///< the name of the last box takes the keyboard next
-  Trails trails;
-  bool show_trails = false;
 };
 
 /// The window around the picture.

@@ -43,8 +43,6 @@ TEST_F(Panels, EachWidgetActs) {
     press({"View", name});
     EXPECT_NE(settings.*layer, before) << name;
   }
-  press({"View", "trails"});
-  EXPECT_TRUE(fake.state.show_trails);
   press({"View", "truth"});
   EXPECT_TRUE(fake.pending.truth);
   press({"View", "light"});

@@ -24,7 +24,7 @@ auto state_of(const FakeAppState& fake) {
                     state.show_panels, player.frame, player.playing, player.loops, player.follows,
                     player.speed, pending.quit, pending.picture, pending.sequence, pending.video,
                     pending.table, pending.stop, pending.record, pending.truth, pending.start,
-                    state.notice, state.show_trails, state.show_counters);
+                    state.notice, state.show_counters);
 }
 
 /// A state that every shortcut changes.

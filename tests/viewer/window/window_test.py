@@ -146,7 +146,7 @@ class SourceTest(WindowTest):
         self.shoot("sensor_awaited")
         sensor = Sensor(port)
         self.shoot_field("sensor_found")
-        for key in ("k", "j", "z", "ctrl+r"):
+        for key in ("k", "z", "ctrl+r"):
             window.key(key)
             time.sleep(0.7)
         self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5*")), "no recording")

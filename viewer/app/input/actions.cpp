@@ -96,11 +96,6 @@ void show_contacts(AppState& state, bool shown) {
   if (state.beside != nullptr) state.beside->set_contacts(shown);
 }
 
-void show_trails(AppState& state, bool shown) {
-  state.show_trails = shown;
-  state.trails = {};
-}
-
 void reset_view(AppState& state, const FieldPlace& place) {
   state.settings.view = fitted(state, place, shows_orbit(state.settings));
   state.view_is_fitted = true;
@@ -194,7 +189,6 @@ void change_speed(AppState& state, int steps) {
 
 void take_field(AppState& state, ShownField field) {
   state.field = std::move(field);
-  if (state.show_trails) state.trails.add(*state.field);
   if (state.fit_each_field) fit_range(state);
 }
 

@@ -29,9 +29,6 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit);
 /// Switches finding and marking contacts.
 void show_contacts(AppState& state, bool shown);
 
-/// Switches the trails of the centres of pressure.
-void show_trails(AppState& state, bool shown);
-
 /// Fits the view to the whole skin.
 void reset_view(AppState& state, const FieldPlace& place);
 
@@ -55,7 +52,7 @@ void keep_selection(AppState& state);
 /// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);
 
-/// Displays a new field and extends the trails.
+/// Displays a new field.
 void take_field(AppState& state, ShownField field);
 
 }  // namespace pillarfield::viewer

@@ -107,10 +107,6 @@ void take_tare(const Command& command) {
   }
 }
 
-void toggle_trails(const Command& command) {
-  show_trails(command.state, !command.state.show_trails);
-}
-
 /// Closes help, else stops writing, else clears the marks.
 void escape(const Command& command) {
   if (command.state.show_help) {
@@ -174,7 +170,6 @@ constexpr std::array kShortcuts{
     Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
              [](const Command& command) { fit_range(command.state); }},
     Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
-    Shortcut{Group::view, plain(GLFW_KEY_J), "J", "trail of the centre of pressure", toggle_trails},
     Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
              ask<&PendingActions::truth>},
     Shortcut{

@@ -140,10 +140,6 @@ void choose_layers(const Command& command) {
   if (boxes.add("contacts", contacts, "extent, force, centre of pressure (K)")) {
     show_contacts(state, contacts);
   }
-  bool trails = state.show_trails;
-  if (boxes.add("trails", trails, "centres of pressure of the last two seconds, dotted (J)")) {
-    show_trails(state, trails);
-  }
   boxes.add("relief", settings.relief, "in 3-D, the normal force raises the skin (B)");
   if (pillars) {
     boxes.add("hatch", settings.hatch, "ambiguous pillars (X)");
