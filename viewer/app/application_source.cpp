@@ -76,7 +76,6 @@ void Application::show(LoadedSource loaded) {
   if (options_.first_frame != 0) state_.player->seek(options_.first_frame);
   // After seek(): contacts are tracked from the first shown frame on.
   state_.player->set_contacts(state_.settings.contacts);
-  if (state_.settings.quantity == Quantity::peak) state_.player->set_peak(true);
   if (!options_.paused) state_.player->play();
   redraws_.input(Window::now_s());
 }
@@ -103,7 +102,6 @@ void Application::set_beside() {
   state_.beside_is_truth = loaded_.beside_is_truth;
   if (state_.beside == nullptr) return;
   state_.beside->set_contacts(state_.settings.contacts);
-  if (state_.settings.quantity == Quantity::peak) state_.beside->set_peak(true);
   state_.beside->on_new_field([this] {
     news_ = true;
     Window::wake();

@@ -199,7 +199,6 @@ void LivePlayer::publish(const SolvedFrame& frame, ShownField field) {
     field.contacts = std::make_shared<const ShownContacts>(
         with_extents(*frame.contacts, tracker_.labels(), tracker_.options().noise_n));
   }
-  if (wants_peak_) field.peak = peak_.field(field);
   newest_.set(std::move(field));
 }
 

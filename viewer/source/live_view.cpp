@@ -31,9 +31,6 @@ PlayerState LiveView::state_after(std::uint64_t frames, double rate_hz) const {
 void LiveView::measure(const ShownField& field) {
   curves_->add(field);
   newest_.count(field.arrived.value());
-  if (!wants_peak_) return;
-  if (peak_begins_.exchange(false)) peak_.reset();
-  peak_.add(field.forces);
 }
 
 }  // namespace pillarfield::viewer

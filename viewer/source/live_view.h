@@ -35,27 +35,19 @@ class LiveView : public Player, public LiveControl {
   void play() override { paused_ = false; }
   void pause() override { paused_ = true; }
   void set_contacts(bool wanted) override { wants_contacts_ = wanted; }
-  void set_peak(bool wanted) override {
-    peak_begins_ = wanted;
-    wants_peak_ = wanted;
-  }
   [[nodiscard]] LiveControl* live() override { return this; }
 
  protected:
   [[nodiscard]] PlayerState state_after(std::uint64_t frames, double rate_hz) const;
 
-  /// Adds a field to curves, peaks and statistics.
+  /// Adds a field to curves and statistics.
   void measure(const ShownField& field);
 
   std::atomic<bool> paused_ = false;
   std::atomic<bool> wants_contacts_ = false;
-  std::atomic<bool> wants_peak_ = false;
-  // Members of the thread.
-  PeakHold peak_;
-  FieldClock clock_;
+  FieldClock clock_;  ///< of the thread
 
  private:
-  std::atomic<bool> peak_begins_ = false;
   const std::shared_ptr<Curves> curves_;
 };
 

@@ -80,8 +80,6 @@ class Player {
   [[nodiscard]] virtual PlayerState state() const = 0;
   /// Switches contacts of fields on or off; on, the current frame is produced again.
   virtual void set_contacts(bool wanted) = 0;
-  /// Switches ShownField::peak on, beginning with the current frame, or off.
-  virtual void set_peak(bool wanted) = 0;
 
   virtual void play() { move(&Playback::play); }
   virtual void pause() {  ///< the picture of a sensor freezes, not the sensor

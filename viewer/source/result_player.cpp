@@ -127,7 +127,6 @@ void ResultPlayer::publish() {
   field.pages = block->pages();
   field.keep_alive = block;
   if (wants_contacts_) field.contacts = contacts_of(field);
-  if (wants_peak_) field.peak = peak_.field(field);
   newest_.set(std::move(field));
 }
 

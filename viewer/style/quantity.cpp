@@ -35,7 +35,6 @@ constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
     {"status", "Status", "", 1, Scale::classes, any},
     {"uncertainty", "Uncertainty", "N", 1, Scale::sequential, uncertain},
     {"parity", "Parity residual", "counts", 1, Scale::diverging, readings},
-    {"peak", "Peak normal force", "N", 1, Scale::sequential, any},
     {"pressure", "Pressure", "kPa", 1, Scale::sequential, any},
 }};
 
@@ -102,7 +101,6 @@ float pressed_value(Quantity quantity, const ShownField& field, const Skin& skin
   const std::size_t pillar = std::size_t{row} * forces.cols + col;
   switch (quantity) {
     case Quantity::normal:
-    case Quantity::peak:
       return forces.normal[pillar];
     case Quantity::pressure:
       return forces.normal[pillar] * kpa_per_newton(skin);
@@ -162,16 +160,11 @@ bool is_available(Quantity quantity, const SourceInfo& source) {
   return kInfos.at(static_cast<std::size_t>(quantity)).is_in(source);
 }
 
-const ShownField& field_with(Quantity quantity, const ShownField& field) {
-  return quantity == Quantity::peak && field.peak != nullptr ? *field.peak : field;
-}
-
 float kpa_per_newton(const Skin& skin) {
   return pillarfield::kpa_per_newton(skin.element_pitch_mm());
 }
 
-float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {
-  const ShownField& field = field_with(quantity, shown);
+float largest(Quantity quantity, const ShownField& field, const Skin& skin) {
   float largest = 0;
   float normal = 0;
   for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
@@ -204,9 +197,8 @@ Range fitting_range(Quantity quantity, float largest_value) {
   return {info_of(quantity).scale == Scale::diverging ? -high : 0, high};
 }
 
-float value_of(Quantity quantity, const ShownField& shown, const Skin& skin, std::uint32_t row,
+float value_of(Quantity quantity, const ShownField& field, const Skin& skin, std::uint32_t row,
                std::uint32_t col) {
-  const ShownField& field = field_with(quantity, shown);
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
   const bool has_status_class = quantity == Quantity::region || quantity == Quantity::status;
   if (!has_status_class && !is_pressed(status)) return kNothing;

@@ -113,9 +113,9 @@ std::set<std::string> available(const SourceInfo& source) {
 TEST(QuantitiesOfSensels, AreThoseOfNormalForce) {
   SourceInfo source = FakeProducer(SkinLayout::sensels).info();
   EXPECT_EQ(available(source),
-            (std::set<std::string>{"normal", "peak", "pressure", "status", "uncertainty"}));
+            (std::set<std::string>{"normal", "pressure", "status", "uncertainty"}));
   source.has_uncertainty = false;
-  EXPECT_EQ(available(source), (std::set<std::string>{"normal", "peak", "pressure", "status"}));
+  EXPECT_EQ(available(source), (std::set<std::string>{"normal", "pressure", "status"}));
   EXPECT_EQ(available(FakeProducer().info()).size(), static_cast<std::size_t>(kQuantities));
 }
 

@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Quantities, HeatMap,
                          testing::Values(Quantity::normal, Quantity::shear, Quantity::shear_x,
                                          Quantity::shear_y, Quantity::magnitude, Quantity::theta,
                                          Quantity::phi, Quantity::uncertainty, Quantity::parity,
-                                         Quantity::peak, Quantity::pressure),
+                                         Quantity::pressure),
                          [](const auto& test) { return info_of(test.param).name; });
 
 class States : public testing::TestWithParam<Quantity> {};

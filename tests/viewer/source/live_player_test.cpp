@@ -173,23 +173,21 @@ TEST(LivePlayer, MissingReadingsGiveNoForce) {
   EXPECT_NE(field.forces.status[2 * 8 + 2] & status::kInconsistent, 0);
 }
 
-TEST(LivePlayer, ContactsAndPeaksComeWhenAskedFor) {
+TEST(LivePlayer, ContactsComeWhenAskedFor) {
   LiveFixture live;
   live.send(100);
   EXPECT_EQ(live.newest().contacts, nullptr);
   live.player->set_contacts(true);
-  live.player->set_peak(true);
   live.send(100, 2);
   ShownField field;
   LiveFixture::wait_until([&] {
     live.send(50);
     field = live.newest();
-    return field.contacts != nullptr && field.peak != nullptr;
+    return field.contacts != nullptr;
   });
   ASSERT_EQ(field.contacts->found.contacts.size(), 1U);
   EXPECT_FLOAT_EQ(static_cast<float>(field.contacts->found.total.normal_n), 2);
   EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0.5F);
-  EXPECT_EQ(field.peak->forces.normal[2 * 8 + 2], 1);
 }
 
 TEST(LivePlayer, ATareIsTakenFromUntouchedReadingsOnly) {

@@ -38,18 +38,11 @@ void show_quantity(AppState& state, Quantity quantity) {
   remembered(state) = settings.range;
   settings.quantity = quantity;
   if (!same_scale) settings.map = default_map(info.scale);
-  if (quantity == Quantity::peak && state.field && state.field->peak == nullptr) hold_peak(state);
   if (const auto& range = remembered(state); range && !state.fit_each_field) {
     settings.range = *range;
   } else {
     fit_range(state);
   }
-}
-
-void hold_peak(AppState& state) {
-  state.player->set_peak(true);
-  state.notice = "peaks are held from now on";
-  if (state.beside != nullptr) state.beside->set_peak(true);
 }
 
 void fit_range(AppState& state) {

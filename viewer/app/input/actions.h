@@ -12,9 +12,6 @@ namespace pillarfield::viewer {
 /// source lacks it.
 void show_quantity(AppState& state, Quantity quantity);
 
-/// Holds the peak of the normal force from the frame on display on.
-void hold_peak(AppState& state);
-
 /// Fits the range to the field on display.
 void fit_range(AppState& state);
 

@@ -151,9 +151,6 @@ constexpr std::array kShortcuts{
     shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
     shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
-    shows<Quantity::peak>(plain(GLFW_KEY_E), "E", "peak of the normal force"),
-    Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
-             [](const Command& command) { hold_peak(command.state); }},
 
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows",
              toggle_of_pillars<&RenderSettings::arrows>, with_pillars},

@@ -192,10 +192,6 @@ void view_panel(const Command& command) {
   AppState& state = command.state;
   choose_quantity(state);
   choose_range(state);
-  if (state.settings.quantity == Quantity::peak) {
-    labelled("");
-    if (ImGui::Button("Hold from now on", ImVec2(-1, 0))) hold_peak(state);
-  }
   choose_map(state.settings);
   choose_layers(command);
   choose_view(command);
