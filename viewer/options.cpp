@@ -146,7 +146,7 @@ void add_picture(CLI::App& app, Options& options) {
       "--layer", options.look.quantity,
       choices_of<Quantity>(kQuantities, [](Quantity each) { return info_of(each).name; }),
       "Quantity of the heat map [normal]");
-  cli::add_pressure_unit(picture, options.look.pressure_unit);
+  cli::add_pressure_unit(picture, options.look.units.pressure);
   add("--range", "LOW:HIGH", "Ends of the colour bar in the displayed unit [fitted to the source]",
       take_range);
   picture.choice<ColourMap>("--map", options.map, choices_of<ColourMap>(kColourMaps, name_of),

@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 
-#include "pillarfield/pressure_unit.h"
 #include "viewer/source/field_producer.h"
+#include "viewer/style/display.h"
 
 namespace pillarfield::viewer {
 
@@ -31,15 +30,13 @@ inline constexpr int kQuantities = 12;
 enum class Scale : std::uint8_t { sequential, diverging, cyclic, classes };
 
 struct QuantityInfo {
-  const char* name;       ///< on the command line: "shear_x"
-  const char* title;      ///< in the picture: "Shear x"
-  std::string_view unit;  ///< displayed unit: "N", "°", "counts", ""
-  double factor;  ///< displayed number over value: 180/pi for angles, 1/kPa for pressure, else 1
+  const char* name;   ///< on the command line: "shear_x"
+  const char* title;  ///< in the picture: "Shear x"
+  Dimension dimension;
   Scale scale;
   bool (*is_in)(const SourceInfo& source);  ///< see is_available()
 };
-[[nodiscard]] QuantityInfo info_of(Quantity quantity,
-                                   const PressureUnit& unit = kPressureUnits.front());
+[[nodiscard]] const QuantityInfo& info_of(Quantity quantity);
 
 /// Values of `status`; the worst applies.
 enum class StatusClass : std::uint8_t {

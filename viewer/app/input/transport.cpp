@@ -86,7 +86,8 @@ void scrub(Player& player, const PlayerState& playback, std::uint64_t shown, flo
 
 std::string time_text(const AppState& state, const PlayerState& playback, std::uint64_t shown) {
   const double time = state.field ? state.field->time_s : 0;
-  return fmt::format("{:.3f} s   {} / {}", time, shown + 1, playback.frames);
+  return fmt::format("{}   {} / {}", state.settings.units.fixed(Dimension::time, time, 3),
+                     shown + 1, playback.frames);
 }
 
 /// Record and tare, where frames are solved here.
@@ -118,7 +119,9 @@ void live_transport(const Command& command, LiveControl& live) {
   if (player.info().has_readings) sensor_icons(command, live, status);
   ImGui::SameLine(0, gap);
   const std::string time =
-      state.field ? fmt::format("{:.2f} s   frame {}", state.field->time_s, state.field->index + 1)
+      state.field ? fmt::format("{}   frame {}",
+                                state.settings.units.fixed(Dimension::time, state.field->time_s, 2),
+                                state.field->index + 1)
                   : "";
   const std::string words = status.ended                                   ? "ended"
                             : status.health.since_frame_s > kSilentSeconds ? silent_words(status)

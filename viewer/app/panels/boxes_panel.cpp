@@ -50,10 +50,13 @@ bool write_box(const AppState& state, NamedBox& box, bool focused) {
   const SelectionSums& sums = sums_of(state, box.rect, box.cached);
   ImGui::TableNextRow();
   name_cell(box, state.settings.theme, focused);
-  number_cell(sums.normal);
-  if (skin.has_pillars()) number_cell(std::hypot(sums.shear_x, sums.shear_y));
+  const Units& units = state.settings.units;
+  number_cell(units.shown(Dimension::force, sums.normal));
+  if (skin.has_pillars()) {
+    number_cell(units.shown(Dimension::force, std::hypot(sums.shear_x, sums.shear_y)));
+  }
   const double kpa = static_cast<double>(kpa_per_newton(skin)) * sums.mean_normal;
-  number_cell(kpa / state.settings.pressure_unit.kpa);
+  number_cell(units.shown(Dimension::pressure, kpa));
   ImGui::TableNextColumn();
   const bool removed = ImGui::Button("×");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("remove this box");
@@ -62,19 +65,23 @@ bool write_box(const AppState& state, NamedBox& box, bool focused) {
 
 struct BoxColumn {
   std::string head;
-  const char* help;
+  std::string help;
   float width;  ///< 0: what is left
 };
 
 std::vector<BoxColumn> box_columns(const AppState& state) {
   const auto number = static_cast<float>(std::ceil(width_of(kWidestNumber)));
   const auto button = static_cast<float>(std::ceil(width_of("×")));
-  std::vector<BoxColumn> columns{{"name", "click to rename", 0}, {"N", "normal force, N", number}};
+  const Units& units = state.settings.units;
+  const auto unit = [&](Dimension dimension) { return std::string(units.of(dimension).name); };
+  std::vector<BoxColumn> columns{
+      {"name", "click to rename", 0},
+      {unit(Dimension::force), units.title("normal force", Dimension::force), number}};
   if (state.player->info().skin.has_pillars()) {
-    columns.push_back({"shear", "length of the total shear, N", number});
+    columns.push_back(
+        {"shear", units.title("length of the total shear", Dimension::force), number});
   }
-  columns.push_back({std::string(state.settings.pressure_unit.name),
-                     "mean pressure on what is in contact", number});
+  columns.push_back({unit(Dimension::pressure), "mean pressure on what is in contact", number});
   columns.push_back({"", "", button + 2 * ImGui::GetStyle().FramePadding.x});
   return columns;
 }
@@ -93,7 +100,7 @@ void write_box_heads(const std::vector<BoxColumn>& columns) {
     } else {
       ImGui::TextUnformatted(head.c_str());
     }
-    if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+    if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
   }
 }
 

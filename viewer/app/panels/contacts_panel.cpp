@@ -132,7 +132,7 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
   }
   const ShownContacts& contacts = *state.field->contacts;
   const SkinLayout layout = state.player->info().skin.layout;
-  if (const auto clicked = contact_table(style, contacts, layout, state.settings.pressure_unit)) {
+  if (const auto clicked = contact_table(style, contacts, layout, state.settings.units.pressure)) {
     mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
   }

@@ -6,7 +6,6 @@
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/widgets.h"
 #include "viewer/style/quantity.h"
-#include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -19,17 +18,19 @@ void add_mapped(std::vector<ShownValue>& lines, const AppState& state) {
   const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
                     quantity == Quantity::pressure;
   if (!adds || elsewhere) return;
-  const QuantityInfo info = info_of(quantity, state.settings.pressure_unit);
+  const QuantityInfo info = info_of(quantity);
   const double value =
       value_of(quantity, *state.field, skin, state.hovered->row, state.hovered->col);
-  lines.push_back({info.title, three_digits(value * info.factor), {}, std::string(info.unit)});
+  lines.push_back(state.settings.units.readout(info.title, info.dimension, value));
 }
 
 std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& values) {
   std::vector<ShownValue> lines =
-      shown_forces(values, state.player->info().skin, state.settings.pressure_unit);
+      shown_forces(values, state.player->info().skin, state.settings.units);
   if (values.has_pillars) {
-    for (const ShownValue& value : shown_direction(values)) lines.push_back(value);
+    for (const ShownValue& value : shown_direction(values, state.settings.units)) {
+      lines.push_back(value);
+    }
   }
   add_mapped(lines, state);
   return lines;
@@ -43,7 +44,7 @@ void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pil
   leave_gap(style, 4);
   heading(style, state.beside_is_truth ? "truth" : state.beside->info().name);
   value_table(style, shown_forces(values_at(*state.beside_field, pillar), state.beside->info().skin,
-                                  state.settings.pressure_unit));
+                                  state.settings.units));
 }
 
 }  // namespace
@@ -58,7 +59,8 @@ void hover_panel(const AppState& state) {
   const PillarIndex pillar = *state.hovered;
   const PillarValues values = values_at(*state.field, pillar);
   const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
-  heading(style, format_pillar(pillar), format_place(state.field->forces, pillar, pitch_mm));
+  heading(style, format_pillar(pillar),
+          format_place(state.field->forces, pillar, pitch_mm, state.settings.units));
   status_line(style, state, pillar, values.status);
   if (state.field->raw.data != nullptr) {
     faint_text(style, format_readings(values).c_str());

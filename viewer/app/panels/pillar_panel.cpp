@@ -95,7 +95,8 @@ void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
       width = beside;
     }
   }
-  readouts(style, shown_direction(values), std::min(width, kMost * style.unit));
+  readouts(style, shown_direction(values, state.settings.units),
+           std::min(width, kMost * style.unit));
 }
 
 bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
@@ -120,18 +121,18 @@ void pillar_panel(AppState& state) {
   const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
   const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
   heading(style, format_pillar(pin.pillar),
-          format_place(state.field->forces, pin.pillar, pitch_mm));
+          format_place(state.field->forces, pin.pillar, pitch_mm, state.settings.units));
   status_line(style, state, pin.pillar, values.status);
   if (!values.has_pillars) {
     if (state.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
     leave_gap(style, 2);
-    return value_table(
-        style, shown_forces(values, state.player->info().skin, state.settings.pressure_unit));
+    return value_table(style,
+                       shown_forces(values, state.player->info().skin, state.settings.units));
   }
   leave_gap(style, 4);
   draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);
-  value_table(style, shown_components(values));
+  value_table(style, shown_components(values, state.settings.units));
 }
 
 }  // namespace pillarfield::viewer

@@ -12,23 +12,21 @@
 namespace pillarfield::viewer {
 namespace {
 
-std::string words_of(Quantity quantity, const PressureUnit& unit) {
-  const QuantityInfo info = info_of(quantity, unit);
-  if (info.unit.empty()) return info.title;
-  return fmt::format("{}, {}", info.title, info.unit);
+std::string words_of(Quantity quantity, const Units& units) {
+  return units.title(info_of(quantity).title, info_of(quantity).dimension);
 }
 
 void choose_quantity(AppState& state) {
-  const PressureUnit& unit = state.settings.pressure_unit;
+  const Units& units = state.settings.units;
   labelled("Quantity");
-  if (!ImGui::BeginCombo("##quantity", words_of(state.settings.quantity, unit).c_str(),
+  if (!ImGui::BeginCombo("##quantity", words_of(state.settings.quantity, units).c_str(),
                          ImGuiComboFlags_HeightLargest)) {
     return;
   }
   for (int i = 0; i < kQuantities; ++i) {
     const auto quantity = static_cast<Quantity>(i);
     if (!is_available(quantity, state.player->info())) continue;
-    if (ImGui::Selectable(words_of(quantity, unit).c_str(), quantity == state.settings.quantity)) {
+    if (ImGui::Selectable(words_of(quantity, units).c_str(), quantity == state.settings.quantity)) {
       show_quantity(state, quantity);
     }
   }
@@ -43,7 +41,8 @@ bool is_fixed(Quantity quantity) {
 /// Low and high end in the displayed unit, side by side.
 void edit_range(AppState& state) {
   RenderSettings& settings = state.settings;
-  const auto factor = static_cast<float>(info_of(settings.quantity, settings.pressure_unit).factor);
+  const auto factor =
+      static_cast<float>(settings.units.of(info_of(settings.quantity).dimension).factor);
   std::array<float, 2> ends{settings.range.low * factor, settings.range.high * factor};
   const float width = ends[1] - ends[0];
   labelled("Range");
@@ -175,13 +174,14 @@ void choose_surface(const Command& command) {
   }
   if (surface.kind == SurfaceKind::plane) return;
   labelled("Radius");
-  auto radius = static_cast<float>(surface.radius_mm);
+  const auto [unit, factor] = command.state.settings.units.of(Dimension::length);
+  auto radius = static_cast<float>(surface.radius_mm * factor);
   // The smallest radius lets the sheet close around the cylinder.
-  const auto least = static_cast<float>(0.17 * width);
-  const auto most = static_cast<float>(20 * width);
-  if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most, "%.1f mm",
-                       ImGuiSliderFlags_AlwaysClamp)) {
-    surface.radius_mm = static_cast<double>(radius);
+  const auto least = static_cast<float>(0.17 * width * factor);
+  const auto most = static_cast<float>(20 * width * factor);
+  if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most,
+                       with_unit("%.1f", unit).c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+    surface.radius_mm = static_cast<double>(radius) / factor;
     set_surface(command.state, command.place, surface);
   }
 }

@@ -18,9 +18,7 @@ namespace {
 RenderSettings live_settings(const Options& options, const SourceInfo& source, double scale) {
   constexpr float kFirstRangeN = 1;
   RenderSettings settings = chosen_settings(options, source, scale);
-  settings.range =
-      options.range ? in_unit_of(*options.range, options.look.quantity, options.look.pressure_unit)
-                    : fitting_range(options.look.quantity, kFirstRangeN);
+  if (!options.range) settings.range = fitting_range(settings.quantity, kFirstRangeN);
   settings.full_force_n = settings.full_shear_n = static_cast<double>(kFirstRangeN) / 2;
   return settings;
 }
