@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -41,27 +42,10 @@ std::string value_words(double value, double deviation) {
 }  // namespace
 
 Unit Units::of(Dimension dimension) const {
-  switch (dimension) {
-    case Dimension::none:
-      break;
-    case Dimension::counts:
-      return {"counts"};
-    case Dimension::force:
-      return {"N"};
-    case Dimension::pressure:
-      return {pressure.name, 1 / pressure.kpa};
-    case Dimension::torque:
-      return {"N mm"};
-    case Dimension::length:
-      return {"mm"};
-    case Dimension::area:
-      return {"mm²"};
-    case Dimension::angle:
-      return {"°", kDegrees};
-    case Dimension::time:
-      return {"s"};
-  }
-  return {};
+  if (dimension == Dimension::pressure) return {pressure.name, 1 / pressure.kpa};
+  static constexpr std::array<Unit, 9> kUnits{
+      {{}, {"counts"}, {"N"}, {}, {"N mm"}, {"mm"}, {"mm²"}, {"°", kDegrees}, {"s"}}};
+  return kUnits.at(static_cast<std::size_t>(dimension));
 }
 
 std::string with_unit(const std::string& number, std::string_view unit) {

@@ -11,17 +11,17 @@ namespace pillarfield::viewer {
 
 // Values become texts here alone: numbers, axes, legends, heads and readouts ask Units.
 
-/// Dimension of a value, with the unit in which it is computed.
+/// Dimensions of values, which are computed in N, kPa, N mm, mm, mm², rad and s.
 enum class Dimension : std::uint8_t {
   none,  ///< a class, or a plain number
   counts,
-  force,     ///< N
-  pressure,  ///< kPa
-  torque,    ///< N mm
-  length,    ///< mm
-  area,      ///< mm²
-  angle,     ///< rad
-  time,      ///< s
+  force,
+  pressure,
+  torque,
+  length,
+  area,
+  angle,
+  time
 };
 
 /// A unit of display.
