@@ -20,7 +20,7 @@ struct Panels : testing::Test {
   }
   [[nodiscard]] std::vector<int> pins() const {
     std::vector<int> numbers;
-    for (const Pin& pin : fake.state.pins) numbers.push_back(pin.number);
+    for (const Pin& pin : fake.state.marks.pins) numbers.push_back(pin.number);
     return numbers;
   }
 
@@ -29,8 +29,8 @@ struct Panels : testing::Test {
 };
 
 TEST_F(Panels, EachWidgetActs) {
-  RenderSettings& settings = fake.state.settings;
-  fake.state.has_truth = true;
+  RenderSettings& settings = fake.state.look.settings;
+  fake.state.source.open_truth = []() -> std::unique_ptr<FieldProducer> { return nullptr; };
   set_range(fake.state, {0, 100});
   press({"View", "Fit"});
   EXPECT_EQ(settings.range, (Range{0, 3}));
@@ -60,44 +60,45 @@ TEST_F(Panels, EachWidgetActs) {
   }
   select_pillars(fake.state, {1, 8, 2, 9});
   press({"Selection", "Keep as a named box"});
-  EXPECT_EQ(fake.state.boxes.size(), 1U);
+  EXPECT_EQ(fake.state.marks.boxes.size(), 1U);
 }
 
 TEST_F(Panels, AHeadingFoldsItsPanel) {
   press({"View", "View"});
   press({"View", "relief"});
-  EXPECT_FALSE(fake.state.settings.relief);
+  EXPECT_FALSE(fake.state.look.settings.relief);
 }
 
 TEST_F(Panels, PinsAreChosenByTheirNumbersAndRemoved) {
-  for (std::uint32_t i = 0; i < 3; ++i) fake.state.pins.push_back({{10 + i, 20}});
+  for (std::uint32_t i = 0; i < 3; ++i) fake.state.marks.pins.push_back({{10 + i, 20}});
   press({"Pillar", "pin 1"});
   EXPECT_EQ(pins(), (std::vector<int>{2, 3, 1}));
   press({"Pillar", "pin 3"});
   EXPECT_EQ(pins(), (std::vector<int>{2, 1, 3}));
   for (const std::size_t left : {2U, 1U, 0U}) {
     press({"Pillar", "remove"});
-    EXPECT_EQ(fake.state.pins.size(), left);
+    EXPECT_EQ(fake.state.marks.pins.size(), left);
   }
-  fake.state.pins.push_back({{1000, 1000}});
+  fake.state.marks.pins.push_back({{1000, 1000}});
   gui.frame([&] { draw_panels(fake.command()); });
-  fake.state.field.reset();
+  fake.state.source.field.reset();
   gui.frame([&] { draw_panels(fake.command()); });
-  EXPECT_EQ(fake.state.pins.size(), 1U) << "a pin outside the field";
+  EXPECT_EQ(fake.state.marks.pins.size(), 1U) << "a pin outside the field";
 }
 
 TEST_F(Panels, SumsOfTheSelectionFollowRectangleAndFrame) {
-  fake.state.selection = Selection{{4, 20, 8, 30}};
+  fake.state.marks.selection = Selection{{4, 20, 8, 30}};
   const auto sum = [&](const PillarRect& rect) {
-    return sums_over(*fake.state.field, rect, fake.player->info().skin.element_pitch_mm()).normal;
+    return sums_over(*fake.state.source.field, rect, fake.player().info().skin.element_pitch_mm())
+        .normal;
   };
   EXPECT_EQ(selection_sums(fake.state).normal, sum({4, 20, 8, 30}));
-  fake.state.selection->rect.row_end = 14;
+  fake.state.marks.selection->rect.row_end = 14;
   const double second = sum({4, 14, 8, 30});
   EXPECT_EQ(selection_sums(fake.state).normal, second);
-  fake.state.field->forces.normal = fake.state.field->forces.shear_x;
+  fake.state.source.field->forces.normal = fake.state.source.field->forces.shear_x;
   EXPECT_EQ(selection_sums(fake.state).normal, second) << "cached for the frame";
-  ++fake.state.field->index;
+  ++fake.state.source.field->index;
   EXPECT_LT(selection_sums(fake.state).normal, second);
 }
 
@@ -124,12 +125,12 @@ TEST(KeysOfSensels, ThoseOfPillarsOnlySaySo) {
   for (const Shortcut& shortcut : shortcuts()) {
     EXPECT_TRUE(applies(shortcut, FakeProducer().info())) << shortcut.keys;
     FakeAppState fake(SkinLayout::sensels);
-    const RenderSettings before = fake.state.settings;
+    const RenderSettings before = fake.state.look.settings;
     if (applies(shortcut, *fake.place.source)) continue;
     ++left_out;
     EXPECT_TRUE(dispatch(shortcut.chords[0], fake.command()));
-    EXPECT_TRUE(fake.state.settings == before) << shortcut.keys;
-    EXPECT_EQ(fake.state.notice.find("this source has no "), 0U) << shortcut.keys;
+    EXPECT_TRUE(fake.state.look.settings == before) << shortcut.keys;
+    EXPECT_EQ(fake.state.window.notice.find("this source has no "), 0U) << shortcut.keys;
   }
   EXPECT_EQ(left_out, 8U + 3U);  // quantities and layers
 }
@@ -138,14 +139,14 @@ TEST(KeysOfSensels, ThoseOfPillarsOnlySaySo) {
 std::string words_of_panels(SkinLayout layout) {
   FakeAppState fake(layout);
   const SourceInfo& source = *fake.place.source;
-  fake.state.settings.contacts = true;
-  fake.state.field->contacts = std::make_shared<const ShownContacts>(
+  fake.state.look.settings.contacts = true;
+  fake.state.source.field->contacts = std::make_shared<const ShownContacts>(
       FieldContacts(source.skin.element_pitch_mm(), source.contacts)
-          .contacts_of(*fake.state.field));
+          .contacts_of(*fake.state.source.field));
   toggle_pin(fake.state, {3, 4});
   select_pillars(fake.state, {1, 8, 2, 9});
-  fake.state.hovered = PillarIndex{5, 6};
-  fake.state.boxes = {{"heel", {1, 8, 2, 9}, 1}};
+  fake.state.marks.hovered = PillarIndex{5, 6};
+  fake.state.marks.boxes = {{"heel", {1, 8, 2, 9}, 1}};
   FakeGui gui;
   std::string words;
   for (int i = 0; i < 2; ++i) {  // Sizes are known in the second frame.
@@ -176,15 +177,15 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
 
 TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
   FakeAppState fake;
-  const View whole = fake.state.settings.view;
+  const View whole = fake.state.look.settings.view;
   const PillarRect extent{2, 4, 20, 24};
   mark_contact(fake.state, fake.place, {3, 2}, extent);
-  EXPECT_EQ(fake.state.selection.value().rect, extent);
-  EXPECT_EQ(fake.state.settings.view, whole);
-  fake.state.settings.view = TopView{{-10, -5}, 500};
+  EXPECT_EQ(fake.state.marks.selection.value().rect, extent);
+  EXPECT_EQ(fake.state.look.settings.view, whole);
+  fake.state.look.settings.view = TopView{{-10, -5}, 500};
   mark_contact(fake.state, fake.place, {3, 2}, extent);
-  EXPECT_EQ(std::get<TopView>(fake.state.settings.view).centre_mm, (Vec2{3, 2}));
-  EXPECT_FALSE(fake.state.view_is_fitted);
+  EXPECT_EQ(std::get<TopView>(fake.state.look.settings.view).centre_mm, (Vec2{3, 2}));
+  EXPECT_FALSE(fake.state.look.view_is_fitted);
 }
 
 using Export = io_test::TemporaryDirectory;
@@ -194,10 +195,10 @@ TEST(WriteCsv, HasThePillarsOfARectangleThatAreNotIdle) {
   FakeAppState fake;
   std::vector<std::uint8_t> status(600, status::kUsable);
   status[3] = 0;
-  fake.state.field->forces.status = status;
+  fake.state.source.field->forces.status = status;
   const auto lines_of = [&](SkinLayout layout, const PillarRect& rect) {
     ShownField field =
-        layout == SkinLayout::pillars ? *fake.state.field : FakeProducer(layout).produce(7);
+        layout == SkinLayout::pillars ? *fake.state.source.field : FakeProducer(layout).produce(7);
     write_csv(folder / "t.csv", field, rect, Replace::anything);
     std::istringstream text(io_test::bytes_of(folder / "t.csv"));
     std::vector<std::string> lines;

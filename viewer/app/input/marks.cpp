@@ -22,12 +22,12 @@ namespace {
 class Marker {
  public:
   Marker(const AppState& state, const FieldPlace& place)
-      : settings_(state.settings),
+      : settings_(state.look.settings),
         place_(place),
-        ground_(state.field ? &*state.field : nullptr, *place.source, state.settings,
-                place.plot(state.settings)),
+        ground_(state.source.field ? &*state.source.field : nullptr, *place.source,
+                state.look.settings, place.plot(state.look.settings)),
         list_(*ImGui::GetBackgroundDrawList()),
-        unit_(static_cast<float>(state.settings.scale)) {}
+        unit_(static_cast<float>(state.look.settings.scale)) {}
 
   void outline(const PillarRect& rect, ImU32 colour) const {
     const auto points = ground_.outline(rect);
@@ -102,25 +102,27 @@ class Marker {
 FieldPlace beside_place(const AppState& state, const FieldPlace& place) {
   FieldPlace beside = place;
   beside.area.x += place.area.width;
-  beside.source = &state.beside->info();
+  beside.source = &state.source.beside->info();
   return beside;
 }
 
 void draw_marks(const AppState& state, const FieldPlace& place) {
   const Marker marker(state, place);
   marker.clip();
-  for (const NamedBox& box : state.boxes) marker.box(box);
-  if (state.selection) marker.outline(state.selection->rect, palette_of(Theme::dark).accent);
-  if (state.hovered) marker.outline(rect_of(Pin{*state.hovered}), IM_COL32(255, 255, 255, 230));
-  for (std::size_t i = 0; i < state.pins.size(); ++i) {
-    marker.pin(state.pins[i], i + 1 == state.pins.size());
+  for (const NamedBox& box : state.marks.boxes) marker.box(box);
+  if (state.marks.selection)
+    marker.outline(state.marks.selection->rect, palette_of(Theme::dark).accent);
+  if (state.marks.hovered)
+    marker.outline(rect_of(Pin{*state.marks.hovered}), IM_COL32(255, 255, 255, 230));
+  for (std::size_t i = 0; i < state.marks.pins.size(); ++i) {
+    marker.pin(state.marks.pins[i], i + 1 == state.marks.pins.size());
   }
   marker.unclip();
 }
 
 namespace {
 
-using PinColours = std::array<Colour, AppState::kMostPins>;
+using PinColours = std::array<Colour, Marks::kMostPins>;
 
 // After Okabe and Ito; lighter on a dark background, darker on a light one.
 constexpr PinColours kOnDark{{{86, 180, 233},

@@ -55,25 +55,26 @@ bool remove_button(const PanelStyle& style) {
 /// Buttons in the order of pin numbers, so that choosing one does not move them.
 void choose_pin(const PanelStyle& style, AppState& state) {
   std::vector<std::size_t> order;
-  for (std::size_t index = 0; index < state.pins.size(); ++index) order.push_back(index);
-  std::ranges::sort(order, {}, [&](std::size_t index) { return state.pins[index].number; });
+  for (std::size_t index = 0; index < state.marks.pins.size(); ++index) order.push_back(index);
+  std::ranges::sort(order, {}, [&](std::size_t index) { return state.marks.pins[index].number; });
   std::optional<std::size_t> chosen;
   for (const std::size_t index : order) {
-    const bool inspected = index + 1 == state.pins.size();
-    if (pin_button(style, state.pins[index], state.settings.theme, inspected)) chosen = index;
+    const bool inspected = index + 1 == state.marks.pins.size();
+    if (pin_button(style, state.marks.pins[index], state.look.settings.theme, inspected))
+      chosen = index;
     ImGui::SameLine(0, static_cast<float>(6 * style.unit));
   }
   const bool removed = remove_button(style);
-  if (chosen) inspect_pin(state, *chosen);
-  if (removed) remove_pin(state, state.pins.size() - 1);
+  if (chosen) inspect_pin(state.marks, *chosen);
+  if (removed) remove_pin(state.marks, state.marks.pins.size() - 1);
 }
 
 void draw_readings(const PanelStyle& style, const AppState& state, const PillarValues& values,
                    ImU32 colour) {
-  const Pin& pin = state.pins.back();
-  const SourceInfo& source = state.player->info();
+  const Pin& pin = state.marks.pins.back();
+  const SourceInfo& source = state.source.player->info();
   const auto bars = reading_bars(values, pin.pillar, source);
-  const double full = full_bar(bars, source, state.field->raw.type);
+  const double full = full_bar(bars, source, state.source.field->raw.type);
   const Viewport box = reserve(kReadingBarsSize.x * style.unit, kReadingBarsSize.y * style.unit);
   draw_reading_bars(*ImGui::GetWindowDrawList(), {box.x, box.y}, bars, full, colour, style);
 }
@@ -84,7 +85,7 @@ void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
   constexpr double kLeast = 130;
   constexpr double kMost = 190;
   double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (state.field->raw.data == nullptr) {
+  if (state.source.field->raw.data == nullptr) {
     faint_text(style, "The source has no readings.");
   } else {
     draw_readings(style, state, values, colour);
@@ -95,7 +96,7 @@ void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
       width = beside;
     }
   }
-  readouts(style, shown_direction(values, state.settings.units),
+  readouts(style, shown_direction(values, state.look.settings.units),
            std::min(width, kMost * style.unit));
 }
 
@@ -106,33 +107,34 @@ bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
 }  // namespace
 
 void pillar_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  number_pins(state);
-  if (state.pins.empty()) {
-    const char* const name = element_name(state.player->info().skin);
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  number_pins(state.marks);
+  if (state.marks.pins.empty()) {
+    const char* const name = element_name(state.source.player->info().skin);
     faint_text(style, fmt::format("Click a {} to pin it.", name).c_str());
     return;
   }
   choose_pin(style, state);
-  if (state.pins.empty() || !state.field) return;
-  const Pin& pin = state.pins.back();
-  if (!is_in(state.field->forces, pin.pillar)) return;
-  const PillarValues values = values_at(*state.field, pin.pillar);
-  const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
-  const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
-  heading(style, format_pillar(pin.pillar),
-          format_place(state.field->forces, pin.pillar, pitch_mm, state.settings.units));
+  if (state.marks.pins.empty() || !state.source.field) return;
+  const Pin& pin = state.marks.pins.back();
+  if (!is_in(state.source.field->forces, pin.pillar)) return;
+  const PillarValues values = values_at(*state.source.field, pin.pillar);
+  const ImU32 colour = packed(pin_colour(pin.number, state.look.settings.theme));
+  const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
+  heading(
+      style, format_pillar(pin.pillar),
+      format_place(state.source.field->forces, pin.pillar, pitch_mm, state.look.settings.units));
   status_line(style, state, pin.pillar, values.status);
   if (!values.has_pillars) {
-    if (state.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
+    if (state.source.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
     leave_gap(style, 2);
-    return value_table(style,
-                       shown_forces(values, state.player->info().skin, state.settings.units));
+    return value_table(
+        style, shown_forces(values, state.source.player->info().skin, state.look.settings.units));
   }
   leave_gap(style, 4);
   draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);
-  value_table(style, shown_components(values, state.settings.units));
+  value_table(style, shown_components(values, state.look.settings.units));
 }
 
 }  // namespace pillarfield::viewer

@@ -134,17 +134,18 @@ std::string fault_words(const SelectionSums& sums) {
 }  // namespace
 
 void selection_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  if (!state.selection || !state.field) {
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  if (!state.marks.selection || !state.source.field) {
     faint_text(style, "Nothing is selected.");
     return;
   }
-  const PillarRect& rect = state.selection->rect;
-  const Skin& skin = state.player->info().skin;
+  const PillarRect& rect = state.marks.selection->rect;
+  const Skin& skin = state.source.player->info().skin;
   const SelectionSums& sums = selection_sums(state);
-  heading(style, rect_words(rect), size_words(rect, skin.element_pitch_mm(), state.settings.units));
+  heading(style, rect_words(rect),
+          size_words(rect, skin.element_pitch_mm(), state.look.settings.units));
   leave_gap(style, 2);
-  draw_tables(style, sums, skin, state.settings.units);
+  draw_tables(style, sums, skin, state.look.settings.units);
   leave_gap(style, 4);
   const bool keeps = ImGui::Button("Keep as a named box", ImVec2(-1, 0));
   if (keeps) return keep_selection(state);
@@ -157,23 +158,23 @@ void selection_panel(AppState& state) {
   }
   heading(style, "Regions of usable sensels", touched);
   if (sums.in_contact == 0) return;
-  draw_shares(style, sums, state.settings.theme);
-  draw_legend(style, sums, state.settings.theme);
+  draw_shares(style, sums, state.look.settings.theme);
+  draw_legend(style, sums, state.look.settings.theme);
   faint_text(style, fault_words(sums).c_str());
 }
 
 const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
                              std::optional<CachedSums>& cached) {
-  const std::uint64_t frame = state.field->index;
+  const std::uint64_t frame = state.source.field->index;
   if (!cached || cached->frame != frame || cached->rect != rect) {
-    const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
-    cached = {frame, rect, sums_over(*state.field, rect, pitch_mm)};
+    const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
+    cached = {frame, rect, sums_over(*state.source.field, rect, pitch_mm)};
   }
   return cached->sums;
 }
 
 const SelectionSums& selection_sums(AppState& state) {
-  return sums_of(state, state.selection->rect, state.selection->cached);
+  return sums_of(state, state.marks.selection->rect, state.marks.selection->cached);
 }
 
 }  // namespace pillarfield::viewer

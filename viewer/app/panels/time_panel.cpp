@@ -99,20 +99,20 @@ void add_parts(std::vector<Chart>& charts, const AppState& state, const Span& ti
   Chart normal{title + ", normal", Dimension::force, {}};
   Chart shear{title + ", |shear|", Dimension::force, {}};
   for (const auto& [name, rect, number] : parts) {
-    const Points points = state.curves->of(rect, time.from, time.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(number, state.settings.theme));
+    const Points points = state.source.curves->of(rect, time.from, time.to, kMostShownPoints);
+    const ImU32 colour = packed(pin_colour(number, state.look.settings.theme));
     normal.curves.push_back({name, points, normal_of, colour});
     shear.curves.push_back({name, points, shear_of, colour});
   }
   charts.push_back(std::move(normal));
-  if (state.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
+  if (state.source.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
 }
 
 void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
   std::vector<MarkedPart> boxes;
-  for (const NamedBox& box : state.boxes) boxes.push_back({box.name, box.rect, box.number});
+  for (const NamedBox& box : state.marks.boxes) boxes.push_back({box.name, box.rect, box.number});
   std::vector<MarkedPart> pins;
-  for (const Pin& pin : state.pins) {
+  for (const Pin& pin : state.marks.pins) {
     pins.push_back({std::to_string(pin.number), rect_of(pin), pin.number});
   }
   add_parts(charts, state, time, "Boxes", boxes);
@@ -121,9 +121,9 @@ void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& ti
 
 void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
                    const Colours& colours, bool pillars) {
-  if (!state.selection) return;
+  if (!state.marks.selection) return;
   const Points points =
-      state.curves->of(state.selection->rect, time.from, time.to, kMostShownPoints);
+      state.source.curves->of(state.marks.selection->rect, time.from, time.to, kMostShownPoints);
   charts.push_back(force_chart("Selection", points, colours, pillars));
 }
 
@@ -144,14 +144,15 @@ void set_rounding(std::vector<Chart>& charts, const SourceInfo& source) {
 }
 
 std::vector<Chart> charts_of(const AppState& state, const Span& time, const PanelStyle& style) {
-  const Colours colours = colours_of(style, state.settings.theme);
-  const bool pillars = state.player->info().skin.has_pillars();
+  const Colours colours = colours_of(style, state.look.settings.theme);
+  const bool pillars = state.source.player->info().skin.has_pillars();
   std::vector<Chart> charts;
-  add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours, pillars);
+  add_total(charts, state.source.curves->total(time.from, time.to, kMostShownPoints), colours,
+            pillars);
   add_marks(charts, state, time);
   add_selection(charts, state, time, colours, pillars);
-  set_rounding(charts, state.player->info());
-  for (Chart& chart : charts) chart.unit = state.settings.units.of(chart.dimension);
+  set_rounding(charts, state.source.player->info());
+  for (Chart& chart : charts) chart.unit = state.look.settings.units.of(chart.dimension);
   return charts;
 }
 
@@ -239,7 +240,7 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
                 const PanelStyle& style) {
   const ImGuiIO& io = ImGui::GetIO();
   const double at_s = area.value_at({static_cast<double>(io.MousePos.x), area.box.y}).x;
-  TimeWindow& window = frame.state.time_window;
+  TimeWindow& window = frame.state.look.time_window;
   const double per_pixel = (area.x.to - area.x.from) / area.box.width;
   if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3)) {
     window.pan(frame.whole, frame.lasts_s, -per_pixel * static_cast<double>(io.MouseDelta.x));
@@ -256,12 +257,12 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
   if (point == nullptr) return;
   draw_block(*ImGui::GetWindowDrawList(),
              {area.at({point->time_s, 0}).x, area.box.y, 1, area.box.height}, style.faint);
-  show_values(chart, at_s, frame.state.settings.units);
+  show_values(chart, at_s, frame.state.look.settings.units);
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
     window.reset();
   } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
              !ImGui::IsMouseDragPastThreshold(ImGuiMouseButton_Left, 3)) {
-    frame.state.player->seek(point->index);
+    frame.state.source.player->seek(point->index);
   }
 }
 
@@ -315,7 +316,7 @@ void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& fra
   for (const Curve& curve : chart.curves) {
     draw_pieces(list, area, chart, curve, frame.gaps, 1.6 * style.unit);
   }
-  const double now_s = frame.state.field->time_s;
+  const double now_s = frame.state.source.field->time_s;
   if (now_s >= area.x.from && now_s <= area.x.to) draw_head(list, area, now_s, style);
   take_mouse(chart, area, frame, style);
 }
@@ -361,8 +362,8 @@ void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const Panel
 
 /// Progress of a file's survey, while it is under way.
 void draw_progress(const AppState& state, const PanelStyle& style) {
-  if (state.survey == nullptr) return;
-  const Survey::Progress progress = state.survey->progress();
+  if (state.source.survey == nullptr) return;
+  const Survey::Progress progress = state.source.survey->progress();
   if (!progress.failure.empty()) {
     faint_text(style, progress.failure.c_str());
   } else if (progress.done < progress.frames) {
@@ -374,16 +375,16 @@ void draw_progress(const AppState& state, const PanelStyle& style) {
 }  // namespace
 
 void time_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  number_pins(state);
-  if (state.curves == nullptr || !state.field) return;
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  number_pins(state.marks);
+  if (state.source.curves == nullptr || !state.source.field) return;
   draw_progress(state, style);
-  const auto [first_s, last_s] = state.curves->time_span();
-  const bool live = state.player->live() != nullptr;
+  const auto [first_s, last_s] = state.source.curves->time_span();
+  const bool live = state.source.player->live() != nullptr;
   const double lasts_s = live ? kLiveSeconds : 0;
   const double now_s = last_s + silence_s(state);
   const Span whole{first_s, std::max(now_s, first_s + TimeWindow::kLeastSeconds)};
-  const Span time = state.time_window.of(whole, lasts_s);
+  const Span time = state.look.time_window.of(whole, lasts_s);
   const std::vector<Chart> charts = charts_of(state, time, style);
   std::vector<Span> gaps;
   if (live) gaps = gaps_of(charts.front().curves.front().points, now_s);

@@ -26,7 +26,7 @@ RenderSettings live_settings(const Options& options, const SourceInfo& source, d
 LoadedSource load_sensor(const Options& options, const std::string& name, double scale,
                          const LoadProgress& tell) {
   LoadedSource loaded;
-  loaded.name = name;
+  loaded.source.name = name;
   std::string waiting = fmt::format("waiting for frames from {}", printable(name));
   tell(waiting);
   const auto stop = [&] {
@@ -48,9 +48,9 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
   if (solves_here && !note.empty()) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name), note);
   }
-  loaded.curves = std::move(opened.curves);
+  loaded.source.curves = std::move(opened.curves);
   loaded.settings = live_settings(options, opened.player->info(), scale);
-  loaded.player = std::move(opened.player);
+  loaded.source.player = std::move(opened.player);
   return loaded;
 }
 
@@ -59,14 +59,15 @@ LoadedSource load_file(const Options& options, const std::filesystem::path& path
   auto producer = open_producer(path, producer_options(options, tell), [&](double share) {
     tell(fmt::format("simulating {:.0f} %", std::floor(100 * share)));
   });
-  LoadedSource loaded;
-  loaded.name = path.string();
   tell("looking at the forces");
+  LoadedSource loaded;
   loaded.settings = default_settings(options, *producer, scale);
-  loaded.open_truth = producer->open_truth;
-  loaded.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
-  loaded.survey = std::make_unique<Survey>(producer->open_again, loaded.curves);
-  loaded.player = play_file(std::move(producer));
+  ShownSource& source = loaded.source;
+  source.name = path.string();
+  source.open_truth = producer->open_truth;
+  source.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
+  source.survey = std::make_unique<Survey>(producer->open_again, source.curves);
+  source.player = play_file(std::move(producer));
   return loaded;
 }
 
@@ -95,9 +96,9 @@ ProducerOptions producer_options(const Options& options, LoadProgress tell) {
 
 LoadedSource load_source(const Options& options, double scale, const LoadProgress& tell) {
   LoadedSource loaded = load_one(options, options.source, scale, tell);
-  if (options.truth) show_truth(loaded);
+  if (options.truth) show_truth(loaded.source);
   if (options.beside.empty()) return loaded;
-  loaded.beside = std::move(load_one(options, options.beside, scale, tell).player);
+  loaded.source.beside = std::move(load_one(options, options.beside, scale, tell).source.player);
   return loaded;
 }
 
@@ -108,7 +109,7 @@ std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_tr
               "show a scene, or a recording of 'pillarfield simulate'");
 }
 
-void show_truth(LoadedSource& source) {
+void show_truth(ShownSource& source) {
   source.beside = play_file(opened_truth(source.open_truth, source.player->info().name));
   source.beside_is_truth = true;
 }
