@@ -109,9 +109,9 @@ class FakeGui {
   /// Presses the widget at the end of a path of ImGui's names and numbers.
   using Name = std::variant<const char*, int>;
   template <class Draw>
-  void press(std::initializer_list<Name> path, const Draw& draw) {
+  void press(std::initializer_list<Name> path, const Draw& draw, const char* window = "panel") {
     frame(draw);
-    ImGuiID id = ImGui::FindWindowByName("panel")->ID;
+    ImGuiID id = ImGui::FindWindowByName(window)->ID;
     for (const Name& name : path) {
       const int* const number = std::get_if<int>(&name);
       id = number != nullptr ? ImHashData(number, sizeof *number, id)

@@ -9,6 +9,7 @@
 #include "tests/io/sample_files.h"
 #include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/export/export.h"
+#include "viewer/app/source/start_pictures.h"
 #include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
@@ -173,6 +174,21 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
   for (const std::string word : {"row 5, column 6", "pressure", "kPa", "20 × 30 sensels"}) {
     EXPECT_NE(words.find(word), std::string::npos) << word << " in " << words;
   }
+}
+
+TEST(StartPage, APictureAndARecentSourceAreChosenByTheirNames) {
+  StartChoices choices{{"old.h5"}, {{"scenes/demo.toml", "scenes/wave.toml"}, {}}, {}};
+  choices.pictures.resize(embedded_pictures().size());
+  FakeGui gui;
+  std::string chosen;
+  const auto draw = [&] {
+    const std::string source = start_page(choices, {0, 0, 500, 1600}, "", 1);
+    if (!source.empty()) chosen = source;
+  };
+  gui.press({"demo"}, draw, "start");
+  EXPECT_EQ(chosen, "scenes/demo.toml");
+  gui.press({"recent", "old.h5"}, draw, "start");
+  EXPECT_EQ(chosen, "old.h5");
 }
 
 TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {

@@ -118,25 +118,6 @@ TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {
                Stopped);
 }
 
-TEST(SceneProducer, TheBaselineIsFixedAndThePaperHasNoUncertainty) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "paper.toml";
-  write_bytes(path,
-              "[skin]\nsize_mm = [20, 20]\n[sensor]\nnoise_counts = 1\ntare_counts = 5\n"
-              "[solver]\nestimator = \"paper\"\nbaseline_time_s = 0.01\n[time]\nframes = 3\n"
-              "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 5\n"
-              "position_mm = [0, 0]\nload_n = 5\n");
-  const auto producer = open_producer(path, {});
-  EXPECT_FALSE(producer->info().has_uncertainty);
-  EXPECT_TRUE(producer->info().warnings.empty());
-  ASSERT_EQ(producer->info().notes.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().notes[0], {"baseline is fixed"}));
-  EXPECT_TRUE(has_all(producer->info().solver, {"paper on "}));
-  const ForceField first = copy_of(producer->produce(2).forces);
-  static_cast<void>(producer->produce(1));
-  expect_same_forces(producer->produce(2).forces, first.view());
-}
-
 /// Expects that fields of any source stay valid, up to kMostShown.
 void expect_fields_stay(FieldProducer& producer) {
   const std::uint64_t frames = producer.info().frames;
@@ -352,35 +333,6 @@ TEST(FieldProducer, FieldsOutliveTheirProducer) {
   }
 }
 
-TEST(FieldProducer, RejectsFilesThatItCannotShow) {
-  const TemporaryDirectory directory;
-  EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.h5", {})), Error);
-  EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.toml", {})), Error);
-  write_bytes(directory / "text.h5", "no frames at all");
-  EXPECT_THROW(static_cast<void>(open_producer(directory / "text.h5", {})), Error);
-  const auto empty = directory / "empty.h5";
-  create_force_sink(empty, {2, 2, 1.3, "direct", "", "", false, false})->finish();
-  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_producer(empty, {})); }),
-                      {"empty.h5", "no frames"}));
-  EXPECT_THROW(static_cast<void>(open_producer(kDemo, {.device = "no such device"})), Error);
-}
-
-/// The frames of a scene solved in order, with the prior carried over.
-std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::uint64_t frames) {
-  const Simulator simulator(load_scene(path));
-  const SolverPlan plan = plan_of(simulator);
-  Processor processor(open_device(), plan);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  std::vector<ForceField> solved;
-  for (std::uint64_t index = 0; index < frames; ++index) {
-    simulator.render(index, raw, truth);
-    processor.submit(raw.view());
-    solved.push_back(copy_of(processor.receive()));
-  }
-  return solved;
-}
-
 /// A ball with growing shear: the friction observed in frame 4 sharpens frame 5.
 constexpr const char* kGrowingShear =
     "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n"
@@ -400,16 +352,6 @@ class FramesInOrder : public testing::Test {
   TemporaryDirectory directory_;
   std::filesystem::path path_ = directory_ / "growing.toml";
 };
-
-TEST_F(FramesInOrder, CarryThePriorOverWhilePlayed) {
-  const std::vector<ForceField> expected = solved_in_order(path_, 4);
-  for (const Memory memory : {Memory::automatic, Memory::staged}) {
-    const auto producer = open_producer(path_, {.memory = memory});
-    for (std::uint64_t index = 0; index < expected.size(); ++index) {
-      expect_same_forces(producer->produce(index).forces, expected[index].view());
-    }
-  }
-}
 
 TEST_F(FramesInOrder, HaveNoPriorAfterAJump) {
   const auto producer = open_producer(path_, {});
