@@ -7,7 +7,6 @@
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
 #include "viewer/source/selection.h"
-#include "viewer/style/surface.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -67,7 +66,9 @@ void require_available(Quantity quantity, const SourceInfo& source) {
 }
 
 Surface surface_of(const Options& options, const SourceInfo& source) {
-  return options.surface ? *options.surface : drawn_surface(source.skin.surface);
+  if (options.surface) return *options.surface;
+  const auto& surface = source.skin.surface;  // A height map is drawn as a plane.
+  return surface && surface->shape != SurfaceShape::height_map ? *surface : Surface{};
 }
 
 }  // namespace

@@ -145,14 +145,14 @@ void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout)
 void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
   const Surface& surface = canvas.settings.surface;
   const SkinSize size = skin_size(source);
-  const SurfaceFrame frame = frame_at(surface, {0, 0});
+  const Pose frame = pose_at(surface, {0, 0});
   const auto seen = [&](const Vec3& way) {
     const double length = 0.1 * std::max(size.width_mm, size.height_mm);
-    const Vec3 end{frame.position.x + way.x * length, frame.position.y + way.y * length,
-                   frame.position.z + way.z * length};
+    const Vec3 end{frame.position_mm.x + way.x * length, frame.position_mm.y + way.y * length,
+                   frame.position_mm.z + way.z * length};
     return project(canvas.settings.view, surface, size, layout.plot, end);
   };
-  const auto origin = project(canvas.settings.view, surface, size, layout.plot, frame.position);
+  const auto origin = project(canvas.settings.view, surface, size, layout.plot, frame.position_mm);
   if (!origin) return;
   const double x0 = layout.plot.x + 46 * canvas.unit();
   const double y0 = layout.plot.y + layout.plot.height - 46 * canvas.unit();

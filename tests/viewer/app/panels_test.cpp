@@ -51,7 +51,7 @@ TEST_F(Panels, EachWidgetActs) {
   press({"View", "view", "3-D"});
   EXPECT_TRUE(shows_orbit(settings));
   press({"View", "surface", "Sphere"});
-  EXPECT_EQ(settings.surface.kind, SurfaceKind::sphere);
+  EXPECT_EQ(settings.surface.shape, SurfaceShape::sphere);
   for (const auto& [name, request] :
        {std::pair{"Picture", &PendingActions::picture},
         std::pair{"Frames", &PendingActions::sequence}, std::pair{"Video", &PendingActions::video},

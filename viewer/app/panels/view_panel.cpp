@@ -166,15 +166,15 @@ void choose_view(const Command& command) {
 void choose_surface(const Command& command) {
   constexpr std::array<const char*, 3> kSurfaces{"Plane", "Cylinder", "Sphere"};
   Surface surface = command.state.look.settings.surface;
-  int chosen = static_cast<int>(surface.kind);
+  int chosen = static_cast<int>(surface.shape);
   labelled("Surface");
   const double width = command.place.skin().width_mm;
   if (toggle_group("surface", kSurfaces, chosen)) {
-    surface.kind = static_cast<SurfaceKind>(chosen);
+    surface.shape = static_cast<SurfaceShape>(chosen);
     if (surface.radius_mm == 0) surface.radius_mm = 0.5 * width;
     set_surface(command.state, command.place, surface);
   }
-  if (surface.kind == SurfaceKind::plane) return;
+  if (surface.shape == SurfaceShape::plane) return;
   labelled("Radius");
   const auto [unit, factor] = command.state.look.settings.units.of(Dimension::length);
   auto radius = static_cast<float>(surface.radius_mm * factor);
