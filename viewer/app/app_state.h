@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "viewer/app/named_boxes.h"
-#include "viewer/app/panels/time_window.h"
+#include "viewer/app/panels/plot.h"
 #include "viewer/app/source/loaded_source.h"
-#include "viewer/source/live_control.h"
 #include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "viewer/source/live_view.h"
+#include "viewer/source/live_player.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/shown_contacts.h"
 

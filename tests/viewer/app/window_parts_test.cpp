@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "viewer/app/load_range.h"
-#include "viewer/app/panels/time_window.h"
+#include "viewer/app/panels/plot.h"
 #include "viewer/app/window/gui.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/options.h"

@@ -8,8 +8,6 @@
 #include <mutex>
 #include <thread>
 
-#include "viewer/source/live_view.h"
-
 namespace pillarfield::viewer {
 namespace {
 

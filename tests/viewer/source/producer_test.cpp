@@ -6,21 +6,57 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "pillarfield/error.h"
+#include "pillarfield/force_field.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/solver_plan.h"
 #include "tests/io/sample_files.h"
-#include "tests/viewer/source/solved_scene.h"
 #include "tests/viewer/source/touched_field.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
+template <class Value>
+bool same_bytes(std::span<const Value> left, std::span<const Value> right) {
+  return std::ranges::equal(std::as_bytes(left), std::as_bytes(right));
+}
+
+inline void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected) {
+  ASSERT_EQ(actual.rows, expected.rows);
+  ASSERT_EQ(actual.cols, expected.cols);
+  EXPECT_TRUE(same_bytes(actual.shear_x, expected.shear_x));
+  EXPECT_TRUE(same_bytes(actual.shear_y, expected.shear_y));
+  EXPECT_TRUE(same_bytes(actual.normal, expected.normal));
+  EXPECT_TRUE(same_bytes(actual.status, expected.status));
+}
+
+inline ForceField copy_of(const ForceFieldView& forces) {
+  ForceField copy(forces.rows, forces.cols);
+  std::ranges::copy(forces.shear_x, copy.shear_x.begin());
+  std::ranges::copy(forces.shear_y, copy.shear_y.begin());
+  std::ranges::copy(forces.normal, copy.normal.begin());
+  std::ranges::copy(forces.status, copy.status.begin());
+  return copy;
+}
+
+/// The viewer's plan for a scene with known noise.
+inline SolverPlan plan_of(const Simulator& simulator) {
+  SolverPlan plan;
+  plan.skin = simulator.scene().skin;
+  plan.sensel_type = simulator.sensel_type();
+  plan.calibration = simulator.calibration();
+  set_solver(plan, simulator.scene());
+  plan.uncertainty = true;
+  return plan;
+}
+
 namespace {
 
 using io_test::error_of;
@@ -83,22 +119,6 @@ TEST(SceneProducer, SolvesTheFramesOfTheSceneInAnyOrder) {
       EXPECT_FALSE(field.forces.uncertainty[Uncertainty::theta_low].empty());
     }
   }
-}
-
-TEST(SceneProducer, DescribesTheScene) {
-  const auto producer = open_producer(kDemo, {.memory = Memory::staged, .most_frames = 4});
-  const SourceInfo& info = producer->info();
-  EXPECT_EQ(info.name, "demo.toml");
-  EXPECT_EQ(info.kind, "scene");
-  EXPECT_EQ(info.frames, 4U);
-  EXPECT_EQ(info.rate_hz, 100);
-  EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
-  EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
-  ASSERT_EQ(info.notes.size(), 1U);
-  EXPECT_TRUE(has_all(info.notes[0], {"4 of 60 frames", "as requested"}));
-  EXPECT_FALSE(producer->refresh());
-  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
-                      {"demo.toml", "no frame 4", "4 frames"}));
 }
 
 TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {

@@ -18,6 +18,50 @@ double feed_now_s() {
 
 }  // namespace
 
+Loading::Loading(Options options, double scale, std::function<void()> wake)
+    : options_(std::move(options)),
+      wake_(std::move(wake)),
+      thread_([this, scale] { run(scale); }) {}
+
+Loading::~Loading() {
+  stopping_ = true;
+  thread_.join();
+}
+
+std::string Loading::message() const {
+  const std::scoped_lock lock(mutex_);
+  return message_;
+}
+
+std::optional<LoadedSource> Loading::take() {
+  const std::scoped_lock lock(mutex_);
+  if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
+  return std::exchange(loaded_, std::nullopt);
+}
+
+void Loading::run(double scale) {
+  try {
+    LoadedSource loaded =
+        load_source(options_, scale, [this](const std::string& words) { tell(words); });
+    const std::scoped_lock lock(mutex_);
+    loaded_ = std::move(loaded);
+  } catch (...) {
+    const std::scoped_lock lock(mutex_);
+    failed_ = std::current_exception();
+  }
+  wake_();
+}
+
+void Loading::tell(const std::string& words) {
+  if (stopping_) throw Error(options_.source.string(), "interrupted", "open it again");
+  {
+    const std::scoped_lock lock(mutex_);
+    if (message_ == words) return;
+    message_ = words;
+  }
+  wake_();
+}
+
 void LoadFollower::take_field(AppState& state) {
   if (!follows_) return;
   const Skin& skin = state.source.player->info().skin;
@@ -157,8 +201,7 @@ std::optional<double> SourceFeed::latency_ms() const {
   if (!field_is_new_) return std::nullopt;
   // on_new_field() may not have been called yet.
   const auto& arrived = state_->source.field->arrived;
-  const double since_s =
-      arrived ? std::chrono::duration<double>(*arrived).count() : taken_s_;
+  const double since_s = arrived ? std::chrono::duration<double>(*arrived).count() : taken_s_;
   return since_s > 0 ? std::optional(1e3 * (feed_now_s() - since_s)) : std::nullopt;
 }
 
