@@ -102,8 +102,8 @@ void take_surface(Options& options, const std::string& text) {
   const auto radius =
       numbers(text.substr(name.size() + 1), ",", 1, "cylinder:RADIUS or sphere:RADIUS, in mm");
   require(radius[0] >= 1 && radius[0] <= 1e5, "the radius must lie in [1, 100000] mm");
-  const SurfaceShape shape = name == "sphere" ? SurfaceShape::sphere : SurfaceShape::cylinder;
-  options.surface = Surface{.shape = shape, .radius_mm = radius[0]};
+  options.surface->shape = name == "sphere" ? SurfaceShape::sphere : SurfaceShape::cylinder;
+  options.surface->radius_mm = radius[0];
 }
 
 /// The command line counts frames from 1.
