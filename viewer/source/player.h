@@ -67,6 +67,9 @@ class NewestField {
   std::function<void()> wake_;
 };
 
+/// After this time without a frame a sensor counts as silent.
+inline constexpr double kSilentSeconds = 1;
+
 /// The state of a sensor.
 struct LiveStatus {
   HealthReport health;

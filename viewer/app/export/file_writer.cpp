@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -142,10 +141,7 @@ bool FileWriter::wants_picture() const {
     source.player->pause();  // The user played on or went elsewhere.
     source.player->seek(next);
   }
-  if (!source.field || source.field->index != next) return false;
-  if (source.beside == nullptr || source.beside->live() != nullptr) return true;
-  const std::uint64_t last = source.beside->info().frames - 1;
-  return source.beside_field && source.beside_field->index == std::min(next, last);
+  return source.field && source.field->index == next && source.is_in_step(next);
 }
 
 void FileWriter::add(const Pixels& pixels) {

@@ -43,9 +43,6 @@ void time_panel(AppState& state);
 /// A sensor: record and tare, rate, losses, faulty sensels.
 void sensor_panel(const Command& command);
 
-/// After this time without a frame the window says so.
-inline constexpr double kSilentSeconds = 1;
-
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);
 

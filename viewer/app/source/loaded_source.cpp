@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -78,6 +79,11 @@ LoadedSource load_one(const Options& options, const std::filesystem::path& sourc
 }
 
 }  // namespace
+
+bool ShownSource::is_in_step(std::uint64_t index) const {
+  if (beside == nullptr || beside->live() != nullptr) return true;
+  return beside_field && beside_field->index == std::min(index, beside->info().frames - 1);
+}
 
 ProducerOptions producer_options(const Options& options, LoadProgress tell) {
   ProducerOptions wanted;

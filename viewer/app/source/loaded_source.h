@@ -22,6 +22,9 @@ struct ShownSource {
   bool beside_is_truth = false;
   std::optional<ShownField> field;         ///< on display
   std::optional<ShownField> beside_field;  ///< of the second source
+
+  /// True where the second source shows this frame, or its last; without one, and for a sensor.
+  [[nodiscard]] bool is_in_step(std::uint64_t index) const;
 };
 
 /// A source ready to play, with its initial settings; the view is not set.

@@ -1,13 +1,11 @@
 #include "viewer/app/source/source_feed.h"
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "pillarfield/error.h"
 #include "viewer/app/input/actions.h"
 #include "viewer/app/input/marks.h"
-#include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -174,7 +172,7 @@ bool SourceFeed::take_field() {
     if (held_ && source.beside != nullptr) source.beside->seek(held_->index);
   }
   const bool beside = take_beside();
-  if (!held_ || !is_in_step()) return beside || failed;
+  if (!held_ || !source.is_in_step(held_->index)) return beside || failed;
   viewer::take_field(*state_, *std::exchange(held_, std::nullopt));
   load_follower_.take_field(*state_);
   return field_is_new_ = true;
@@ -187,14 +185,6 @@ bool SourceFeed::take_beside() {
   if (!field) return false;
   source.beside_field = std::move(*field);
   return beside_is_new_ = true;
-}
-
-/// True once the second source shows the frame of the one that is held.
-bool SourceFeed::is_in_step() const {
-  const ShownSource& source = state_->source;
-  if (source.beside == nullptr || source.beside->live() != nullptr) return true;
-  const std::uint64_t last = source.beside->info().frames - 1;
-  return source.beside_field && source.beside_field->index == std::min(held_->index, last);
 }
 
 std::optional<double> SourceFeed::latency_ms() const {

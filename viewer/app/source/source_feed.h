@@ -102,7 +102,6 @@ class SourceFeed {
   bool attend_sensor();
   bool take_field();
   bool take_beside();
-  [[nodiscard]] bool is_in_step() const;
 
   AppState* state_;
   void (*wake_)();
