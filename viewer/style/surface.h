@@ -27,6 +27,11 @@ struct SkinSize {
   double width_mm = 0, height_mm = 0;
 };
 
+/// The same surface, but for heights, which are not drawn.
+[[nodiscard]] inline bool operator==(const Surface& a, const Surface& b) {
+  return a.shape == b.shape && a.radius_mm == b.radius_mm && a.axis_deg == b.axis_deg;
+}
+
 /// Pose of a point of the sheet.
 [[nodiscard]] inline Pose pose_at(const Surface& surface, Vec2 point_mm) {
   return pillarfield::pose_at(surface, point_mm.x, point_mm.y);

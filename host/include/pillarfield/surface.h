@@ -41,7 +41,6 @@ struct Surface {
   double radius_mm = 0;
   double axis_deg = 90;  ///< cylinder: direction of the axis on the skin, from +x towards +y
   std::vector<float> heights_mm;  ///< height map: of each pillar, [pillar rows, cols], ± 1e4 mm
-  friend bool operator==(const Surface&, const Surface&) = default;
 };
 
 /// The pillars of a skin.
