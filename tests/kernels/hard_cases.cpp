@@ -1,4 +1,4 @@
-#include "lab/studies/hard_cases.h"
+#include "tests/kernels/hard_cases.h"
 
 #include <cmath>
 #include <cstddef>

@@ -22,7 +22,7 @@ class Copy {
       : plan_(plan),
         frames_(plan.skin, plan.sensel_type, {}),
         kernel_(test_device(), plan, frames_, kind, 1),
-        queue_(test_device().state().context, test_device().state().device) {}
+        queue_(kernel_.device().context, kernel_.device().device) {}
 
   /// The output for the first frame.
   std::vector<std::byte> of_first_frame() {
@@ -135,7 +135,8 @@ TEST_P(EveryCopy, EveryCalibrationPlaneMovesEveryResult) {
 
 TEST_P(EveryCopy, TareThatFollowsIsWritten) {
   Copy copy(plan("baseline"), kind());
-  const cl::CommandQueue queue(test_device().state().context, test_device().state().device);
+  const OpenedDevice& opened = copy.kernel().device();
+  const cl::CommandQueue queue(opened.context, opened.device);
   const auto tare = [&] {
     std::vector<std::uint32_t> values(copy.plan().skin.sensels());
     queue.enqueueReadBuffer(copy.kernel().calibration(), CL_TRUE, 0, 4 * values.size(),

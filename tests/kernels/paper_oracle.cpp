@@ -1,8 +1,8 @@
-#include "lab/studies/paper_oracle.h"
-
 #include <algorithm>
 #include <array>
 #include <limits>
+
+#include "tests/kernels/oracle.h"
 
 namespace pillarfield::oracle {
 namespace {

@@ -3,9 +3,37 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <vector>
 
-#include "lab/studies/exact.h"
+/// Arithmetic of 113 bits for the oracles, with trigonometry of its own: series and Newton's
+/// method. It uses no library beyond + - * / and a double as first guess.
+namespace pillarfield::exact {
+
+#ifdef __SIZEOF_FLOAT128__
+using Exact = __float128;
+#else
+using Exact = long double;
+static_assert(std::numeric_limits<long double>::digits >= 113, "the oracles need 113 bits");
+#endif
+
+[[nodiscard]] inline Exact abs(Exact x) { return x < 0 ? -x : x; }
+
+/// Pi, from Machin's formula.
+[[nodiscard]] Exact pi();
+
+/// For |x| up to a few turns: within 1e-31.
+[[nodiscard]] Exact sin(Exact x);
+[[nodiscard]] Exact cos(Exact x);
+
+/// Relative error below 1e-32, for x within the range of double.
+[[nodiscard]] Exact sqrt(Exact x);
+
+/// The angle of (x, y) in (-pi, pi], relative error below 1e-31; not a number where both are zero.
+[[nodiscard]] Exact atan2(Exact y, Exact x);
+
+}  // namespace pillarfield::exact
 
 /// Independent solution of a pillar, without code of kernels/pillar: equation (2) of the paper with
 /// its sines and cosines, Gaussian elimination, and bisection, in 113 bits.
@@ -62,5 +90,25 @@ struct Segment {
 /// (docs/derivations/conditioning.md, C1). Not a number where the estimate is none.
 using Estimate = std::function<Force(const SomeReadings&)>;
 [[nodiscard]] double condition_number(const SomeReadings& usable, const Estimate& estimate);
+
+// The paper's equations (2), (5), (7) and (8), errata mended, in 113 bits: ratios of readings,
+// tangents and angles as they are printed, and none of the code of kernels/pillar.
+
+/// Choices that the equations leave in regions 1 and 2: the sensels i, j of (5), and the one whose
+/// reading gives the magnitude by (2).
+struct PaperChoice {
+  std::size_t i = 0;
+  std::size_t j = 2;
+  std::size_t magnitude_from = 0;
+};
+
+/// The choices of docs/derivations/paper_solve.md for usable readings: P1, P2, and the largest
+/// reading. More than one where they are a tie.
+[[nodiscard]] std::vector<PaperChoice> paper_choices(const SomeReadings& usable);
+
+/// The paper's force for one to four usable readings: in regions 1 and 2 with a choice, in region 3
+/// half way in theta along the contour of (5), in region 4 along the skin. Two opposite readings
+/// are no region of the paper; they get direct_force. Not a number where an equation is 0/0.
+[[nodiscard]] Force paper_force(const SomeReadings& usable, Exact k, const PaperChoice& choice);
 
 }  // namespace pillarfield::oracle

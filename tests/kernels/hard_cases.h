@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lab/studies/oracle.h"
-#include "solve/one_pillar.h"
+#include "tests/kernels/one_pillar.h"
+#include "tests/kernels/oracle.h"
 
 /// Named hard cases of single pillars, for tests and docs/derivations/conditioning.md.
 namespace pillarfield::hard_cases {
