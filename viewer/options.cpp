@@ -25,7 +25,7 @@ serial:DEVICE (of a FlexiTac board 'serial:DEVICE?protocol=flexitac&rows=16&cols
 standard input. Keys and mouse: press ? in the window.
 
 Try:  pillarfield-viewer scenes/demo.toml
-      pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png
+      pillarfield-viewer scenes/touch/sliding.toml --headless --frame 20 --png sliding.png
       pillarfield-viewer forces.h5 --headless --frames 1:60 --size 1920x1080 --video touch.mp4)";
 
 /// Parses the numbers of "1280x720", "-0.5:0.5" or "10,20"; the error shows the expected form.

@@ -6,8 +6,8 @@ import inspect
 import itertools
 import numbers
 import os
-from collections.abc import Iterable
-from typing import Any, Optional, TypeGuard, Union
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Optional, TypeGuard, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,9 @@ from ._recording import ForceFile, Recording, skin_of, source_of
 from ._scene import Simulation
 from .calibrate import Step, tare
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 _SCALE_ASSUMED = (f"The frames have no counts_per_newton; {_core.Skin(2, 2).counts_per_newton:g} "
                   "is assumed.")
 
@@ -29,7 +32,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           calibration: Union[_core.Calibration, Step, Path, None] = None, tare_frames: int = 0,
           times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
           axes: Axes = "", falling: bool = False, contacts: bool = False, device: str = "",
-          **options: Any) -> ForceField:
+          **options: Unpack[_core.PlanOptions]) -> ForceField:
     """Solves frames of readings into forces.
 
     frames: path of a recording or Tekscan export, of a folder of files, or a list of paths, which are
@@ -62,20 +65,20 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     >>> pf.solve(frames, counts_per_newton=320, layout="pillars")
     <ForceField: 5 frames of 4 x 6 pillars, 0.1..0.1 N, 0 % ambiguous>
     """
-    _refuse_unknown(options)
+    settings = _known(options)
     calibration = _calibration_of(calibration)
     if isinstance(frames, Simulation):
-        options = {"scene": frames.scene, **options}
+        settings = {"scene": frames.scene, **settings}
         calibration = calibration or frames.calibration
     if _is_iterator(frames):
         if tare_frames:
             raise Error("tare_frames", "an iterator's frames come once",
                         "give calibration=pf.calibrate.tare(unloaded)")
         live_skin = getattr(frames, "skin", None)  # as a LiveSource has it
-        given = _constants_given(skin, calibration, options) | set(live_skin.stated if live_skin else [])
+        given = _constants_given(skin, calibration, settings) | set(live_skin.stated if live_skin else [])
         _warn([_SCALE_ASSUMED], given)
         return _solve_iterator(frames, skin or live_skin, calibration, rate_hz or 100.0, falling, contacts,
-                               device, options)
+                               device, settings)
     if isinstance(frames, (list, tuple)) and not is_files(frames):
         frames = array_of(frames)
     source = source_of(frames, skin, times, rate_hz, axes=axes, falling=falling)
@@ -88,16 +91,16 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         calibration = tare(source.read(0, 1, tare_frames), calibration or source.calibration,
                            skin=skin.mirrored() if skin and falling else skin or source.skin).calibration
     _warn(([_SCALE_ASSUMED] if source.format == "array" else []) + source.warnings,
-          _constants_given(skin, calibration, options))
+          _constants_given(skin, calibration, settings))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
-                           device, options)
+                           device, settings)
     return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
 
 
 def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 0, end: Optional[int] = None,
                   warm_up: Optional[int] = None, contacts: bool = False,
                   calibration: Union[_core.Calibration, Step, Path, None] = None, device: str = "",
-                  overwrite: bool = False, **options: Any) -> ForceFile:
+                  overwrite: bool = False, **options: Unpack[_core.PlanOptions]) -> ForceFile:
     """Solves frames of a file into a file of forces, with one frame at a time in memory.
 
     frames: path of a file of frames, or a Recording of it
@@ -112,22 +115,23 @@ def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 
 
     Returns the opened result. Raises Error if a file or an option is wrong.
     """
-    _refuse_unknown(options)
+    settings = _known(options)
     source = frames if isinstance(frames, Recording) else Recording(frames)
     plan = _core.plan_of(source, source.skin, calibration=_calibration_of(calibration) or source.calibration,
-                         **options)
+                         **settings)
     name = os.path.basename(frames) if isinstance(frames, (str, os.PathLike)) else "recording"
     _core.solve_to_file(source, plan, name, output, first, len(source) if end is None else end, warm_up,
                         contacts, device, overwrite)
     return ForceFile(output)
 
 
-def _refuse_unknown(options: dict[str, Any]) -> None:
-    """Raises TypeError for an option that there is not; it suggests one."""
+def _known(options: Mapping[str, Any]) -> dict[str, Any]:
+    """The options; raises TypeError for an unknown one, and suggests another."""
     for name in options:
         if name not in _core.plan_options:
             known = [*inspect.signature(solve).parameters, *_core.plan_options]
             raise TypeError(f"solve() has no argument '{name}'{_core.suggestion(name, known)}")
+    return dict(options)
 
 
 def _calibration_of(given: Any) -> Optional[_core.Calibration]:

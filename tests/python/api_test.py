@@ -1,5 +1,6 @@
 """Doctests, exported names, objects without a value, and the manual's snippets."""
 
+import ast
 import contextlib
 import doctest
 import importlib
@@ -9,6 +10,7 @@ import os
 import pathlib
 import pkgutil
 import re
+import subprocess
 import sys
 import unittest
 
@@ -66,6 +68,28 @@ class Names(unittest.TestCase):
         undescribed = [name for name in pf.__all__ if not inspect.getdoc(getattr(pf, name))]
         self.assertEqual(undescribed, [])
         self.assertEqual(pf.__all__, sorted(pf.__all__, key=lambda name: (name[0].islower(), name)))
+
+
+class Types(unittest.TestCase):
+    def test_every_option_has_one(self):
+        stub = ast.parse((pathlib.Path(pf.__file__).parent / "_core.pyi").read_text())
+        options = next(each for each in stub.body if isinstance(each, ast.ClassDef) and each.name == "PlanOptions")
+        typed = {each.target.id for each in options.body if isinstance(each, ast.AnnAssign)}
+        self.assertEqual(typed, set(pf._core.plan_options) - {"skin", "calibration", "sensel_type"})
+
+    def test_a_checker_sees_mistakes(self):
+        if importlib.util.find_spec("mypy") is None:
+            self.skipTest("no mypy")
+        program = WORK / "mistakes.py"
+        WORK.mkdir(parents=True, exist_ok=True)
+        program.write_text("import pillarfield as pf\npf.solve('a.h5', friction=0.5)\n"
+                           "pf.solve('a.h5', cuonts_per_newton=320)\npf.solve('a.h5', layout='round')\n")
+        seen = subprocess.run([sys.executable, "-m", "mypy", "--follow-imports=silent",
+                               "--enable-incomplete-feature=Unpack", f"--cache-dir={WORK}/mypy", program],
+                              env={**os.environ, "MYPYPATH": str(pathlib.Path(pf.__file__).parents[1])},
+                              text=True, stdout=subprocess.PIPE, cwd=WORK).stdout
+        lines = re.findall(r"mistakes\.py:(\d+): error", seen)
+        self.assertEqual(lines, ["3", "4"], seen)
 
 
 if __name__ == "__main__":

@@ -238,7 +238,7 @@ TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
 }
 
 TEST(SceneProducer, OpensAgainAndHasATruth) {
-  const auto producer = open_producer(PILLARFIELD_SCENES "/sliding.toml", {.most_frames = 3});
+  const auto producer = open_producer(PILLARFIELD_SCENES "/touch/sliding.toml", {.most_frames = 3});
   const auto again = producer->open_again();
   EXPECT_EQ(again->info().frames, 3U);
   for (std::uint64_t index = 0; index < 3; ++index) {

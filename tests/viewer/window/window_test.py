@@ -159,7 +159,7 @@ class WholeWindowTest(WindowTest):
 
     def test_interrupt_ends_it(self):
         for ending in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-            window = self.open(SCENES / "spin.toml", "--paused")
+            window = self.open(SCENES / "touch/spin.toml", "--paused")
             self.screen.still_pixels()
             window.process.send_signal(ending)
             window.process.communicate(timeout=PATIENCE_S)
@@ -167,7 +167,7 @@ class WholeWindowTest(WindowTest):
 
     def test_without_a_display(self):
         environment = {name: value for (name, value) in os.environ.items() if name != "DISPLAY"}
-        ended = subprocess.run([VIEWER, SCENES / "spin.toml"], env=environment, check=False,
+        ended = subprocess.run([VIEWER, SCENES / "touch/spin.toml"], env=environment, check=False,
                                capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(ended.returncode, 1)
         self.assertIn("--headless", ended.stderr)
