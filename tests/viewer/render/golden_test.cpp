@@ -96,14 +96,9 @@ const std::vector<GoldenPicture>& golden_pictures() {
       {"demo_uncertainty_zoom",
        {"demo.toml", "--frame=31", "--layer=uncertainty", "--zoom=5", "--centre=6,1", "--sectors"}},
       {"demo_contacts", {"demo.toml", "--frame=31", "--contacts", "--no-arrows"}},
-<<<<<<< HEAD
+      {"pad_half", {"touch/pad.toml", "--frame=71", "--layer=pressure"}},
       {"pad_pressure", {"touch/pad.toml", "--frame=71", "--layer=pressure", "--contacts"}},
       {"sliding_shear_x", {"touch/sliding.toml", "--frame=21", "--layer=shear_x"}},
-=======
-      {"pad_half", {"pad.toml", "--frame=71", "--layer=pressure"}},
-      {"pad_pressure", {"pad.toml", "--frame=71", "--layer=pressure", "--contacts"}},
-      {"sliding_shear_x", {"sliding.toml", "--frame=21", "--layer=shear_x"}},
->>>>>>> 6edc6b9dccdf51465d0dc3503d453a289844fe79
       {"sliding_cylinder",
        {"touch/sliding.toml", "--frame=26", "--layer=shear",
         "--view=orbit:-45.83662361,28.64788976", "--surface=cylinder:25"}},
