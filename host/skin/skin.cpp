@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pillarfield/error.h"
+#include "skin/limits.h"
 
 namespace pillarfield {
 namespace {

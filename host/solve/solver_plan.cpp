@@ -83,9 +83,7 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
              friction.spread != unknown.spread,
          "a friction coefficient");
   refuse(plan.angles, "magnitude and angles of shear force");
-  refuse(effects.shear_coefficient.has_value(), "a shear coefficient");
-  refuse(effects.pillar_leak.has_value(), "a leak between pillars");
-  refuse(effects.arm_mm.has_value(), "an arm of pillars");
+  refuse(names_of(effects) != names_of(without_pillars(effects)), "an effect of pillars");
 }
 
 /// Throws Error if a number is out of range.

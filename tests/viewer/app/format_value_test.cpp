@@ -8,8 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "viewer/app/panels/plot.h"
-
 namespace pillarfield::viewer {
 namespace {
 
@@ -90,32 +88,50 @@ TEST(FormatStatus, NameRegionAndFault) {
   EXPECT_EQ(format_status(status::kSaturated), "no usable sensel, saturated");
 }
 
-TEST(FormatValue, HaveTheDigitsThatTheirDeviationAllows) {
-  EXPECT_EQ(format_value(0.123456, 0.0056), "0.1235");
-  EXPECT_EQ(format_deviation(0.0056), "± 0.0056");
-  EXPECT_EQ(format_value(-123.456, 2.3), "−123.5");
-  EXPECT_EQ(format_value(-0.00001, 0.01), "0.000");
-  EXPECT_EQ(format_value(123.456, 230), "123");
-  EXPECT_EQ(format_value(0.123456, kNotANumber), "0.123");
-  EXPECT_EQ(format_deviation(kNotANumber), "");
-  EXPECT_EQ(format_deviation(0), "");
+const Units kUnits;
+
+TEST(Readout, HasTheDigitsThatItsDeviationAllows) {
+  const auto words = [](double value, double deviation) {
+    const ShownValue shown = kUnits.readout("F", Dimension::force, value, deviation);
+    return shown.label + " " + shown.value + " " + with_unit(shown.range, shown.unit);
+  };
+  EXPECT_EQ(words(0.123456, 0.0056), "F 0.1235 ± 0.0056 N");
+  EXPECT_EQ(words(-123.456, 2.3), "F −123.5 ± 2.3 N");
+  EXPECT_EQ(words(-0.00001, 0.01), "F 0.000 ± 0.010 N");
+  EXPECT_EQ(words(123.456, 230), "F 123 ± 230 N");
+  EXPECT_EQ(words(0.123456, kNotANumber), "F 0.123  N");
+  EXPECT_EQ(kUnits.readout("", Dimension::force, 1, 0).range, "");
 }
 
-TEST(FormatInterval, DistinguishTheEnds) {
-  EXPECT_EQ(format_interval(0.12, 0.34), "0.12 … 0.34");
-  EXPECT_EQ(format_interval(60, 73.3), "60 … 73");
-  EXPECT_EQ(format_interval(-5, -5), "−5.000 … −5.000");
-  EXPECT_EQ(format_interval(kNotANumber, 1), "");
+TEST(Readout, AnIntervalDistinguishesItsEnds) {
+  const auto range = [](double low, double high) {
+    return kUnits.readout_between("", Dimension::force, low, low, high).range;
+  };
+  EXPECT_EQ(range(0.12, 0.34), "0.12 … 0.34");
+  EXPECT_EQ(range(60, 73.3), "60 … 73");
+  EXPECT_EQ(range(-5, -5), "−5.000 … −5.000");
+  EXPECT_EQ(range(kNotANumber, 1), "");
+}
+
+TEST(Units, OfPressureScaleValuesAndNameThem) {
+  const Units psi{kPressureUnits[1]};
+  EXPECT_EQ(psi.title("Pressure", Dimension::pressure), "Pressure, psi");
+  EXPECT_EQ(psi.text(Dimension::pressure, 6.894757293168), "1.00 psi");
+  EXPECT_EQ(psi.readout("", Dimension::pressure, 68.94757293168, 6.894757293168).range, "± 1.0");
+  EXPECT_EQ(psi.text(Dimension::angle, std::numbers::pi / 4), "45.0°");
+  EXPECT_EQ(psi.plain(Dimension::length, 20), "20 mm");
+  EXPECT_EQ(psi.fixed(Dimension::time, 0.25, 3), "0.250 s");
+  EXPECT_EQ(psi.title("Region", Dimension::none), "Region");
 }
 
 TEST(ShownDirection, HasIntervalsWhereItIsAmbiguousAndDeviationsElsewhere) {
   PillarValues values = pillar(0.1, 0.05, 0.3, 0.004, 0.004, 0.003);
-  EXPECT_TRUE(shown_direction(values)[1].range.starts_with("± "));
+  EXPECT_TRUE(shown_direction(values, kUnits)[1].range.starts_with("± "));
   values.status = status::kSensel1 | status::kSensel2 | status::kAmbiguous;
   auto& planes = *values.uncertainty;
   const float pi = std::numbers::pi_v<float>;
   planes = {0.1f, 0.1f, 0.1f, pi / 4, pi / 3, 0.95f * pi, -0.95f * pi, 0.2f, 0.3f};
-  const auto shown = shown_direction(values);
+  const auto shown = shown_direction(values, kUnits);
   EXPECT_EQ(shown[0].range, "0.20 … 0.30");
   EXPECT_EQ(shown[1].range, "45 … 60");
   EXPECT_EQ(shown[2].range, "171 … 189");  // Counter-clockwise, past 180.
@@ -126,8 +142,8 @@ TEST(FormatPlace, CountFromTheMiddleOfTheSkin) {
   ForceFieldView forces;
   forces.rows = 4;
   forces.cols = 6;
-  EXPECT_EQ(format_place(forces, {0, 0}, 2), "x −5.00, y 3.00 mm");
-  EXPECT_EQ(format_place(forces, {3, 5}, 2), "x 5.00, y −3.00 mm");
+  EXPECT_EQ(format_place(forces, {0, 0}, 2, kUnits), "x −5.00, y 3.00 mm");
+  EXPECT_EQ(format_place(forces, {3, 5}, 2, kUnits), "x 5.00, y −3.00 mm");
   EXPECT_EQ(format_pillar({3, 5}), "row 3, column 5");
 }
 
@@ -151,57 +167,26 @@ ContactQuantities a_contact() {
   return contact;
 }
 
-TEST(FormatContact, FollowTheHeads) {
+TEST(FormatQuantity, HasThreeDigitsAndNoWordThatClaimsNothing) {
   ContactQuantities contact = a_contact();
-  using Words = std::vector<std::string>;
-  const auto format_contact = [](const char* name, const ContactQuantities& of) {
-    return viewer::format_contact(name, of, SkinLayout::pillars, kPressureUnits.front());
+  const auto [kpa, psi, mmhg] = kPressureUnits;
+  const auto text = [&](const char* name, const PressureUnit& unit = kPressureUnits.front()) {
+    return format_quantity(quantity_column(name), contact, unit);
   };
-  EXPECT_EQ(format_contact("7", contact),
-            (Words{"7", "50.1", "5.00", "–", "–", "–", "0 %", "157", "285", "320", "0.457"}));
-  contact.ambiguous = 50;
+  EXPECT_EQ(text("normal_n"), "50.1");
+  EXPECT_EQ(text("shear_x_n"), "−3.00");
+  EXPECT_EQ(text("mean_pressure_kpa"), "157");
+  EXPECT_EQ(text("mean_pressure_kpa", psi), "22.7");
+  EXPECT_EQ(text("friction"), "–");
+  EXPECT_EQ(text("slip"), "–");
+  EXPECT_EQ(text("time_to_slip_s"), "–");
   contact.friction = 0.6;
   contact.slip = SlipState::partial;
-  EXPECT_EQ(format_contact("7", contact)[3], "0.60");
-  EXPECT_EQ(format_contact("7", contact)[4], "partial");
-  EXPECT_EQ(format_contact("7", contact)[6], "25 %");
-  contact.resolved = 45;
-  EXPECT_EQ(format_contact("all", contact)[6], "25 % / 90 %");
-  EXPECT_EQ(format_contact("all", {})[6], "–");
-}
-
-TEST(FormatContact, TellsWhenItSlips) {
-  ContactQuantities contact = a_contact();
-  const auto slips_in = [&] {
-    return format_contact("7", contact, SkinLayout::pillars, kPressureUnits.front())[5];
-  };
-  EXPECT_EQ(format_slip_details(contact), "");
-  contact.friction_deviation = 0.04;
-  EXPECT_EQ(format_slip_details(contact), "standard deviation of µ  0.04");
   contact.slip_forecast = {0.423, 0.31, std::nullopt, {0.004, 0.2, 0.97}};
-  EXPECT_EQ(slips_in(), "0.42 s");
-  EXPECT_EQ(
-      format_slip_details(contact),
-      "standard deviation of µ  0.04\nslips in 0.31 s … never (95 %)\nslips within 0.1 s  0 %\n"
-      "slips within 0.3 s  20 %\nslips within 1 s  97 %");
-  contact.slip_forecast->time_s = 12.6;
-  EXPECT_EQ(slips_in(), "13 s");
-  contact.slip_forecast->time_s = 1e9;
-  EXPECT_EQ(slips_in(), "> 60 s");
-  contact.slip_forecast->time_s.reset();
-  contact.slip_forecast->low_s.reset();
-  EXPECT_EQ(slips_in(), "–");
-  EXPECT_NE(format_slip_details(contact).find("does not slip (95 %)"), std::string::npos);
-}
-
-TEST(FormatContact, OfSenselsHasNoShear) {
-  using Words = std::vector<std::string>;
-  const auto [kpa, psi, mmhg] = kPressureUnits;
-  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels, kpa),
-            (Words{"7", "50.1", "157", "285", "320", "0.457"}));
-  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels, psi),
-            (Words{"7", "50.1", "22.7", "41.4", "320", "0.457"}));
-  EXPECT_EQ(contact_columns(SkinLayout::sensels).size(), 6U);
+  EXPECT_EQ(text("friction"), "0.600");
+  EXPECT_EQ(text("slip"), "partial");
+  EXPECT_EQ(text("time_to_slip_s"), "0.423");
+  EXPECT_EQ(text("time_to_slip_high_s"), "–");
 }
 
 }  // namespace
