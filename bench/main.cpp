@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "bench/cases/cases.h"
-#include "bench/timing/unsuffixed_reporter.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::bench {
@@ -44,6 +44,32 @@ Cases: limit/ size/ contact/ regions/ type/ lanes/ stage/ sensor/ latency/ throu
 Try:  pillarfield-bench --benchmark_filter=size/
       pillarfield-bench --benchmark_filter=baseline/ --seconds=5
 )";
+
+/// The reporter that the command line selects, without the suffix "/manual_time" of names.
+class UnsuffixedReporter final : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context& context) override {
+    inner_->SetOutputStream(&GetOutputStream());
+    inner_->SetErrorStream(&GetErrorStream());
+    return inner_->ReportContext(context);
+  }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    std::vector<Run> plain = runs;
+    for (Run& run : plain) {
+      run.run_name.time_type.clear();
+      any_failed_ = any_failed_ || run.error_occurred;
+    }
+    inner_->ReportRuns(plain);
+  }
+  void Finalize() override { inner_->Finalize(); }
+
+  /// True after a case failed.
+  [[nodiscard]] bool any_failed() const { return any_failed_; }
+
+ private:
+  std::unique_ptr<benchmark::BenchmarkReporter> inner_{benchmark::CreateDefaultDisplayReporter()};
+  bool any_failed_ = false;
+};
 
 /// Options beside those of Google Benchmark.
 struct Arguments {

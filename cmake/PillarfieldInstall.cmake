@@ -94,8 +94,7 @@ if(PILLARFIELD_HELP2MAN)
     OPTIONAL)
 endif()
 
-install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/pillarfield COMPONENT documentation
-  FILES_MATCHING PATTERN "*.toml" PATTERN "*.npy")
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/pillarfield COMPONENT documentation)
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 
 set(PILLARFIELD_SITE "" CACHE PATH "Documentation that ./dev docs built, to install")

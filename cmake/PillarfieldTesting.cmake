@@ -8,7 +8,8 @@
 #              `./dev test --all` runs all others with sanitizers.
 #   FURTHER    tests whose suite or instantiation begins with Further are an entry of their own, which is
 #              LONG: kernels that differ little from those of the others, and take long to compile
-# The target `default_tests` builds the tests of `./dev test`, `all_tests` those of `./dev test --all`.
+# The target `default_tests` builds the tests of `./dev test`, `all_tests` those of `./dev test --all`;
+# `default_core_tests`, `all_lab_tests` and so on those of one house: core, viewer or lab.
 
 # Compiled kernels are cached in the build tree, not in the user's home (where others can write the
 # tree, each program compiles its own); graphics drivers need a folder of the user's session.
@@ -40,17 +41,28 @@ set(PILLARFIELD_TEST_TIMEOUT 3600)
 
 add_custom_target(default_tests)
 add_custom_target(all_tests)
-add_dependencies(all_tests default_tests)
+foreach(house core viewer lab)
+  add_custom_target(default_${house}_tests)
+  add_custom_target(all_${house}_tests)
+  add_dependencies(all_${house}_tests default_${house}_tests)
+  add_dependencies(default_tests default_${house}_tests)
+  add_dependencies(all_tests all_${house}_tests)
+endforeach()
 
 # pillarfield_test_entry(<name> [LONG] [SANITIZED] [TARGETS <targets...>]): sets when the test <name>
-# runs and which targets it needs. Its label is the module that its name begins with.
+# runs and which targets it needs. Its label is the module that its name begins with, which is also the
+# house of viewer and lab; the tests of all other modules are the core's.
 function(pillarfield_test_entry name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED" "" "TARGETS")
   string(REGEX REPLACE "[_.].*" "" labels ${name})
-  set(group default_tests)
+  set(house core)
+  if(labels MATCHES "^(viewer|lab)$")
+    set(house ${labels})
+  endif()
+  set(group default_${house}_tests)
   if(arg_LONG OR (PILLARFIELD_SANITIZE AND NOT arg_SANITIZED))
     list(APPEND labels long)
-    set(group all_tests)
+    set(group all_${house}_tests)
   endif()
   set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}"
     TIMEOUT ${PILLARFIELD_TEST_TIMEOUT} ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")

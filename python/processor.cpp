@@ -242,12 +242,7 @@ void bind_processor(py::module_& module) {
            py::arg("missing"))
       .def("receive_planes", &Ring::receive)
       .def("try_receive_planes", &Ring::try_receive)
-      .def(
-          "set_tare", &Ring::set_tare, py::arg("tare"),
-          "Replaces the tare, [R, C], counts, for the frames submitted from now on; of a "
-          "Calibration, or a step such as pf.calibrate.tare(frames), noise, threshold and all else "
-          "too.\n\nRaises Error if the plan has no tare (it may be zero) or the values do not "
-          "fit.")
+      .def("set_tare", &Ring::set_tare, py::arg("tare"))
       .def_property_readonly("tare", &Ring::tare,
                              "The tare after all frames so far, float32 [R, C], counts, or None.")
       .def("close", &Ring::close, "Frees the device, but no result that is held.")

@@ -1,6 +1,6 @@
-// The surface under the skin: frame_at() of viewer/style/view.h in single precision. `surface`
+// The surface under the skin: pose_at() of pillarfield/surface.h in single precision. `surface`
 // holds the unit vector of a cylinder's bent direction, the radius in millimetres, positive where
-// the skin is outside, and the SurfaceKind.
+// the skin is outside, and the SurfaceShape.
 #ifndef PF_SURFACE_GLSL
 #define PF_SURFACE_GLSL
 

@@ -60,8 +60,7 @@ float shear_of(uint pillar) {
 
 float value_of(uint pillar, uint status) {
   switch (kQuantity) {
-    case kNormal:
-    case kPeak: return plane_value(scene.force.z, pillar);
+    case kNormal: return plane_value(scene.force.z, pillar);
     case kPressure: return plane_value(scene.force.z, pillar) * scene.sheet.w;
     case kShear: return shear_of(pillar);
     case kShearX: return plane_value(scene.force.x, pillar);

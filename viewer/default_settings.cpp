@@ -7,7 +7,6 @@
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
 #include "viewer/source/selection.h"
-#include "viewer/style/surface.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -67,15 +66,12 @@ void require_available(Quantity quantity, const SourceInfo& source) {
 }
 
 Surface surface_of(const Options& options, const SourceInfo& source) {
-  return options.surface ? *options.surface : drawn_surface(source.skin.surface);
+  if (options.surface) return *options.surface;
+  const auto& surface = source.skin.surface;  // A height map is drawn as a plane.
+  return surface && surface->shape != SurfaceShape::height_map ? *surface : Surface{};
 }
 
 }  // namespace
-
-Range in_unit_of(const Range& shown, Quantity quantity, const PressureUnit& unit) {
-  const auto factor = static_cast<float>(info_of(quantity, unit).factor);
-  return {shown.low / factor, shown.high / factor};
-}
 
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
   return fitting_range(quantity, typical_value(producer, quantity, kRangeQuantile));
@@ -123,14 +119,16 @@ RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
   settings.map = options.map.value_or(default_map(info_of(settings.quantity).scale));
   settings.surface = surface_of(options, source);
   settings.scale = scale;
+  if (!options.range) return settings;
+  const Dimension dimension = info_of(settings.quantity).dimension;
+  const auto factor = static_cast<float>(settings.units.of(dimension).factor);
+  settings.range = {options.range->low / factor, options.range->high / factor};
   return settings;
 }
 
 RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
   RenderSettings settings = chosen_settings(options, producer.info(), scale);
-  settings.range =
-      options.range ? in_unit_of(*options.range, options.look.quantity, options.look.pressure_unit)
-                    : range_that_fits(producer, options.look.quantity);
+  if (!options.range) settings.range = range_that_fits(producer, settings.quantity);
   settings.relief_full_n = static_cast<double>(range_that_fits(producer, Quantity::normal).high);
   if (!producer.info().skin.has_pillars()) return settings;  // No arrows.
   settings.full_force_n = full_arrow(producer, Quantity::magnitude);

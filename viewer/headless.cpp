@@ -16,7 +16,6 @@
 #include "viewer/app/source/loaded_source.h"
 #include "viewer/render/renderer.h"
 #include "viewer/render/scene.h"
-#include "viewer/source/plane_block.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -56,11 +55,7 @@ struct FrameRange {
 
 FrameRange frames_of(const Options& options, FieldProducer& producer) {
   const SourceInfo& source = producer.info();
-  // Peaks are complete in the last frame.
-  const bool peaks = options.look.quantity == Quantity::peak;
-  const std::uint64_t first = options.has_frame ? options.first_frame
-                              : peaks           ? source.frames - 1
-                                                : most_loaded_frame(producer);
+  const std::uint64_t first = options.has_frame ? options.first_frame : most_loaded_frame(producer);
   const FrameRange span{first, options.end_frame != 0 ? options.end_frame : first + 1};
   if (span.end <= source.frames) return span;
   throw Error(source.name, fmt::format("it has no frame {}", span.end),
@@ -138,9 +133,9 @@ class VideoPace {
 void tell_written(const Options& options, const std::vector<std::filesystem::path>& pictures,
                   const FrameRange& span, std::uint64_t frames) {
   const auto tell = [](const std::string& words) { fmt::print("Wrote {}\n", printable(words)); };
-  const char* const why = options.look.quantity == Quantity::peak ? "the last" : "the most loaded";
   const std::string which =
-      options.has_frame ? "" : fmt::format(": frame {} of {}, {}", span.begin + 1, frames, why);
+      options.has_frame ? ""
+                        : fmt::format(": frame {} of {}, the most loaded", span.begin + 1, frames);
   if (!options.csv.empty()) tell(options.csv.string() + which);
   if (pictures.size() == 1) tell(pictures.front().string() + which);
   if (pictures.size() > 1) {
@@ -157,23 +152,20 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
 }
 
 /// The source, and what is shown beside it.
-struct Shown {
-  std::unique_ptr<FieldProducer> producer;
-  PeakHold peaks = {};
-};
+using Shown = std::vector<std::unique_ptr<FieldProducer>>;
 
-std::vector<Shown> open_all(const Options& options) {
+Shown open_all(const Options& options) {
   const bool on_terminal = isatty(STDERR_FILENO) == 1;
   const auto open = [&](const std::filesystem::path& source) {
     return open_producer(source, producer_options(options, [=](const std::string& line) {
                            if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
                          }));
   };
-  std::vector<Shown> shown;
-  shown.push_back({open(options.source)});
-  const FieldProducer& first = *shown.front().producer;
-  if (options.truth) shown.push_back({opened_truth(first.open_truth, first.info().name)});
-  if (!options.beside.empty()) shown.push_back({open(options.beside)});
+  Shown shown;
+  shown.push_back(open(options.source));
+  const FieldProducer& first = *shown.front();
+  if (options.truth) shown.push_back(opened_truth(first.open_truth, first.info().name));
+  if (!options.beside.empty()) shown.push_back(open(options.beside));
   return shown;
 }
 
@@ -183,46 +175,32 @@ Viewport place_of_one(const Options& options, std::size_t sources) {
   return sources > 1 ? first_half(all) : all;
 }
 
-Pixels draw(HeadlessRenderer& headless, Shown& shown, std::uint64_t frame,
+Pixels draw(HeadlessRenderer& headless, FieldProducer& producer, std::uint64_t frame,
             const RenderSettings& settings) {
-  FieldProducer& producer = *shown.producer;
   ShownField field = producer.produce(std::min(frame, producer.info().frames - 1));
   if (settings.contacts) {
     field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
-  }
-  if (settings.quantity == Quantity::peak) {
-    shown.peaks.add(field.forces);
-    field.peak = shown.peaks.field(field);
   }
   return headless.render(field, producer.info(), settings);
 }
 
 /// All sources side by side; the last has the colour bar.
-Pixels draw_all(HeadlessRenderer& headless, std::vector<Shown>& shown, std::uint64_t frame,
+Pixels draw_all(HeadlessRenderer& headless, const Shown& shown, std::uint64_t frame,
                 RenderSettings settings) {
   settings.colour_bar = shown.size() == 1;
-  Pixels pixels = draw(headless, shown.front(), frame, settings);
+  Pixels pixels = draw(headless, *shown.front(), frame, settings);
   settings.colour_bar = true;
   if (shown.size() == 1) return pixels;
-  return side_by_side(pixels, draw(headless, shown.back(), frame, settings));
+  return side_by_side(pixels, draw(headless, *shown.back(), frame, settings));
 }
 
 /// Renders the frames of `span` into `pictures` and the video.
-void write_pictures(const Options& options, std::vector<Shown>& shown,
-                    const RenderSettings& settings, const FrameRange& span,
-                    const std::vector<std::filesystem::path>& pictures) {
+void write_pictures(const Options& options, const Shown& shown, const RenderSettings& settings,
+                    const FrameRange& span, const std::vector<std::filesystem::path>& pictures) {
   const Viewport place = place_of_one(options, shown.size());
   const vk::Extent2D size{static_cast<std::uint32_t>(place.width), options.height};
   HeadlessRenderer headless(options, size);
-  const bool with_peaks = settings.quantity == Quantity::peak;
-  for (std::uint64_t frame = 0; with_peaks && frame < span.begin; ++frame) {
-    stop_if_interrupted(options, 0);
-    for (Shown& each : shown) {
-      const std::uint64_t last = each.producer->info().frames - 1;
-      if (frame <= last) each.peaks.add(each.producer->produce(frame).forces);
-    }
-  }
-  const VideoPace pace(options, shown.front().producer->info().rate_hz);
+  const VideoPace pace(options, shown.front()->info().rate_hz);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
     const auto width = static_cast<std::uint32_t>(shown.size()) * size.width;
@@ -252,8 +230,8 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  std::vector<Shown> shown = open_all(options);
-  FieldProducer* const producer = shown.front().producer.get();
+  const Shown shown = open_all(options);
+  FieldProducer* const producer = shown.front().get();
   const SourceInfo& source = producer->info();
   fmt::print(stderr, "{}", warning_lines(source));
   const FrameRange span = frames_of(options, *producer);

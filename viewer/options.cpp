@@ -25,7 +25,7 @@ serial:DEVICE (of a FlexiTac board 'serial:DEVICE?protocol=flexitac&rows=16&cols
 standard input. Keys and mouse: press ? in the window.
 
 Try:  pillarfield-viewer scenes/demo.toml
-      pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png
+      pillarfield-viewer scenes/touch/sliding.toml --headless --frame 20 --png sliding.png
       pillarfield-viewer forces.h5 --headless --frames 1:60 --size 1920x1080 --video touch.mp4)";
 
 /// Parses the numbers of "1280x720", "-0.5:0.5" or "10,20"; the error shows the expected form.
@@ -102,8 +102,8 @@ void take_surface(Options& options, const std::string& text) {
   const auto radius =
       numbers(text.substr(name.size() + 1), ",", 1, "cylinder:RADIUS or sphere:RADIUS, in mm");
   require(radius[0] >= 1 && radius[0] <= 1e5, "the radius must lie in [1, 100000] mm");
-  const SurfaceKind kind = name == "sphere" ? SurfaceKind::sphere : SurfaceKind::cylinder;
-  options.surface = Surface{kind, radius[0]};
+  options.surface->shape = name == "sphere" ? SurfaceShape::sphere : SurfaceShape::cylinder;
+  options.surface->radius_mm = radius[0];
 }
 
 /// The command line counts frames from 1.
@@ -146,7 +146,7 @@ void add_picture(CLI::App& app, Options& options) {
       "--layer", options.look.quantity,
       choices_of<Quantity>(kQuantities, [](Quantity each) { return info_of(each).name; }),
       "Quantity of the heat map [normal]");
-  cli::add_pressure_unit(picture, options.look.pressure_unit);
+  cli::add_pressure_unit(picture, options.look.units.pressure);
   add("--range", "LOW:HIGH", "Ends of the colour bar in the displayed unit [fitted to the source]",
       take_range);
   picture.choice<ColourMap>("--map", options.map, choices_of<ColourMap>(kColourMaps, name_of),

@@ -29,7 +29,7 @@ struct Options {
   bool statistics = false;  ///< printed when the window closes
 
   RenderSettings look;         ///< but for what is fitted to the source, and for the next members
-  std::optional<Range> range;  ///< unset: fitted to the source
+  std::optional<Range> range;  ///< in the displayed unit; unset: fitted to the source
   std::optional<ColourMap> map;
   std::optional<Surface> surface;  ///< unset: that of the source
   bool orbit = false;
@@ -53,13 +53,10 @@ struct Options {
 /// must end.
 [[nodiscard]] std::optional<int> parse_options(int argc, char** argv, Options& options);
 
-/// Settings of a picture from the options, without what is fitted to a source: ranges, lengths of
-/// arrows, the view. Throws Error where the source lacks the quantity.
+/// Settings of a picture from the options, without what is fitted to a source: lengths of arrows,
+/// the view, a range that is not given. Throws Error where the source lacks the quantity.
 [[nodiscard]] RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
                                              double scale);
-
-/// A range from the displayed unit to that of the value.
-[[nodiscard]] Range in_unit_of(const Range& shown, Quantity quantity, const PressureUnit& unit);
 
 /// Settings of the first picture from the options, with defaults fitted to up to 16 evenly spaced
 /// frames; the view is not set. Throws Error where the source lacks the quantity.

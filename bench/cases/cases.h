@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/session.h"
+#include "bench/timing/solve_timing.h"
 
 namespace pillarfield::bench {
 

@@ -1,14 +1,32 @@
 #pragma once
 
+#define CL_HPP_ENABLE_EXCEPTIONS
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#include <CL/opencl.hpp>
+#include <cstdlib>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "base/large_pages.h"
 #include "bench/frames.h"
 #include "bench/timing/copy_source.h"
-#include "device/device_state.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield::bench {
+
+/// An OpenCL device of the library, opened once more.
+struct OpenedDevice {
+  explicit OpenedDevice(const Device& opened);
+  [[nodiscard]] cl::Program program(const std::string& source) const;
+
+  cl::Device device;
+  cl::Context context;
+};
+
+struct FreePages {
+  void operator()(std::byte* memory) const { std::free(memory); }
+};
 
 /// The copy bandwidth limit of a plan's solve: a kernel of the solve's launch geometry that reads
 /// and writes the bytes of the solve and computes nothing. It reads the frames in place where the
@@ -27,6 +45,7 @@ class CopyKernel {
   /// Output of the last frame: the result planes one after the other, then the status bytes.
   [[nodiscard]] std::vector<std::byte> results() const;
 
+  [[nodiscard]] const OpenedDevice& device() const { return device_; }
   // Inputs of the kernel.
   [[nodiscard]] const cl::Buffer& frame(std::size_t index) const { return frames_.at(index); }
   [[nodiscard]] const cl::Buffer& calibration() const { return calibration_.buffer; }
@@ -35,7 +54,8 @@ class CopyKernel {
  private:
   /// A buffer in large pages, as in the solver.
   struct Planes {
-    LargePages pages;  ///< null where the device does not share the host's memory
+    std::unique_ptr<std::byte[], FreePages>
+        pages;  ///< null where the device does not share the host's memory
     cl::Buffer buffer;
   };
   struct Slot {
@@ -50,8 +70,7 @@ class CopyKernel {
   [[nodiscard]] Slot make_slot(const cl::Program& program) const;
   void start(Slot& slot);
 
-  cl::Context context_;
-  cl::Device device_;
+  OpenedDevice device_;
   Skin skin_;
   Streams streams_;
   std::vector<cl::Buffer> frames_;
@@ -71,6 +90,8 @@ class EmptyLaunch {
   void run(int launches);
 
  private:
+  explicit EmptyLaunch(const OpenedDevice& opened);
+
   cl::CommandQueue queue_;
   cl::Kernel kernel_;
 };

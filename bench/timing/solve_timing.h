@@ -1,16 +1,34 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/frame_solver.h"
-#include "bench/session.h"
 #include "bench/timing/copy_kernel.h"
 #include "bench/timing/interleaved_timing.h"
-#include "bench/timing/measurement.h"
+#include "pillarfield/processor.h"
 
 namespace pillarfield::bench {
+
+/// Devices and timing length of all cases of a run.
+struct Session {
+  Device solver;  ///< solves; if none was named, small skins are the host's
+  Device device;  ///< of OpenCL: copies, and the paper's solve with one lane
+  TimingLength length;
+};
+
+/// Result of a case.
+struct Measurement {
+  double seconds = 0;  ///< median time of a frame
+  std::map<std::string, double> counters;
+  std::string label;
+};
+
+/// Registers a case. `measure` runs when the case is selected; an exception becomes its error.
+void add_case(const std::string& name, std::function<Measurement()> measure);
 
 /// The copy kernels of a plan, of every kind, as candidates of a timing.
 class CopyEntries {

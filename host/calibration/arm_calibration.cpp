@@ -245,9 +245,12 @@ StepKind arm_step() {
       "Frames of bodies at rest that press straight down, one file per placement", run_arm};
   step.only = SkinLayout::pillars;
   step.examples = {
-      kSimulateIdle,       kSimulatePressed,
-      kTareIdle,           "simulate scenes/leaning_skin_pressed.toml --uncalibrated -o balls.h5",
-      kEquilibratePressed, "calibrate arm balls.h5 --calibration equal.h5 -o arm.h5"};
+      kSimulateIdle,
+      kSimulatePressed,
+      kTareIdle,
+      "simulate scenes/calibration/leaning_skin_pressed.toml --uncalibrated -o balls.h5",
+      kEquilibratePressed,
+      "calibrate arm balls.h5 --calibration equal.h5 -o arm.h5"};
   return step;
 }
 

@@ -233,9 +233,9 @@ StepKind bending_step() {
   step.arguments.front().is_nonzero = true;
   step.examples = {kSimulateIdle,
                    kTareIdle,
-                   "simulate scenes/bent_skin_x.toml --uncalibrated -o x.h5",
-                   "simulate scenes/bent_skin_y.toml --uncalibrated -o y.h5",
-                   "simulate scenes/bent_skin_xy.toml --uncalibrated -o xy.h5",
+                   "simulate scenes/calibration/bent_skin_x.toml --uncalibrated -o x.h5",
+                   "simulate scenes/calibration/bent_skin_y.toml --uncalibrated -o y.h5",
+                   "simulate scenes/calibration/bent_skin_xy.toml --uncalibrated -o xy.h5",
                    ("calibrate bending x.h5 y.h5 xy.h5 --radius-mm 60,60,60 --axis-deg 90,0,45 "
                     "--calibration tared.h5 -o bending.h5")};
   return step;

@@ -304,8 +304,8 @@ StepKind faults_step() {
           "Smallest deviation of a changing prediction, in multiples of its noise [5]",
           {1e-6, 1e6})};
   step.examples = {kSimulateIdle,
-                   "simulate scenes/new_skin_rolled.toml --uncalibrated -o rolled.h5", kTareIdle,
-                   "calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5"};
+                   "simulate scenes/calibration/new_skin_rolled.toml --uncalibrated -o rolled.h5",
+                   kTareIdle, "calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5"};
   return step;
 }
 

@@ -429,12 +429,13 @@ StepKind leak_step() {
                    "Leaks between sensels and between pillars, from a fine tip on single pillars.",
                    "TIP", "Frames in which a fine tip presses one pillar after another", run_leak};
   step.only = SkinLayout::pillars;
-  step.examples = {kSimulateIdle,
-                   kTareIdle,
-                   "simulate scenes/leaking_skin_pressed.toml --uncalibrated -o pressed.h5",
-                   "simulate scenes/leaking_skin_tip.toml --uncalibrated -o tip.h5",
-                   kEquilibratePressed,
-                   "calibrate leak tip.h5 --calibration equal.h5 -o leak.h5"};
+  step.examples = {
+      kSimulateIdle,
+      kTareIdle,
+      "simulate scenes/calibration/leaking_skin_pressed.toml --uncalibrated -o pressed.h5",
+      "simulate scenes/calibration/leaking_skin_tip.toml --uncalibrated -o tip.h5",
+      kEquilibratePressed,
+      "calibrate leak tip.h5 --calibration equal.h5 -o leak.h5"};
   return step;
 }
 

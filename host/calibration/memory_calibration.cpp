@@ -331,14 +331,15 @@ StepKind memory_step() {
       "pressure", "FILE",
       "Log of the pressure of each file, in order: lines of time (s), pressure (kPa)", {})};
   step.arguments.front().kind = StepArgument::Kind::log;
-  step.examples = {kSimulateIdle,
-                   kTareIdle,
-                   "simulate scenes/creeping_skin_pressed.toml --uncalibrated -o pressed.h5",
-                   "simulate scenes/creeping_skin_cycles.toml --uncalibrated -o cycles.h5",
-                   "calibrate equilibrate pressed.h5 --pressure-kpa 187.5 --calibration tared.h5 "
-                   "-o equal.h5",
-                   "calibrate memory cycles.h5 --pressure scenes/creeping_skin_cycles.csv "
-                   "--calibration equal.h5 -o memory.h5"};
+  step.examples = {
+      kSimulateIdle,
+      kTareIdle,
+      "simulate scenes/calibration/creeping_skin_pressed.toml --uncalibrated -o pressed.h5",
+      "simulate scenes/calibration/creeping_skin_cycles.toml --uncalibrated -o cycles.h5",
+      "calibrate equilibrate pressed.h5 --pressure-kpa 187.5 --calibration tared.h5 "
+      "-o equal.h5",
+      "calibrate memory cycles.h5 --pressure scenes/calibration/creeping_skin_cycles.csv "
+      "--calibration equal.h5 -o memory.h5"};
   return step;
 }
 

@@ -242,7 +242,7 @@ StepKind shear_step() {
   step.examples = {kSimulateIdle,
                    kSimulatePressed,
                    kTareIdle,
-                   "simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5",
+                   "simulate scenes/calibration/new_skin_sheared.toml --uncalibrated -o sheared.h5",
                    kEquilibratePressed,
                    ("calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 "
                     "-o shear.h5")};

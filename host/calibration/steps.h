@@ -164,9 +164,9 @@ struct StepResult {
 
 // Commands of several examples.
 inline constexpr const char* kSimulateIdle =
-    "simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5";
+    "simulate scenes/calibration/new_skin_idle.toml --uncalibrated -o idle.h5";
 inline constexpr const char* kSimulatePressed =
-    "simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5";
+    "simulate scenes/calibration/new_skin_pressed.toml --uncalibrated -o pressed.h5";
 inline constexpr const char* kTareIdle = "calibrate tare idle.h5 -o tared.h5";
 inline constexpr const char* kEquilibratePressed =
     "calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration tared.h5 -o equal.h5";

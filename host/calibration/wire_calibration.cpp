@@ -352,9 +352,9 @@ StepKind wires_step() {
       StepArgument::word("tares", {"conduct", "offset"},
                          "How tares arise. conduct: unloaded sensels conduct; offset: the "
                          "converter adds it [as the frames show, or else conduct]")};
-  step.examples = {"simulate scenes/wired_skin_alone.toml --uncalibrated -o alone.h5",
-                   "simulate scenes/wired_skin_row.toml --uncalibrated -o row.h5",
-                   "simulate scenes/wired_skin_column.toml --uncalibrated -o column.h5",
+  step.examples = {"simulate scenes/calibration/wired_skin_alone.toml --uncalibrated -o alone.h5",
+                   "simulate scenes/calibration/wired_skin_row.toml --uncalibrated -o row.h5",
+                   "simulate scenes/calibration/wired_skin_column.toml --uncalibrated -o column.h5",
                    "calibrate wires alone.h5 row.h5 column.h5 --tile-rows 40 --tile-cols 40 -o "
                    "wires.h5"};
   return step;

@@ -90,7 +90,7 @@ struct Completion {
 
 namespace {
 
-void set_plan(LiveSinkInfo& info, const SolverPlan& plan) {
+void describe_plan(LiveSinkInfo& info, const SolverPlan& plan) {
   if (info.forces.contacts) set_sensor(*info.forces.contacts, plan);
   info.skin = plan.skin;
   info.sensel_type = plan.sensel_type;
@@ -105,7 +105,7 @@ LiveSinkInfo live_sink_info(const SolverPlan& plan, const std::string& device,
   LiveSinkInfo info;
   info.forces = file_info(plan, device, source);
   info.forces.contacts = contacts;
-  set_plan(info, plan);
+  describe_plan(info, plan);
   return info;
 }
 
@@ -117,13 +117,16 @@ struct LiveSession::State final : FrameStream, ForceSink {
         processor(solver),
         live_tare(plan, keeps_threshold),
         watch(plan),
-        info(std::move(described)) {}
+        info(std::move(described)) {
+    set_plan(plan);
+  }
 
   [[nodiscard]] const Skin& skin() const override { return source.skin(); }
   [[nodiscard]] SenselType sensel_type() const override { return source.sensel_type(); }
   [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) override;
   void append(const SolvedFrame& frame) override;
   void take_tare(const StreamedFrame& frame);
+  void set_plan(const SolverPlan& plan);
   [[nodiscard]] LiveEvent pass_tare_on(const SolverPlan& plan);
   void complete(Completion& completion);
   void look_at_contact(std::span<const std::uint8_t> status, SessionClock::time_point now);
@@ -161,7 +164,8 @@ struct LiveSession::State final : FrameStream, ForceSink {
   SessionClock::time_point last_report = last_arrival;
   std::uint64_t received_at_report = 0;
   double replay_hz = 0;         ///< over the last report
-  double share_in_contact = 0;  ///< of the elements that exist
+  std::size_t existing = 0;     ///< elements that are not absent
+  double share_in_contact = 0;  ///< of those
   double covered = 0;           ///< part of about the last second in which contact covers the array
   SessionClock::time_point next_look = last_arrival;
 };
@@ -211,10 +215,15 @@ void LiveSession::State::take_tare(const StreamedFrame& frame) {
   events.push_back(std::move(event));
 }
 
+void LiveSession::State::set_plan(const SolverPlan& plan) {
+  describe_plan(info, plan);
+  existing = plan.skin.elements() - count_absent_elements(plan.calibration, plan.skin);
+}
+
 LiveEvent LiveSession::State::pass_tare_on(const SolverPlan& plan) {
   LiveEvent event = {.note = live_tare.note()};
   const std::scoped_lock lock(mutex);
-  set_plan(info, plan);
+  set_plan(plan);
   covered = 0;
   if (recording == nullptr) return event;
   if (std::exchange(recording_awaits_tare, false)) {
@@ -240,9 +249,8 @@ void LiveSession::State::look_at_contact(std::span<const std::uint8_t> status,
                                          SessionClock::time_point now) {
   if (now < next_look) return;
   next_look = now + std::chrono::milliseconds(50);
-  const auto present = static_cast<double>(info.skin.elements() -
-                                           count_absent_elements(info.calibration, info.skin));
-  share_in_contact = static_cast<double>(count_in_contact(status)) / std::max(present, 1.0);
+  share_in_contact = static_cast<double>(count_in_contact(status)) /
+                     static_cast<double>(std::max<std::size_t>(existing, 1));
   covered += ((share_in_contact >= kCovered ? 1 : 0) - covered) / 10;
 }
 

@@ -1,4 +1,4 @@
-"""Pictures in the style of the documents: SVG, and PNG of twice as many pixels each way."""
+"""Pictures in the style of the documents: PNG of twice as many pixels each way."""
 
 # Colours of Okabe and Ito, which colour-blind readers tell apart.
 BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -22,8 +22,6 @@ STYLE = {
     "lines.linewidth": 1.5,
     "lines.markersize": 4,
     "savefig.facecolor": "white",
-    "svg.fonttype": "none",
-    "svg.hashsalt": "pillarfield",
 }
 
 
@@ -49,10 +47,9 @@ def plain_ticks(axis, ticks=None, labels=None, digits=(1, 2, 5)):
 
 
 def save(figure, folder, name):
-    """Writes NAME.svg and NAME.png; a palette makes the latter a quarter as large."""
+    """Writes NAME.png; a palette makes it a quarter as large."""
     from PIL import Image
     folder.mkdir(parents=True, exist_ok=True)
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
     figure.savefig(folder / f"{name}.png", dpi=200)
     image = Image.open(folder / f"{name}.png").convert("RGB").quantize(64)
     image.save(folder / f"{name}.png", optimize=True)

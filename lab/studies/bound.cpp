@@ -1,14 +1,12 @@
 #include "lab/studies/bound.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
-#include <vector>
+#include <random>
 
-#include "base/random.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield::bound {
@@ -25,10 +23,7 @@ constexpr std::array<Row, 4> kModel = {{
     {kCos45, -kCos45, 1},
 }};
 
-std::array<double, 4> readings_of(Force force, const PillarSensor& sensor) {
-  const auto v = double_precision::model_readings(force, sensor.counts_per_newton);
-  return {v.v1, v.v2, v.v3, v.v4};
-}
+constexpr std::uint32_t kPillarsOfRow = 100;  ///< of the frame that is solved
 
 /// Trace of the inverse of a symmetric matrix: the sum of its principal minors over its
 /// determinant.
@@ -42,54 +37,56 @@ double trace_of_inverse(const std::array<Row, 3>& m) {
   return (minor_of(0, 1) + minor_of(1, 2) + minor_of(0, 2)) / determinant;
 }
 
-int usable_bits(const std::array<double, 4>& v, const Sensels& sensels) {
-  int bits = 0;
-  for (std::size_t n = 0; n < 4; ++n) bits |= v[n] > sensels[n].threshold_counts ? 1 << n : 0;
-  return bits;
+/// A frame of pillars that all have V `v`, each with other noise.
+FrameBuffer noisy_frame(const std::array<double, 4>& v, const SolverPlan& plan,
+                        std::uint64_t number) {
+  FrameBuffer frame(SenselType::f32, plan.skin.rows, plan.skin.cols);
+  const auto readings = frame.readings<float>();
+  std::mt19937_64 engine(number);
+  std::normal_distribution<double> noise(0, plan.noise_counts.value_or(0));
+  for (std::size_t pillar = 0; pillar < plan.skin.pillars(); ++pillar) {
+    for (std::size_t n = 0; n < 4; ++n) {
+      readings[place_of(pillar, n, kPillarsOfRow)] =
+          static_cast<float>(std::max(0.0, v[n]) + noise(engine));
+    }
+  }
+  return frame;
 }
 
-Sensels all_alike(const PillarSensor& sensor) { return {sensor, sensor, sensor, sensor}; }
-
-/// Readings of one pillar, again and again, each time with other noise.
-class NoisyReadings {
- public:
-  NoisyReadings(const std::array<double, 4>& v, double noise_counts, std::uint64_t number)
-      : v_(v), noise_counts_(noise_counts), number_(number), noise_(4 * kBlock) {}
-
-  [[nodiscard]] std::array<double, 4> next() {
-    const std::size_t at = drawn_++ % kBlock;
-    if (at == 0) draw_block();
-    std::array<double, 4> raw{};
-    for (std::size_t n = 0; n < 4; ++n) {
-      raw[n] = std::max(0.0, v_[n]) + noise_counts_ * noise_[4 * at + n];
-    }
-    return raw;
-  }
-
- private:
-  static constexpr std::size_t kBlock = 1 << 14;
-  static constexpr std::uint64_t kSeed = 20;
-
-  void draw_block() {
-    const auto block = static_cast<std::uint32_t>(drawn_ / kBlock);
-    random::fill_normal({kSeed, random::Stream::noise, number_, block}, noise_);
-  }
-
-  std::array<double, 4> v_;
-  double noise_counts_;
-  std::uint64_t number_;
-  std::size_t drawn_ = 0;
-  std::vector<float> noise_;
-};
-
-double squared_error(const Force& estimate, const Force& truth) {
-  const double x = estimate.shear_x - truth.shear_x;
-  const double y = estimate.shear_y - truth.shear_y;
-  const double z = estimate.normal - truth.normal;
-  return x * x + y * y + z * z;
+SolverPlan plan_of(const PillarSensor& sensor, Estimator estimator, int draws) {
+  SolverPlan plan;
+  plan.skin.cols = 2 * kPillarsOfRow;
+  plan.skin.rows = 2 * static_cast<std::uint32_t>(draws) / kPillarsOfRow;
+  plan.skin.counts_per_newton = sensor.counts_per_newton;
+  plan.skin.threshold_counts = sensor.threshold_counts;
+  plan.sensel_type = SenselType::f32;
+  plan.noise_counts = sensor.noise_counts;
+  plan.estimator = estimator;
+  return plan;
 }
 
 }  // namespace
+
+std::array<double, 4> model_readings(Force force, double counts_per_newton) {
+  std::array<double, 4> v{};
+  for (std::size_t n = 0; n < 4; ++n) {
+    v[n] = counts_per_newton * (kModel[n][0] * force.shear_x + kModel[n][1] * force.shear_y +
+                                kModel[n][2] * force.normal);
+  }
+  return v;
+}
+
+std::size_t place_of(std::size_t pillar, std::size_t sensel, std::size_t pillar_cols) {
+  const std::size_t row = 2 * (pillar / pillar_cols) + sensel / 2;
+  const bool is_right = sensel == 0 || sensel == 3;
+  return 2 * (row * pillar_cols + pillar % pillar_cols) + (is_right ? 1 : 0);
+}
+
+std::uint8_t bits_above(const std::array<double, 4>& v, double counts) {
+  unsigned bits = 0;
+  for (std::size_t n = 0; n < 4; ++n) bits |= v[n] > counts ? 1U << n : 0U;
+  return static_cast<std::uint8_t>(bits);
+}
 
 Force force_from(double magnitude_n, double theta_rad, double phi_rad) {
   const double shear = magnitude_n * std::sin(theta_rad);
@@ -107,60 +104,46 @@ double information(double deviations) {
 }
 
 double least_error(Force force, const PillarSensor& sensor) {
-  return least_error(force, all_alike(sensor));
-}
-
-double least_error(Force force, const Sensels& sensels) {
-  const double unit = sensels[0].noise_counts;  // So that no weight is far from 1.
-  const std::array<double, 4> v = readings_of(force, sensels[0]);
+  const std::array<double, 4> v = model_readings(force, sensor.counts_per_newton);
   std::array<Row, 3> sum{};
   for (std::size_t n = 0; n < 4; ++n) {
     if (v[n] <= 0) continue;  // V below zero carries no information.
-    const double noise = sensels[n].noise_counts;
-    const double share = information((v[n] - sensels[n].threshold_counts) / noise);
-    const double weight = share * (unit / noise) * (unit / noise);
+    const double weight = information((v[n] - sensor.threshold_counts) / sensor.noise_counts);
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) sum[i][j] += weight * kModel[n][i] * kModel[n][j];
     }
   }
-  return unit / sensels[0].counts_per_newton * std::sqrt(trace_of_inverse(sum));
+  return sensor.noise_counts / sensor.counts_per_newton * std::sqrt(trace_of_inverse(sum));
 }
 
 bool is_far_from_borders(Force force, const PillarSensor& sensor, double deviations) {
-  return is_far_from_borders(force, all_alike(sensor), deviations);
-}
-
-bool is_far_from_borders(Force force, const Sensels& sensels, double deviations) {
-  const std::array<double, 4> v = readings_of(force, sensels[0]);
-  for (std::size_t n = 0; n < 4; ++n) {
-    const double distance = std::abs(v[n] - sensels[n].threshold_counts);
-    if (!(distance >= deviations * sensels[n].noise_counts)) return false;
-  }
-  return true;
+  const double least = deviations * sensor.noise_counts;
+  return std::ranges::all_of(model_readings(force, sensor.counts_per_newton), [&](double each) {
+    return std::abs(each - sensor.threshold_counts) >= least;
+  });
 }
 
 int usable_sensels(Force force, const PillarSensor& sensor) {
-  return usable_sensels(force, all_alike(sensor));
-}
-
-int usable_sensels(Force force, const Sensels& sensels) {
-  const int bits = usable_bits(readings_of(force, sensels[0]), sensels);
-  return std::popcount(static_cast<unsigned>(bits));
+  return std::popcount(
+      bits_above(model_readings(force, sensor.counts_per_newton), sensor.threshold_counts));
 }
 
 RmsError rms_error(Force force, const PillarSensor& sensor, Estimator estimator, int draws,
                    std::uint64_t number) {
-  const std::array<double, 4> v = readings_of(force, sensor);
-  const int expected = usable_bits(v, all_alike(sensor));
-  NoisyReadings noisy(v, sensor.noise_counts, number);
+  const std::array<double, 4> v = model_readings(force, sensor.counts_per_newton);
+  const std::uint8_t expected = bits_above(v, sensor.threshold_counts);
+  const SolverPlan plan = plan_of(sensor, estimator, draws);
+  const ForceField solved = solve_on_host(plan, noisy_frame(v, plan, number).view());
   double sum = 0;
   double sum_of_rightly_read = 0;
   int rightly_read = 0;
-  for (int draw = 0; draw < draws; ++draw) {
-    const auto estimate = estimate_pillar(noisy.next(), sensor, estimator);
-    const double squared = squared_error(estimate.force, force);
+  for (std::size_t i = 0; i < solved.elements(); ++i) {
+    const double x = double{solved.shear_x[i]} - force.shear_x;
+    const double y = double{solved.shear_y[i]} - force.shear_y;
+    const double z = double{solved.normal[i]} - force.normal;
+    const double squared = x * x + y * y + z * z;
     sum += squared;
-    if ((estimate.status & status::kUsable) != expected) continue;
+    if ((solved.status[i] & status::kUsable) != expected) continue;
     sum_of_rightly_read += squared;
     ++rightly_read;
   }

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lab/studies/bound.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/simulator.h"
-#include "simulation/ideal_readings.h"
-#include "solve/pillar_maths.h"
+#include "pillarfield/status.h"
 
 namespace pillarfield::coverage_study {
 namespace {
@@ -80,11 +80,10 @@ SolverPlan plan_for(const Simulator& simulator) {
 /// The usable bits that a pillar would have without noise.
 std::uint8_t bits_without_noise(const ForceField& truth, std::size_t pillar,
                                 const SolverPlan& plan) {
-  const auto v = double_precision::model_readings(
-      {truth.shear_x[pillar], truth.shear_y[pillar], truth.normal[pillar]},
-      plan.skin.counts_per_newton);
-  const double begins = plan.calibration.dead_zone.front() + plan.skin.threshold_counts;
-  return usable_bits({v.v1 - begins, v.v2 - begins, v.v3 - begins, v.v4 - begins});
+  const auto v =
+      bound::model_readings({truth.shear_x[pillar], truth.shear_y[pillar], truth.normal[pillar]},
+                            plan.skin.counts_per_newton);
+  return bound::bits_above(v, plan.calibration.dead_zone.front() + plan.skin.threshold_counts);
 }
 
 /// Effect of noise on the usable bits of a pillar.

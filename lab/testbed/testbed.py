@@ -211,7 +211,7 @@ def main():
     for field in dataclasses.fields(Parameters):
         parser.add_argument("--" + field.name.replace("_", "-"), type=field.type, default=field.default,
                             help=f"[{field.default}]")
-    parser.add_argument("--figures", type=Path, metavar="DIR", help="draw Figures 3, 4, 5 and 8 there, as SVG and PNG")
+    parser.add_argument("--figures", type=Path, metavar="DIR", help="draw Figures 3, 4, 5 and 8 there")
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     options = vars(parser.parse_args())
     folder, as_json = options.pop("figures"), options.pop("json")

@@ -44,6 +44,23 @@ class Processor(_core.Processor):
         super().__init__(plan, frames_in_flight, lent, contacts, device)
         self._in_flight = frames_in_flight
         self._submitted = 0
+        self._remember(plan)
+
+    def _remember(self, plan: _core.Plan) -> None:
+        """Keeps what frames need: each access to `plan` copies it, calibration and all."""
+        self._skin = plan.skin
+        self._sensel_type = plan.sensel_type
+        self._frame_interval_s = plan.frame_interval_s
+        self._solved_by = _core.SolvedBy(plan)
+
+    def set_tare(self, tare: Any) -> None:
+        """Replaces the tare, [R, C], counts, for the frames submitted from now on; of a Calibration, or a
+        step such as pf.calibrate.tare(frames), noise, threshold and all else too.
+
+        Raises Error if the plan has no tare (it may be zero) or the values do not fit.
+        """
+        super().set_tare(tare)
+        self._remember(self.plan)
 
     def submit(self, frame: Any, time_s: Optional[float] = None) -> None:
         """Starts to solve a frame, which it copies.
@@ -54,8 +71,8 @@ class Processor(_core.Processor):
         Raises Error if all frames are in flight or the frame does not fit.
         """
         if time_s is None:
-            time_s = getattr(frame, "time_s", self._submitted * self.plan.frame_interval_s)
-        readings = readings_of(getattr(frame, "readings", frame), self.plan.sensel_type)
+            time_s = getattr(frame, "time_s", self._submitted * self._frame_interval_s)
+        readings = readings_of(getattr(frame, "readings", frame), self._sensel_type)
         self.submit_readings(readings, time_s, getattr(frame, "missing", []))
         self._submitted += 1
 
@@ -112,8 +129,8 @@ class Processor(_core.Processor):
     def _field(self, planes: dict[str, Any]) -> ForceField:
         contacts = planes.pop("contacts", None)
         return ForceField._of(planes, np.asarray(planes.pop("times")),
-                              None if contacts is None else [contacts], self.plan.skin,
-                              _core.SolvedBy(self.plan))
+                              None if contacts is None else [contacts], self._skin,
+                              self._solved_by)
 
 
 class Contacts(_core.Tracker):

@@ -85,7 +85,7 @@ class Work(CommandTest):
             self.assertIn(words, text)
 
     def test_contact_everywhere_is_warned_of(self):
-        run("simulate", SCENES / "new_skin_pressed.toml", "-o", self.recording, "--uncalibrated",
+        run("simulate", SCENES / "calibration/new_skin_pressed.toml", "-o", self.recording, "--uncalibrated",
             "--frames", 2)
         with h5py.File(self.recording, "r+") as file:
             del file["truth"]  # recordings with truth are not warned of
@@ -98,7 +98,7 @@ class Work(CommandTest):
             self.assertIn(f"100.0 % of all pillars are in contact{cause}", messages)
 
     def test_a_region_without_pillars_has_no_figures(self):
-        run("simulate", SCENES / "hertz_press.toml", "-o", self.recording)
+        run("simulate", SCENES / "touch/hertz_press.toml", "-o", self.recording)
         run("solve", self.recording, "-o", self.forces)
         lines = run("compare", self.forces, self.recording).stdout.splitlines()
         rows = {line.split()[0]: line.split()[1:] for line in lines[4:10]}
@@ -122,7 +122,7 @@ class Work(CommandTest):
         self.assertIn("parity_test", solved["stages"])
 
     def test_contacts_resolve_ambiguous_pillars_by_their_friction(self):
-        run("simulate", SCENES / "ambiguous_contacts.toml", "-o", self.recording, "--frames", 1)
+        run("simulate", SCENES / "touch/ambiguous_contacts.toml", "-o", self.recording, "--frames", 1)
         normals = []
         for known in ((), ("--friction", 1.2), ("--friction-bound", 1.5), ("--friction-prior", "3,0.1")):
             solved = run_json("solve", self.recording, "-o", self.forces, "--estimator", "contact", *known)
@@ -143,7 +143,7 @@ class Work(CommandTest):
         self.assertEqual((facts["frames"], facts["estimator"], facts["source"]),
                          (6, "direct", "ball.h5"))
         self.assertEqual(run_json("info", self.scene)["title"], "A ball")
-        run("simulate", SCENES / "curved_skin.toml", "-o", self.recording, "--frames", 1, "--overwrite")
+        run("simulate", SCENES / "touch/curved_skin.toml", "-o", self.recording, "--frames", 1, "--overwrite")
         facts = run_json("info", self.recording)
         self.assertEqual((facts["surface"], facts["surface_radius_mm"]), ("cylinder", 60))
 

@@ -17,7 +17,7 @@ class Contacts(CommandTest):
         self.forces = self.folder / "forces.h5"
         self.csv = self.folder / "contacts.csv"
         self.json = self.folder / "contacts.json"
-        run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 40)
+        run("simulate", SCENES / "touch/several_contacts.toml", "-o", self.recording, "--frames", 40)
 
     def solve(self, *arguments):
         return run_json("solve", self.recording, "-o", self.forces, "--minimum-pillars", 4,
@@ -78,7 +78,7 @@ class Contacts(CommandTest):
 
     def test_given_friction_is_that_of_contacts(self):
         scene = self.folder / "frictional.toml"
-        text = (SCENES / "several_contacts.toml").read_text(encoding="utf-8")
+        text = (SCENES / "touch/several_contacts.toml").read_text(encoding="utf-8")
         for estimator in ("direct", "contact"):
             options = ("--estimator", estimator, "--noise", 0.5)
             self.assertEqual(self.friction_of(*options, "--friction", 1.5),

@@ -214,23 +214,6 @@ class DamagedTest(unittest.TestCase):
             self.check(file)
             file.unlink()
 
-    def test_killed_writer_is_read(self):
-        """Flushed frames of a killed writer are readable."""
-        part = self.folder / "killed.h5.part"
-        with h5py.File(part, "w", libver="latest") as file:
-            file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
-            raw = file.create_dataset("frames/raw", (0, 4, 4), "u1", maxshape=(None, 4, 4),
-                                      chunks=(2, 4, 4), compression="gzip")
-            times = file.create_dataset("frames/time", (0,), "f8", maxshape=(None,), chunks=(2,))
-            file.swmr_mode = True
-            raw.resize(5, 0)
-            times.resize(5, 0)
-            raw[:], times[:] = 7, numpy.arange(5.0)
-            file.flush()
-            outcome = run("info", part)
-        self.assertIn("frames               5", outcome.stdout)
-        part.unlink()
-
     def test_trusted(self):
         """--trust-input reads sound files."""
         for command in (["info", self.recording], ["compare", self.forces, self.recording],

@@ -147,7 +147,7 @@ class WrongCommandLines(CommandTest):
             self.assertEqual(run(word).stdout, run("--help").stdout)
 
     def test_a_remedy_works_as_it_is_typed(self):
-        scene, recording = SOURCE / "scenes/spin.toml", self.folder / "spin.h5"
+        scene, recording = SOURCE / "scenes/touch/spin.toml", self.folder / "spin.h5"
         for command in (["solve", scene, "-o", "f.h5"], ["doctor", scene], ["calibrate", "tare", scene, "-o", "t.h5"]):
             line = self.assert_fails(*command, names=["is a scene"])
             run(*shlex.split(line.split("simulate it first: pillarfield ")[1]), cwd=self.folder)
@@ -174,7 +174,7 @@ class WrongCommandLines(CommandTest):
 
     def test_a_former_name_works_with_a_note(self):
         old = self.folder / "old.toml"
-        old.write_text((SOURCE / "scenes/rough_ball.toml").read_text().replace("[[indenter]]", "[[body]]"))
+        old.write_text((SOURCE / "scenes/touch/rough_ball.toml").read_text().replace("[[indenter]]", "[[body]]"))
         messages = run("simulate", old, "-o", self.folder / "old_name.h5", "--frames", 2, "-q").stderr
         self.assertRegex(messages, r"\A.*old.toml: warning: \[\[body\]\] is now \[\[indenter\]\]; .*\n\Z")
 
@@ -183,7 +183,7 @@ class Numbers(CommandTest):
     """Every numeric option of every command refuses other text."""
 
     def test_other_text_is_refused(self):
-        scene = SOURCE / "scenes/spin.toml"
+        scene = SOURCE / "scenes/touch/spin.toml"
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
         needed = {"simulate": [scene, "-o", output], "stream": [recording], "info": [recording], "doctor": [recording],

@@ -1,6 +1,5 @@
 """Plain data: .npy, .npz, .mat, tables of numbers and HDF5 datasets give the forces of the same recording."""
 
-import importlib.util
 import itertools
 import json
 import pickle
@@ -9,10 +8,10 @@ import struct
 import subprocess
 import sys
 import unittest
-import zlib
 
 import h5py
 import numpy as np
+from PIL import Image
 
 from command import PROGRAM, CommandTest, run, run_json
 
@@ -193,21 +192,6 @@ class PlainData(CommandTest):
         self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), "--dataset", "frames/raw",
                           names=["is a pillarfield-recording", "leave out"])
 
-    def test_tables(self):
-        frames, path = readings(), self.path("table.csv")
-        np.savetxt(path, frames[1], fmt="%d", delimiter=",", header="one frame")
-        self.assert_solved(path, frames=slice(1, 2), times=[0])
-        with path.open("w") as file:
-            for frame in frames:
-                np.savetxt(file, frame)
-                file.write("\n")
-        self.assert_solved(path, "--rate", 100)
-        np.savetxt(path, np.hstack([np.arange(5)[:, None] / 100, frames.reshape(5, -1)]), delimiter=";",
-                   header="time;" + ";".join(f"s{i}" for i in range(48)), comments="")
-        self.assert_solved(path, "--shape", "6x8")
-        np.savetxt(path, frames.reshape(5, -1), delimiter="\t", fmt="%d")
-        self.assert_solved(path, "--shape", "6x8", "--rate", 100)
-
     def test_columns_of_a_table(self):
         frames, path = readings().reshape(5, -1), self.path("table.csv")
         table = np.hstack([np.arange(5)[:, None], frames, np.arange(5)[:, None] / 100, frames.sum(1, keepdims=True)])
@@ -220,49 +204,12 @@ class PlainData(CommandTest):
         self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), "--columns", "2-5",
                           names=["leave out --columns"])
 
-    def test_tables_of_row_numbers_and_times(self):
-        frames, path = readings().reshape(5, -1), self.path("table.csv")
-        header = "," + ",".join(str(column) for column in range(48))
-        stamps = [f"2024-05-01 12:00:00.{10 * n:03}000" for n in range(5)]
-        for index, times, rate in ((range(5), np.arange(5) / 100, ("--rate", 100)),
-                                   (stamps, 1714564800 + np.arange(5) / 100, ())):
-            lines = [f"{n}," + ",".join(map(str, frame)) for n, frame in zip(index, frames)]
-            path.write_text("\n".join([header, *lines, ""]))
-            self.assert_solved(path, "--shape", "6x8", *rate, times=times)
-
-    def test_matlab_files(self):
-        """Bytes of a file that MATLAB's manual describes: a cell of a double, stored as uint16."""
-        def element(kind, data):
-            return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
-
-        def matrix(kind, shape, name, content):
-            return element(14, element(6, struct.pack("<II", kind, 0)) + element(5, struct.pack(f"<{len(shape)}i", *shape))
-                           + element(1, name) + content)
-
-        numbers = element(4, readings("<u2").transpose(1, 2, 0).tobytes("F"))
-        variable = zlib.compress(matrix(1, (1, 1), b"pads", matrix(6, (6, 8, 5), b"", numbers)))
-        head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x0100, 0x4d49)
-        path = self.path("pads.mat")
-        path.write_bytes(head + struct.pack("<II", 15, len(variable)) + variable)
-        for dataset in ((), ("--dataset", "pads{1}")):
-            self.assert_solved(path, "--rate", 100, "--axes", "rows,columns,frames", *dataset)
-        self.assert_fails("solve", path, "-o", self.path("f.h5"), "--dataset", "pads", names=["it has pads{1}"])
-
     def test_a_recording_without_times(self):
         with h5py.File(self.recording, "r+") as file:
             times = file["frames/time"][:]
             del file["frames/time"]
         self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), names=["--rate"])
         np.testing.assert_array_equal(self.solve(self.recording, "--rate", 100)[2], times)
-        with h5py.File(self.recording, "r+") as file:
-            file["frames/time"] = [0, 1, 3, 2, 4.0]
-        solve = ("solve", self.recording, "-o", self.path("f.h5"), "--overwrite")
-        self.assertIn("1 time steps back, first at frame 3", run(*solve).stderr)
-        with h5py.File(self.path("f.h5")) as file:
-            np.testing.assert_array_equal(file["force/time"], [0, 1, 3, 2, 4])
-        self.assertIn("0.01 s apart", run(*solve, "--rate", 100).stderr)
-        with h5py.File(self.path("f.h5")) as file:
-            np.testing.assert_allclose(file["force/time"], times)
 
     def test_recordings_of_other_types(self):
         for dtype in ("i2", "i4", "f8", ">i8"):
@@ -406,11 +353,9 @@ class PlainData(CommandTest):
             (frames, text(lambda: json.dumps(frames.tolist()).encode())),
             (lines, text(lambda: ("<log>" + "".join(f"<f>{' '.join(map(str, x))}</f>" for x in lines) + "</log>").encode())),
         ]
-        if importlib.util.find_spec("PIL"):
-            from PIL import Image
-            pages = [Image.fromarray(frame) for frame in frames]
-            cases.append((frames, lambda: pages[0].save(path, "TIFF", save_all=True, append_images=pages[1:])))
-            cases.append((frames[:1], lambda: pages[0].save(path, "PNG")))
+        pages = [Image.fromarray(frame) for frame in frames]
+        cases.append((frames, lambda: pages[0].save(path, "TIFF", save_all=True, append_images=pages[1:])))
+        cases.append((frames[:1], lambda: pages[0].save(path, "PNG")))
         for expected, write in cases:
             path.unlink(missing_ok=True)
             write()

@@ -61,7 +61,7 @@ class SolvedScene {
 
 /// Noise of half a count, rounding, and a threshold above the edge's readings.
 TEST(Scenes, SeveralContactsBearTheirLoads) {
-  SolvedScene scene("several_contacts.toml");
+  SolvedScene scene("touch/several_contacts.toml");
   std::set<std::uint64_t> ids;
   for (std::uint64_t index = 20; index < 95; index += 5) {
     const FrameContacts& frame = scene.frame(index);
@@ -95,7 +95,7 @@ TEST(Scenes, SeveralContactsBearTheirLoads) {
 
 /// A spin has no resultant shear, but torque and slip.
 TEST(Scenes, SpinSlidesThoughItsShearCancels) {
-  SolvedScene scene("spin.toml");
+  SolvedScene scene("touch/spin.toml");
   const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
   EXPECT_EQ(contact.slip, SlipState::sliding);
   EXPECT_NEAR(*contact.friction, 1.6, 0.03);
@@ -105,7 +105,7 @@ TEST(Scenes, SpinSlidesThoughItsShearCancels) {
 }
 
 TEST(Scenes, PartialSlipAlongAnAxisShowsAFrictionOfWideDeviation) {
-  SolvedScene scene("partial_slip.toml");
+  SolvedScene scene("touch/partial_slip.toml");
   const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
   ASSERT_TRUE(contact.friction);
   EXPECT_NEAR(*contact.friction, 1.6, 1.96 * *contact.friction_deviation);

@@ -46,7 +46,7 @@ struct DamagedFile {
   std::vector<std::string> message;
 };
 
-/// fuzz_corpus and cli_damaged read those on which HDF5 itself crashes or loops.
+/// lab_fuzz_corpus and cli_damaged read those on which HDF5 itself crashes or loops.
 const DamagedFile kRefused[] = {
     {"recording/ext_link_fifo.h5", read_recording_whole, {"is a link", "another file"}},
     {"forces/fc_swmr_loop.h5", read_forces_whole, {"/force/", "1099511627776"}},

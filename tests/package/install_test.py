@@ -61,7 +61,7 @@ class Examples(unittest.TestCase):
             self.assertAlmostEqual(total, 0.5 * pressed, delta=0.02)
 
     def test_a_simulated_scene_and_its_contacts(self):
-        errors = run("examples/simulate", SOURCE / "scenes/spin.toml", "spin.h5")
+        errors = run("examples/simulate", SOURCE / "scenes/touch/spin.toml", "spin.h5")
         rms = {m[1]: float(m[2]) for m in re.finditer(r"region (\d): .* error ([\d.]+) N", errors)}
         self.assertLess(rms["1"], 0.001)
         self.assertGreater(rms["3"], rms["1"])

@@ -47,7 +47,7 @@ class Links(unittest.TestCase):
 
     def test_every_scene_is_in_the_gallery(self):
         shown = set(re.findall(r"^`scenes/(.*?)`\.", (SOURCE / "docs/gallery.md").read_text(), re.MULTILINE))
-        self.assertEqual(shown, {path.name for path in (SOURCE / "scenes").glob("*.toml")})
+        self.assertEqual(shown, {str(path.relative_to(SOURCE / "scenes")) for path in (SOURCE / "scenes").rglob("*.toml")})
 
     def test_the_menu_has_every_page(self):
         menu = re.findall(r"@ref ([\w-]+)", (SOURCE / "docs/site/layout.xml").read_text())

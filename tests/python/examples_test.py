@@ -73,7 +73,7 @@ class Examples(unittest.TestCase):
 
     def test_the_node_for_ros2(self):
         """That of docs/ros2.md against a live stream, with a stand-in for ROS 2."""
-        scene = SOURCE / "scenes/slide_and_spin.toml"
+        scene = SOURCE / "scenes/touch/slide_and_spin.toml"
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.bind(("127.0.0.1", 0))
             port = str(probe.getsockname()[1])

@@ -55,6 +55,14 @@ class Ring(unittest.TestCase):
                 del forces
         self.assertLessEqual(len(places), 2)  # two slots, again and again
 
+    def test_frames_copy_no_plan(self):
+        """A copy of the plan takes longer than a frame of a large skin."""
+        class WithoutPlan(pf.Processor):
+            plan = None
+        with WithoutPlan(pf.Plan(pf.Skin(8, 12, counts_per_newton=320, layout="pillars"))) as processor:
+            processor.submit(np.full((8, 12), 32, np.uint8))
+            self.assertEqual(processor.receive().skin.rows, 8)
+
     def test_order_of_calls(self):
         processor = pf.Processor(self.plan, frames_in_flight=1)
         self.assertIsNone(processor.try_receive())

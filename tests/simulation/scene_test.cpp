@@ -23,7 +23,7 @@ const std::filesystem::path kScenes = PILLARFIELD_SCENES;
 
 std::vector<std::filesystem::path> shipped_scenes() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kScenes)) {
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
@@ -254,7 +254,7 @@ TEST(SceneSurface, SamplesAHeightMapAtThePillars) {
         "skin.pillars = [8, 20]\n[surface]\nshape = \"height_map\"\nheight_map = "
         "\"key.npy\"\nheight_map_size_mm = " +
             size + "\nheight_map_depth_mm = 1.5\n",
-        std::string(PILLARFIELD_SCENES) + "/s.toml");
+        std::string(PILLARFIELD_SCENES) + "/touch/s.toml");
   };
   const Simulator simulator(scene("[28, 12]"));
   const Surface surface = simulator.scene().skin.surface.value();

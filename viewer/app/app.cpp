@@ -10,7 +10,17 @@
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/processor.h"
-#include "viewer/app/application.h"
+#include "viewer/app/export/file_writer.h"
+#include "viewer/app/input/actions.h"
+#include "viewer/app/input/gui_input.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/source/source_feed.h"
+#include "viewer/app/source/user_settings.h"
+#include "viewer/app/window/gui.h"
+#include "viewer/app/window/presenter.h"
+#include "viewer/app/window/redraws.h"
+#include "viewer/app/window/style.h"
+#include "viewer/app/window/window.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -24,7 +34,91 @@ void prepare_devices() {
   }
 }
 
-}  // namespace
+/// True if the options set no view other than the whole skin.
+bool asks_for_whole_skin(const Options& options) {
+  return options.zoom == 1 && !options.centre_mm && !options.azimuth && !options.elevation;
+}
+
+Presenter::Place place_in_window(const Viewport& area) {
+  return {{static_cast<int>(area.x), static_cast<int>(area.y)},
+          {static_cast<std::uint32_t>(area.width), static_cast<std::uint32_t>(area.height)}};
+}
+
+/// The window and what it needs; the order of members is the order of construction.
+class Application {
+ public:
+  explicit Application(const Options& options);
+  // NOLINTNEXTLINE(bugprone-exception-escape): without memory the program ends anyway
+  ~Application() { close(); }
+  Application(const Application&) = delete;
+  Application& operator=(const Application&) = delete;
+  void run();
+
+ private:
+  [[nodiscard]] double scale() const {
+    return options_.scale > 0 ? options_.scale : window_.scale();
+  }
+  [[nodiscard]] Command command() { return {state_, place_, pending_}; }
+  [[nodiscard]] bool shows_source() const {
+    return state_.source.player != nullptr && feed_.loading() == nullptr && !at_start_;
+  }
+
+  // The source.
+  void open(const std::string& source);
+  void take_loaded();
+  void show(LoadedSource loaded);
+  void close();
+  void take_news();
+
+  // Input.
+  void wait();
+  void take_input();
+  void route_to_start_page(const InputEvent& event);
+  void serve();
+  void serve_open();
+  void show_start_page();
+  void keep_boxes();
+
+  // Drawing.
+  bool fit_to_window();
+  void arrange();
+  void draw();
+  void draw_source();
+  void draw_page();
+  void begin_gui_frame();
+  void measure(double begin_s, bool new_picture);
+  void watch_notice();
+  [[nodiscard]] Pixels pixels() const;
+  void print_statistics() const;
+
+  Options options_;  ///< of the open source
+  UserSettings user_;
+  StartChoices choices_;
+  bool at_start_ = false;  ///< the start page covers the source
+  Window window_;
+  gpu::Instance instance_;
+  vk::raii::SurfaceKHR surface_;
+  gpu::Device device_;
+  Presenter presenter_;
+
+  AppState state_;
+  SourceFeed feed_{state_, Window::wake};
+  FileWriter writer_{state_};
+  FieldPlace place_;
+  Screen screen_;
+  vk::Extent2D sized_for_;
+  Controls controls_;
+  GuiInput gui_input_;
+  PendingActions pending_;
+
+  Redraws redraws_;
+  DrawClock clock_;
+  std::string last_notice_;
+  bool source_was_given_ = false;  ///< on the command line
+  bool source_was_shown_ = false;
+  std::optional<RenderSettings> drawn_settings_;
+  double last_frame_s_ = 0;
+};
 
 Application::Application(const Options& options)
     : options_(options),
@@ -34,7 +128,7 @@ Application::Application(const Options& options)
       surface_(window_.make_surface(instance_)),
       device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
       presenter_(instance_, device_, *surface_, scale()) {
-  state_.settings.theme = options.look.theme;
+  state_.look.settings.theme = options.look.theme;
 }
 
 void Application::run() {
@@ -46,13 +140,68 @@ void Application::run() {
     take_loaded();
     take_input();
     take_news();
-    take_newest_field();
     if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
     serve();
   }
   user_.save();
   if (options_.statistics) print_statistics();
-  loading_.reset();
+  feed_.give_up();
+}
+
+/// Opens Options::source, or a source that the user chose.
+void Application::open(const std::string& source) {
+  options_.source = source;
+  feed_.open(options_, scale());
+  redraws_.input(Window::now_s());
+}
+
+void Application::take_loaded() {
+  try {
+    if (auto loaded = feed_.take_loaded()) show(std::move(*loaded));
+  } catch (const Error& error) {
+    if (state_.source.player == nullptr && source_was_given_) throw;
+    state_.window.notice.fail(error.what());
+    redraws_.input(Window::now_s());
+  }
+}
+
+void Application::show(LoadedSource loaded) {
+  close();
+  AppState next;
+  next.source = std::move(loaded.source);
+  const SourceInfo& source = next.source.player->info();
+  fmt::print(stderr, "{}", warning_lines(source));
+  user_.add_recent(next.source.name);
+  next.look.settings = loaded.settings;
+  if (source_was_shown_) next.look.settings.theme = state_.look.settings.theme;
+  next.look.view_is_fitted = asks_for_whole_skin(options_);
+  next.marks.boxes = user_.boxes.on(source.skin);
+  next.window.show_panels = state_.window.show_panels;
+  next.window.folds_curves = state_.window.folds_curves;
+  next.window.show_counters = state_.window.show_counters;
+  state_ = std::move(next);
+  source_was_shown_ = true;
+  place_.source = &source;
+  arrange();
+  RenderSettings& settings = state_.look.settings;
+  settings.view =
+      first_view(options_, source, layout_of(place_.area.width, place_.area.height, settings));
+  drawn_settings_.reset();
+  feed_.begin(options_);
+  redraws_.input(Window::now_s());
+}
+
+void Application::close() {
+  writer_.stop();
+  presenter_.clear();
+  feed_.end();
+}
+
+/// Progress of other threads, and new fields.
+void Application::take_news() {
+  bool news = feed_.take_news();
+  if (shows_source()) news |= feed_.take_fields(controls_.is_dragging());
+  if (news) redraws_.field();
 }
 
 /// Waits for events; briefly, since a signal does not end a wait.
@@ -75,117 +224,214 @@ void Application::take_input() {
   if (damaged || !events.empty()) redraws_.input(Window::now_s());
   presenter_.gui().use();
   arrange();
-  for (const InputEvent& event : events) route(event);
+  for (const InputEvent& event : events) {
+    if (shows_source()) {
+      route(event, command(), screen_.field, controls_, gui_input_);
+    } else {
+      route_to_start_page(event);
+    }
+  }
   const auto drops = window_.take_drops();
   if (!drops.empty()) pending_.open = drops.front();
-}
-
-/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups take the
-/// mouse.
-void Application::route(const InputEvent& event) {
-  if (!shows_source()) return route_to_start_page(event);
-  if (const auto* key = std::get_if<KeyEvent>(&event)) return route_key(*key);
-  if (std::holds_alternative<TextEvent>(event)) {
-    if (ImGui::GetIO().WantTextInput) gui_input_.take(event);
-    return;
-  }
-  const bool covered = GuiInput::has_open_list();
-  const auto* const button = std::get_if<ButtonEvent>(&event);
-  const bool presses = button != nullptr && button->pressed;
-  const auto* const wheel = std::get_if<WheelEvent>(&event);
-  if (state_.show_help && (presses || wheel != nullptr)) {  // The help scrolls, or goes.
-    if (wheel != nullptr || contains(state_.help_place, button->pixel))
-      return gui_input_.take(event);
-    state_.show_help = false;
-    return;
-  }
-  const bool in_field = wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered;
-  if (!in_field) gui_input_.take(event);
-  if (!covered || (button != nullptr && !presses)) {
-    controls_.take(in_first_half(event), command());
-  }
 }
 
 void Application::route_to_start_page(const InputEvent& event) {
   gui_input_.take(event);
   const auto* const key = std::get_if<KeyEvent>(&event);
   if (key == nullptr || !key->pressed || key->unusable || ImGui::GetIO().WantTextInput) return;
-  if (key->key == GLFW_KEY_ESCAPE && state_.player != nullptr) at_start_ = false;
+  if (key->key == GLFW_KEY_ESCAPE && state_.source.player != nullptr) at_start_ = false;
   if (key->key == GLFW_KEY_Q) pending_.quit = true;
+}
+
+/// Performs the pending actions; an Error becomes a notice.
+void Application::serve() {
+  serve_open();
+  const PendingActions asked = std::exchange(pending_, PendingActions{});
+  pending_.quit = asked.quit;
+  keep_boxes();
+  if (asked.start) show_start_page();
+  if (!state_.source.field || !shows_source() || !drawn_settings_ || !asked.anything()) return;
+  writer_.serve(asked, place_, [this] { return pixels(); });
+  if (asked.truth) {
+    presenter_.clear();
+    drawn_settings_.reset();
+    try {
+      feed_.toggle_truth();
+    } catch (const Error& error) {
+      state_.window.notice.fail(error.what());
+    }
+  }
+  redraws_.input(Window::now_s());
+}
+
+void Application::serve_open() {
+  if (pending_.open.empty()) return;
+  feed_.give_up();  // It may wait for a sensor for ever.
+  options_.beside.clear();
+  options_.truth = false;
+  options_.first_frame = 0;
+  at_start_ = false;
+  open(std::exchange(pending_.open, {}));
 }
 
 /// Covers the source, which goes on, by the start page.
 void Application::show_start_page() {
   at_start_ = true;
   choices_.recent = user_.recent();
-  state_.notice.clear();
+  state_.window.notice.clear();
 }
 
-void Application::route_key(const KeyEvent& key) {
-  const bool types = ImGui::GetIO().WantTextInput;
-  if (types || !key.pressed) gui_input_.take(key);
-  if (key.pressed && GuiInput::has_open_list()) {
-    GuiInput::close_lists();
-  } else if (!types) {
-    controls_.take(key, command());
+/// Remembers the named boxes once they have changed.
+void Application::keep_boxes() {
+  if (state_.source.player == nullptr) return;
+  const Skin& skin = state_.source.player->info().skin;
+  if (user_.boxes.on(skin) == state_.marks.boxes) return;
+  user_.boxes.set(skin, state_.marks.boxes);
+  user_.save();
+}
+
+bool Application::fit_to_window() {
+  const vk::Extent2D size = window_.size();
+  if (size.width == 0 || size.height == 0) return false;
+  arrange();
+  std::vector<Presenter::Place> places;
+  if (shows_source()) places.push_back(place_in_window(place_.area));
+  if (shows_source() && state_.source.beside != nullptr) {
+    places.push_back(place_in_window(second_half(screen_.field)));
+  }
+  const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
+                    scale() == presenter_.gui().scale();
+  if (fits) return true;
+  sized_for_ = size;
+  drawn_settings_.reset();
+  return presenter_.resize(size, places, scale());
+}
+
+/// Computes the layout for the current window.
+void Application::arrange() {
+  const vk::Extent2D size = window_.size();
+  if (size.width == 0 || size.height == 0) return;
+  const bool alone = state_.source.beside == nullptr;
+  state_.look.settings.scale = scale();
+  state_.look.settings.colour_bar = alone;
+  const Viewport before = place_.area;
+  screen_ = divide(size.width, size.height, scale(), sides_of(state_));
+  place_.area = alone ? screen_.field : first_half(screen_.field);
+  const bool moved = before.width != place_.area.width || before.height != place_.area.height;
+  if (moved && state_.look.view_is_fitted && state_.source.player != nullptr) {
+    reset_view(state_, place_);
   }
 }
 
-/// The second picture has the view of the first, so a place in it means the one in the first.
-InputEvent Application::in_first_half(InputEvent event) const {
-  if (state_.beside == nullptr) return event;
-  const Viewport second = second_half(screen_.field);
-  std::visit(
-      [&](auto& each) {
-        if constexpr (requires { each.pixel; }) {
-          if (contains(second, each.pixel)) each.pixel.x -= second.x - screen_.field.x;
-        }
-      },
-      event);
-  return event;
+void Application::draw() {
+  if (shows_source()) return draw_source();
+  draw_page();
+  static_cast<void>(presenter_.draw({}));
+  redraws_.drawn(Window::now_s());
 }
 
-void Application::take_newest_field() {
-  if (!shows_source()) return;
-  if (!held_) {
-    taken_s_ = produced_s_;
-    held_ = taken_field();
-    if (held_ && state_.beside != nullptr) state_.beside->seek(held_->index);
+void Application::draw_source() {
+  const double begin_s = Window::now_s();
+  const ShownSource& source = state_.source;
+  const RenderSettings& settings = state_.look.settings;
+  if (state_.marks.hovered && !controls_.is_dragging()) controls_.hover(command());
+  begin_gui_frame();
+  draw_gui(command(), screen_, device_.name());
+  ImGui::Render();
+  const bool new_settings = drawn_settings_ != settings;
+  const bool new_picture = source.field && (feed_.has_field() || new_settings);
+  RenderSettings beside_settings = settings;
+  beside_settings.colour_bar = true;
+  std::vector<std::optional<Presenter::Picture>> pictures(presenter_.places().size());
+  if (new_picture) {
+    pictures[0].emplace(Presenter::Picture{*source.field, *place_.source, settings});
   }
-  take_beside();
-  if (!held_ || !is_in_step()) return;
-  take_field(state_, *std::exchange(held_, std::nullopt));
-  load_follower_.take_field(state_);
-  field_is_new_ = true;
-  redraws_.field();
+  if (pictures.size() > 1 && source.beside_field && (feed_.has_beside() || new_settings)) {
+    pictures[1].emplace(
+        Presenter::Picture{*source.beside_field, source.beside->info(), beside_settings});
+  }
+  if (!presenter_.draw(pictures)) return;
+  // Not before there is something to see, for who waits for it.
+  if (new_picture && !drawn_settings_) window_.set_title(place_.source->name + " – Pillarfield");
+  measure(begin_s, new_picture);
+  if (new_picture) drawn_settings_ = settings;
+  feed_.drawn();
+  watch_notice();
+  if (writer_.go_on([this] { return pixels(); })) redraws_.field();
 }
 
-/// True once the second source shows the frame of the one that is held.
-bool Application::is_in_step() const {
-  if (state_.beside == nullptr || state_.beside->live() != nullptr) return true;
-  const std::uint64_t last = state_.beside->info().frames - 1;
-  return state_.beside_field && state_.beside_field->index == std::min(held_->index, last);
+/// The page without a source.
+void Application::draw_page() {
+  begin_gui_frame();
+  const vk::Extent2D size = presenter_.size();
+  const Viewport all{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+  if (const Loading* const loading = feed_.loading()) {
+    loading_page(loading->options().source.filename().string(), loading->message(), all);
+  } else {
+    choices_.pictures = presenter_.gui().pictures();
+    const std::string chosen = start_page(choices_, all, state_.window.notice, scale());
+    if (!chosen.empty()) pending_.open = chosen;
+  }
+  ImGui::Render();
 }
 
-/// Progress of other threads, and of a sensor without frames.
-void Application::take_news() {
-  if (news_.exchange(false)) redraws_.field();
-  if (!shows_source()) return;
-  attend_survey();
-  attend_sensor();
+void Application::begin_gui_frame() {
+  presenter_.gui().use();
+  set_style(state_.look.settings.theme, scale());
+  const double now_s = Window::now_s();
+  gui_input_.begin_frame(now_s - last_frame_s_);
+  last_frame_s_ = now_s;
+  const vk::Extent2D size = presenter_.size();
+  ImGui::GetIO().DisplaySize =
+      ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
+  ImGui::NewFrame();
+}
+
+void Application::measure(double begin_s, bool new_picture) {
+  const double now_s = Window::now_s();
+  clock_.add(now_s, 1e3 * (now_s - begin_s), new_picture ? feed_.latency_ms() : std::nullopt);
+  DrawStatistics& draw = state_.window.draw;
+  draw = clock_.lately(now_s);
+  const FieldMemory& memory = presenter_.renderer().memory();
+  draw.in_place = memory.fields_in_place() > 0 && memory.bytes_copied() == 0;
+  redraws_.drawn(now_s);
+}
+
+void Application::watch_notice() {
+  const double now_s = Window::now_s();
+  Notice& notice = state_.window.notice;
+  if (notice != last_notice_) redraws_.notice(now_s);
+  if (redraws_.notice_is_old(now_s)) {
+    notice.clear();
+    redraws_.forget_notice();
+    redraws_.field();
+  }
+  last_notice_.assign(notice);
+}
+
+/// All pictures, side by side.
+Pixels Application::pixels() const {
+  Pixels all = read_pixels(device_, presenter_.image(0));
+  for (std::size_t i = 1; i < presenter_.places().size(); ++i) {
+    all = side_by_side(all, read_pixels(device_, presenter_.image(i)));
+  }
+  return all;
 }
 
 void Application::print_statistics() const {
-  const PlayerStatistics played =
-      state_.player == nullptr ? PlayerStatistics{} : state_.player->statistics();
+  const Player* const player = state_.source.player.get();
+  const PlayerStatistics played = player == nullptr ? PlayerStatistics{} : player->statistics();
   fmt::print(R"({{"frames":{},"draw_ms_median":{:.3f},"latency_ms_median":{:.3f},"produced":{},)"
              R"("taken":{},"not_shown":{},"in_place":{},"field":[{},{},{},{}],)"
              R"("validation_messages":{}}})"
              "\n",
              clock_.frames(), clock_.draw_ms_median(), clock_.latency_ms_median(), played.produced,
-             played.taken, played.not_shown, state_.draw.in_place, screen_.field.x, screen_.field.y,
-             screen_.field.width, screen_.field.height, instance_.validation_messages());
+             played.taken, played.not_shown, state_.window.draw.in_place, screen_.field.x,
+             screen_.field.y, screen_.field.width, screen_.field.height,
+             instance_.validation_messages());
 }
+
+}  // namespace
 
 int run_window(const Options& options) {
   prepare_devices();

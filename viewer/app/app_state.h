@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "viewer/app/named_boxes.h"
-#include "viewer/app/panels/time_window.h"
-#include "viewer/app/trails.h"
-#include "viewer/source/live_control.h"
-#include "viewer/source/player.h"
+#include "viewer/app/panels/plot.h"
+#include "viewer/app/source/loaded_source.h"
 #include "viewer/source/selection.h"
-#include "viewer/source/survey.h"
-#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
@@ -52,19 +48,6 @@ struct DrawStatistics {
   bool in_place = false;         ///< the device reads the solver's memory without a copy
 };
 
-/// The source on display, and a second one beside.
-struct ShownSource {
-  Player* player = nullptr;  ///< null: no source is open
-  Player* beside = nullptr;  ///< a second source or the truth; null: none
-  bool beside_is_truth = false;
-  bool has_truth = false;                  ///< the truth can be shown
-  Curves* curves = nullptr;                ///< of the first source
-  Survey* survey = nullptr;                ///< fills `curves`; null for a sensor
-  std::optional<ShownField> field;         ///< field on display
-  std::optional<ShownField> beside_field;  ///< of the second source
-  TimeWindow time_window;                  ///< of the curves
-};
-
 /// The look of the picture.
 struct ShownLook {
   RenderSettings settings;
@@ -73,6 +56,7 @@ struct ShownLook {
   bool fit_each_field = false;     ///< fit the range to every field
   bool view_is_fitted = true;      ///< the view follows the window's size until the user moves it
   std::optional<View> other_view;  ///< the hidden one of top view and 3-D view
+  TimeWindow time_window;          ///< of the curves
 };
 
 /// Marks on the skin.
@@ -84,8 +68,6 @@ struct Marks {
   std::optional<Selection> selection;
   std::vector<NamedBox> boxes;  ///< at most NamedBoxes::kMost
   bool names_box = false;       ///< the name of the last box takes the keyboard next
-  Trails trails;
-  bool show_trails = false;
 };
 
 /// The window around the picture.
@@ -96,11 +78,16 @@ struct WindowState {
   bool show_panels = true;
   bool folds_curves = false;
   bool show_counters = false;  ///< times and counts of solving and drawing
-  bool writing = false;        ///< a FrameWriter is active
+  bool writing = false;        ///< all frames are being written
   Notice notice;
 };
 
 /// The state that panels show and actions change. Single-threaded.
-struct AppState : ShownSource, ShownLook, Marks, WindowState {};
+struct AppState {
+  ShownSource source;
+  ShownLook look;
+  Marks marks;
+  WindowState window;
+};
 
 }  // namespace pillarfield::viewer

@@ -113,7 +113,7 @@ std::optional<Vec2> pixel_of(const FieldPlace& place, const RenderSettings& sett
   return project(settings.view, settings.surface, place.skin(), place.plot(settings),
                  std::holds_alternative<TopView>(settings.view)
                      ? Vec3{point_mm.x, point_mm.y, 0}
-                     : frame_at(settings.surface, point_mm).position);
+                     : pose_at(settings.surface, point_mm).position_mm);
 }
 
 PillarRect visible_pillars(const FieldPlace& place, const RenderSettings& settings) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "viewer/app/app_state.h"
-
 namespace pillarfield::viewer {
 
 /// Load at the top of the colour range: rises at once, and falls only after some seconds of less
@@ -45,21 +43,6 @@ class LoadRange {
   float lately_ = 0;      ///< largest load since it fell below half, N
   double touched_s_ = 0;  ///< time of touch below half the load
   double last_s_ = 0;
-};
-
-/// Lets the ranges of a sensor follow its load until the user sets one.
-class LoadFollower {
- public:
-  explicit LoadFollower(bool follows = false) : follows_(follows) {}
-
-  /// Takes the field on display.
-  void take_field(AppState& state);
-
- private:
-  bool follows_;
-  LoadRange load_;
-  std::optional<Quantity> quantity_;  ///< shown when the range was last as it followed
-  Range range_;
 };
 
 }  // namespace pillarfield::viewer

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "viewer/render/imgui_point.h"
-#include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -140,8 +139,10 @@ std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Grou
     const Viewport box = box_about(outline);
     const double longest =
         std::max(std::hypot(box.width, box.height), kLeastArrowLimit * ground.settings().scale);
-    marks.push_back({std::move(outline), *centre, tip_of(quantities, ground, longest),
-                     fmt::format("{}  {} N", contact.track_id, three_digits(quantities.normal_n))});
+    marks.push_back(
+        {std::move(outline), *centre, tip_of(quantities, ground, longest),
+         fmt::format("{}  {}", contact.track_id,
+                     ground.settings().units.text(Dimension::force, quantities.normal_n))});
   }
   return marks;
 }

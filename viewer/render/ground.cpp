@@ -8,7 +8,6 @@
 
 #include "viewer/render/imgui_point.h"
 #include "viewer/render/scene.h"
-#include "viewer/style/camera.h"
 #include "viewer/style/surface.h"
 
 namespace pillarfield::viewer {
@@ -72,8 +71,8 @@ double Ground::height_at(Vec2 sheet_mm) const {
 }
 
 Vec3 Ground::place_of(Vec2 sheet_mm, Vec2 aside_mm) const {
-  const SurfaceFrame frame = frame_at(surface_, sheet_mm);
-  return frame.position + height_at(sheet_mm) * frame.normal + aside_mm.x * frame.tangent_x +
+  const Pose frame = pose_at(surface_, sheet_mm);
+  return frame.position_mm + height_at(sheet_mm) * frame.normal + aside_mm.x * frame.tangent_x +
          aside_mm.y * frame.tangent_y;
 }
 
@@ -82,10 +81,10 @@ bool Ground::is_hidden(Vec2 sheet_mm, Vec3 place) const {
   const Camera camera = camera_of(settings_->view, surface_, plot_);
   const Vec3 to_eye = camera.eye - place;
   const double pitch = arrow_pitch_mm(*source_);
-  if (surface_.kind != SurfaceKind::plane) {  // The skin itself is in the way.
-    const Vec3 base = frame_at(surface_, sheet_mm).position;
+  if (surface_.shape != SurfaceShape::plane) {  // The skin itself is in the way.
+    const Vec3 base = pose_at(surface_, sheet_mm).position_mm;
     const auto first = first_hit({camera.eye, base - camera.eye}, surface_, size_);
-    return first && length(frame_at(surface_, *first).position - base) > 2 * pitch;
+    return first && length(pose_at(surface_, *first).position_mm - base) > 2 * pitch;
   }
   if (relief_.mm_per_newton == 0 || !(to_eye.z > 0)) return false;
   // Towards the eye, up to the height of the highest peak.
@@ -119,7 +118,7 @@ std::vector<SeenPoint> Ground::outline(const PillarRect& rect) const {
   const double bottom = (0.5 * skin.element_rows() - rect.row_end) * row_mm;
   const std::array<Vec2, 5> corners{
       {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}};
-  const bool straight = surface_.kind == SurfaceKind::plane && relief_.mm_per_newton == 0;
+  const bool straight = surface_.shape == SurfaceShape::plane && relief_.mm_per_newton == 0;
   const int pieces = straight ? 1 : 32;
   std::vector<SeenPoint> points;
   for (std::size_t side = 0; side + 1 < corners.size(); ++side) {

@@ -99,7 +99,9 @@ void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo
   const std::string name = canvas.settings.title.empty() ? source.name : canvas.settings.title;
   const std::uint64_t frames = std::max(field.frames, source.frames);
   const std::string of = frames > 0 ? fmt::format(" of {}", frames) : "";
-  const std::string frame = fmt::format("frame {}{}   {:.3f} s", field.index + 1, of, field.time_s);
+  const std::string frame =
+      fmt::format("frame {}{}   {}", field.index + 1, of,
+                  canvas.settings.units.fixed(Dimension::time, field.time_s, 3));
   const double gap = 18 * canvas.unit();
   const double both = Canvas::size_of(name).x + gap + Canvas::size_of(frame).x;
   const bool fits = both < layout.clear.width - gap;
@@ -116,40 +118,41 @@ void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout)
   const double mark = 5 * canvas.unit();
   const int most_x = std::max(static_cast<int>(plot.width / (70 * canvas.unit())), 2);
   const int most_y = std::max(static_cast<int>(plot.height / (50 * canvas.unit())), 2);
-  for (const Tick& tick :
-       ticks(view.centre_mm.x - half_width, view.centre_mm.x + half_width, most_x)) {
+  const auto [unit, factor] = canvas.settings.units.of(Dimension::length);
+  for (const Tick& tick : ticks(factor * (view.centre_mm.x - half_width),
+                                factor * (view.centre_mm.x + half_width), most_x)) {
     const double x =
-        plot.x + 0.5 * plot.width + (tick.value - view.centre_mm.x) * view.pixels_per_mm;
+        plot.x + 0.5 * plot.width + (tick.value / factor - view.centre_mm.x) * view.pixels_per_mm;
     const double y = plot.y + plot.height;
     canvas.line(x, y, x, y + mark, canvas.faint_colour);
     const double left = x - 0.5 * Canvas::size_of(tick.label).x;
     if (left > plot.x) canvas.text(left, y + mark, tick.label);
   }
-  for (const Tick& tick :
-       ticks(view.centre_mm.y - half_height, view.centre_mm.y + half_height, most_y)) {
+  for (const Tick& tick : ticks(factor * (view.centre_mm.y - half_height),
+                                factor * (view.centre_mm.y + half_height), most_y)) {
     const double y =
-        plot.y + 0.5 * plot.height - (tick.value - view.centre_mm.y) * view.pixels_per_mm;
+        plot.y + 0.5 * plot.height - (tick.value / factor - view.centre_mm.y) * view.pixels_per_mm;
     const ImVec2 size = Canvas::size_of(tick.label);
     canvas.line(plot.x - mark, y, plot.x, y, canvas.faint_colour);
     canvas.text(plot.x - mark - 3 * canvas.unit() - size.x, y - 0.5 * size.y, tick.label);
   }
-  const ImVec2 size = Canvas::size_of("mm");
-  canvas.text(plot.x - mark - 3 * canvas.unit() - size.x, plot.y + plot.height + mark, "mm",
-              canvas.faint_colour);
+  const std::string name(unit);
+  canvas.text(plot.x - mark - 3 * canvas.unit() - Canvas::size_of(name).x,
+              plot.y + plot.height + mark, name, canvas.faint_colour);
 }
 
 /// The sheet's axes as seen in the picture.
 void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
   const Surface& surface = canvas.settings.surface;
   const SkinSize size = skin_size(source);
-  const SurfaceFrame frame = frame_at(surface, {0, 0});
+  const Pose frame = pose_at(surface, {0, 0});
   const auto seen = [&](const Vec3& way) {
     const double length = 0.1 * std::max(size.width_mm, size.height_mm);
-    const Vec3 end{frame.position.x + way.x * length, frame.position.y + way.y * length,
-                   frame.position.z + way.z * length};
+    const Vec3 end{frame.position_mm.x + way.x * length, frame.position_mm.y + way.y * length,
+                   frame.position_mm.z + way.z * length};
     return project(canvas.settings.view, surface, size, layout.plot, end);
   };
-  const auto origin = project(canvas.settings.view, surface, size, layout.plot, frame.position);
+  const auto origin = project(canvas.settings.view, surface, size, layout.plot, frame.position_mm);
   if (!origin) return;
   const double x0 = layout.plot.x + 46 * canvas.unit();
   const double y0 = layout.plot.y + layout.plot.height - 46 * canvas.unit();
@@ -176,7 +179,9 @@ void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& l
 /// A round length at the middle of the view.
 void write_scale_bar(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
   const double pixels = pixels_per_mm(canvas.settings.view, layout.plot);
-  const double length_mm = nice_ceiling(0.08 * layout.clear.width / pixels);
+  const Units& units = canvas.settings.units;
+  const double factor = units.of(Dimension::length).factor;
+  const double length_mm = nice_ceiling(factor * (0.08 * layout.clear.width / pixels)) / factor;
   const double length = length_mm * pixels;
   const double x = layout.plot.x + 100 * canvas.unit();
   const double y = layout.plot.y + layout.plot.height - 16 * canvas.unit();
@@ -184,9 +189,10 @@ void write_scale_bar(const Canvas& canvas, const SourceInfo& source, const Layou
   canvas.line(x, y, x + length, y, canvas.text_colour);
   canvas.line(x, y - end, x, y, canvas.text_colour);
   canvas.line(x + length, y - end, x + length, y, canvas.text_colour);
-  canvas.text(x, y - 22 * canvas.unit(), fmt::format("{:g} mm", length_mm));
+  canvas.text(x, y - 22 * canvas.unit(), units.plain(Dimension::length, length_mm));
   canvas.text(x + length + 10 * canvas.unit(), y - 12 * canvas.unit(),
-              fmt::format("grid {:g} mm", floor_step_mm(skin_size(source))), canvas.faint_colour);
+              "grid " + units.plain(Dimension::length, floor_step_mm(skin_size(source))),
+              canvas.faint_colour);
 }
 
 void write_bar(const Canvas& canvas, const Layout& layout) {
@@ -206,7 +212,7 @@ void write_bar(const Canvas& canvas, const Layout& layout) {
     }
   }
   canvas.rectangle(bar, canvas.faint_colour);
-  const double factor = info_of(settings.quantity, settings.pressure_unit).factor;
+  const double factor = settings.units.of(info_of(settings.quantity).dimension).factor;
   const double low = settings.range.low * factor;
   const double high = settings.range.high * factor;
   const int most = std::max(static_cast<int>(bar.height / (25 * canvas.unit())), 3);
@@ -305,7 +311,8 @@ void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Lay
   const bool from_above = std::holds_alternative<TopView>(settings.view);
   const char* name = from_above ? "shear" : "force";
   const double sum = full_arrow_n(settings) * block * block;
-  canvas.text(x, y + 20 * canvas.unit(), fmt::format("{} {} N", name, three_digits(sum)));
+  canvas.text(x, y + 20 * canvas.unit(),
+              fmt::format("{} {}", name, settings.units.text(Dimension::force, sum)));
   canvas.text(x, y + 38 * canvas.unit(),
               block == 1 ? "on a pillar" : fmt::format("on {} × {} pillars", block, block),
               canvas.faint_colour);
@@ -342,9 +349,8 @@ double write_legend(const Canvas& canvas, const SourceInfo& source, const Layout
 }
 
 void write_bar_title(const Canvas& canvas, const Layout& layout) {
-  const QuantityInfo info = info_of(canvas.settings.quantity, canvas.settings.pressure_unit);
-  const std::string unit = info.unit.empty() ? "" : fmt::format(", {}", info.unit);
-  const std::string words = fmt::format("{}{}", info.title, unit);
+  const QuantityInfo& info = info_of(canvas.settings.quantity);
+  const std::string words = canvas.settings.units.title(info.title, info.dimension);
   const double right = layout.plot.x + layout.plot.width - 6 * canvas.unit();
   const double x = std::min(layout.bar.x, right - Canvas::size_of(words).x);
   canvas.text(x, layout.bar.y - 28 * canvas.unit(), words);

@@ -67,10 +67,9 @@ void Renderer::update(const shader::Scene& scene, const RenderSettings& settings
   }
 }
 
-void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField& shown,
+void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField& field,
                       const SourceInfo& source, const RenderSettings& wanted) {
   const RenderSettings settings = suited_to(source, wanted);
-  const ShownField& field = field_with(settings.quantity, shown);
   const vk::Extent2D size = target_.image().size();
   const Layout layout = layout_of(size.width, size.height, settings);
   const shader::Scene scene = scene_of(field, source, settings, layout.plot);

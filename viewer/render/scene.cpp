@@ -105,7 +105,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   const Surface surface = from_above ? Surface{} : settings.surface;
   const std::uint32_t block = arrow_block_of(settings, plot, pitch);
   const Relief relief = relief_of(settings, size);
-  const std::uint32_t mesh = surface.kind == SurfaceKind::plane ? 1 : 96;
+  const std::uint32_t mesh = surface.shape == SurfaceShape::plane ? 1 : 96;
   const auto tiles = [&](std::uint32_t pillars, std::uint32_t flat) {
     return relief.mm_per_newton > 0 ? std::min(pillars, kMostReliefTiles) : flat;
   };

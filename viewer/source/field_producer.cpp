@@ -16,7 +16,6 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "viewer/source/force_file_producer.h"
-#include "viewer/source/frame_provider.h"
 #include "viewer/source/solved_producer.h"
 
 namespace pillarfield::viewer {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -11,11 +13,37 @@
 #include "pillarfield/error.h"
 #include "pillarfield/live_session.h"
 #include "pillarfield/plan_builder.h"
-#include "viewer/source/live_view.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/solved_producer.h"
 
 namespace pillarfield::viewer {
+double FieldClock::time_s(double sensor_s, std::chrono::nanoseconds arrived) {
+  constexpr double kMostApartS = 5;
+  constexpr double kLeastStepS = 1e-6;
+  const double arrived_s = std::chrono::duration<double>(arrived - start_).count();
+  const double by_sensor_s = sensor_s + offset_s_.value_or(arrived_s - sensor_s);
+  const bool follows =
+      offset_s_ && by_sensor_s > last_s_ && std::abs(by_sensor_s - arrived_s) < kMostApartS;
+  last_s_ = follows ? by_sensor_s : std::max(arrived_s, last_s_ + kLeastStepS);
+  offset_s_ = last_s_ - sensor_s;
+  return last_s_;
+}
+
+PlayerState LiveView::state_after(std::uint64_t frames, double rate_hz) const {
+  return {.frame = frames,
+          .frames = 0,
+          .playing = !paused_,
+          .loops = false,
+          .follows = true,
+          .speed = 1,
+          .rate_hz = rate_hz};
+}
+
+void LiveView::measure(const ShownField& field) {
+  curves_->add(field);
+  newest_.count(field.arrived.value());
+}
+
 namespace {
 
 using LiveTime = std::chrono::nanoseconds;
@@ -199,7 +227,6 @@ void LivePlayer::publish(const SolvedFrame& frame, ShownField field) {
     field.contacts = std::make_shared<const ShownContacts>(
         with_extents(*frame.contacts, tracker_.labels(), tracker_.options().noise_n));
   }
-  if (wants_peak_) field.peak = peak_.field(field);
   newest_.set(std::move(field));
 }
 

@@ -4,8 +4,6 @@
 #include <cstring>
 #include <new>
 
-#include "pillarfield/status.h"
-#include "viewer/source/field_producer.h"
 #include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
@@ -90,40 +88,6 @@ ForceFieldView PlaneBlock::view() const {
   view.status = status();
   for (std::size_t i = 0; i < kPlanes; ++i) plane_of(view, i) = plane(i);
   return view;
-}
-
-void PeakHold::add(const ForceFieldView& forces) {
-  if (peaks_.size() != forces.normal.size()) peaks_.assign(forces.normal.size(), 0);
-  for (std::size_t i = 0; i < peaks_.size(); ++i) {
-    const float normal = forces.normal[i];
-    if (normal > peaks_[i] && normal <= std::numeric_limits<float>::max()) peaks_[i] = normal;
-  }
-}
-
-std::shared_ptr<const ShownField> PeakHold::field(const ShownField& frame) {
-  if (!blocks_) {
-    const SkinLayout layout = has_pillars(frame.forces) ? SkinLayout::pillars : SkinLayout::sensels;
-    const std::uint32_t rows = frame.forces.rows;
-    const std::uint32_t cols = frame.forces.cols;
-    blocks_.emplace(FieldProducer::kMostShown,
-                    [=] { return std::make_unique<PlaneBlock>(layout, rows, cols, false); });
-  }
-  const std::shared_ptr<PlaneBlock> block = blocks_->acquire();
-  if (block == nullptr) return nullptr;
-  std::ranges::copy(peaks_, block->plane(PlaneBlock::kNormal).begin());
-  if (const std::span<float> magnitude = block->plane(PlaneBlock::kMagnitude); !magnitude.empty()) {
-    std::ranges::copy(peaks_, magnitude.begin());
-  }
-  const std::uint8_t usable = has_pillars(frame.forces) ? status::kUsable : status::kSensel1;
-  std::ranges::transform(peaks_, block->status().begin(),
-                         [usable](float peak) { return peak > 0 ? usable : std::uint8_t{0}; });
-  auto field = std::make_shared<ShownField>(frame);
-  field->forces = block->view();
-  field->raw = {};
-  field->pages = block->pages();
-  field->keep_alive = block;
-  field->contacts = frame.contacts;
-  return field;
 }
 
 }  // namespace pillarfield::viewer

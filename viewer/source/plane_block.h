@@ -55,22 +55,4 @@ class PlaneBlock {
   std::unique_ptr<std::byte[], Free> pages_;
 };
 
-/// The largest normal force of each element over the frames since it began.
-class PeakHold {
- public:
-  /// Forces that are not finite count as zero.
-  void add(const ForceFieldView& forces);
-
-  /// Forgets all frames.
-  void reset() { peaks_.clear(); }
-
-  /// A field with the peaks as normal force and no shear; its other members are those of `frame`,
-  /// which has the size of the frames so far. Null where all its memory is in use.
-  [[nodiscard]] std::shared_ptr<const ShownField> field(const ShownField& frame);
-
- private:
-  std::vector<float> peaks_;
-  std::optional<ObjectPool<PlaneBlock>> blocks_;
-};
-
 }  // namespace pillarfield::viewer

@@ -4,8 +4,6 @@
 #include <thread>
 #include <utility>
 
-#include "viewer/source/plane_block.h"
-
 namespace pillarfield::viewer {
 namespace {
 
@@ -104,12 +102,6 @@ class FilePlayer final : public Player {
       if (!std::exchange(wants_contacts_, wanted) && wanted) head.again(now);
     });
   }
-  void set_peak(bool wanted) override {
-    change([=, this](Playback& head, Time now) {
-      wants_peak_ = peak_begins_ = wanted;
-      if (wanted) head.again(now);
-    });
-  }
 
  private:
   void move(const Move& wanted) override { change(wanted); }
@@ -132,7 +124,6 @@ class FilePlayer final : public Player {
   void produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock);
 
   const std::unique_ptr<FieldProducer> producer_;  ///< used by the thread only, once it runs
-  PeakHold peak_;                                  ///< likewise
   const SourceInfo info_;
 
   mutable std::mutex mutex_;  ///< guards the members up to `stopping_`
@@ -140,8 +131,6 @@ class FilePlayer final : public Player {
   Playback head_;
   Time refreshed_{0};
   bool wants_contacts_ = false;
-  bool wants_peak_ = false;
-  bool peak_begins_ = false;
   bool stopping_ = false;
 
   std::thread thread_;  ///< last: uses the other members
@@ -188,19 +177,12 @@ void FilePlayer::refresh(std::unique_lock<std::mutex>& lock) {
 
 void FilePlayer::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
   const bool with_contacts = wants_contacts_;
-  const bool with_peak = wants_peak_;
-  const bool begins_peak = std::exchange(peak_begins_, false);
   lock.unlock();
   const Time begin = now();
   ShownField field = producer_->produce(frame);
   field.frames = producer_->info().frames;
   if (with_contacts) {
     field.contacts = std::make_shared<const ShownContacts>(producer_->contacts_of(field));
-  }
-  if (with_peak) {
-    if (begins_peak) peak_.reset();
-    peak_.add(field.forces);
-    field.peak = peak_.field(field);
   }
   newest_.count(begin);
   newest_.set(std::move(field));

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
+#include "pillarfield/live.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/playback.h"
 #include "viewer/source/recent_times.h"
@@ -64,7 +67,36 @@ class NewestField {
   std::function<void()> wake_;
 };
 
-class LiveControl;
+/// After this time without a frame a sensor counts as silent.
+inline constexpr double kSilentSeconds = 1;
+
+/// The state of a sensor.
+struct LiveStatus {
+  HealthReport health;
+  bool ended = false;  ///< no frame will follow
+  bool taring = false;
+  std::string recording;             ///< file; empty: none
+  LiveSinkStatistics recorded = {};  ///< of that file
+  std::string message;               ///< about the last tare or recording
+  std::uint64_t messages = 0;        ///< how many there were
+};
+
+/// "12 frames, 3 dropped, failed: the disk is full".
+[[nodiscard]] std::string recorded_words(const LiveSinkStatistics& recorded);
+
+/// Actions of a user on a sensor. Results of another program have no tare and no raw frames:
+/// then SourceInfo::has_readings is false.
+class LiveControl {
+ public:
+  virtual ~LiveControl() = default;
+  /// Takes the mean of the readings of the next half second as tare of an untouched skin.
+  virtual void tare() = 0;
+  /// Records the raw frames from now on. Throws Error where the file cannot be made, and for
+  /// results.
+  virtual void record(const std::filesystem::path& path) = 0;
+  virtual void stop_recording() = 0;
+  [[nodiscard]] virtual LiveStatus status() = 0;
+};
 
 /// Produces fields in its own thread, and never waits for the display: a newer field replaces one
 /// that was not taken. Thread safe.
@@ -80,8 +112,6 @@ class Player {
   [[nodiscard]] virtual PlayerState state() const = 0;
   /// Switches contacts of fields on or off; on, the current frame is produced again.
   virtual void set_contacts(bool wanted) = 0;
-  /// Switches ShownField::peak on, beginning with the current frame, or off.
-  virtual void set_peak(bool wanted) = 0;
 
   virtual void play() { move(&Playback::play); }
   virtual void pause() {  ///< the picture of a sensor freezes, not the sensor

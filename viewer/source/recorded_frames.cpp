@@ -8,9 +8,9 @@
 
 #include "pillarfield/error.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/source/frame_provider.h"
 #include "viewer/source/growing_file.h"
 #include "viewer/source/object_pool.h"
+#include "viewer/source/solved_producer.h"
 
 namespace pillarfield::viewer {
 namespace {

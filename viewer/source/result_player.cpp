@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "viewer/source/live_view.h"
+#include "viewer/source/live_player.h"
 #include "viewer/source/object_pool.h"
 #include "viewer/source/shown_contacts.h"
 
@@ -127,7 +127,6 @@ void ResultPlayer::publish() {
   field.pages = block->pages();
   field.keep_alive = block;
   if (wants_contacts_) field.contacts = contacts_of(field);
-  if (wants_peak_) field.peak = peak_.field(field);
   newest_.set(std::move(field));
 }
 

@@ -29,7 +29,6 @@ struct ShownField {
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;
   std::shared_ptr<const ShownContacts> contacts = {};    ///< null while contacts are off
-  std::shared_ptr<const ShownField> peak = {};           ///< see PeakHold; null while it is off
   std::optional<std::chrono::nanoseconds> arrived = {};  ///< from a sensor, std::steady_clock
 };
 

@@ -14,7 +14,6 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr auto kHalfTurn = std::numbers::pi_v<float>;
 
 bool any(const SourceInfo& /*source*/) { return true; }
@@ -24,19 +23,18 @@ bool uncertain(const SourceInfo& source) { return source.has_uncertainty; }
 bool readings(const SourceInfo& source) { return source.has_readings && pillars(source); }
 
 constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
-    {"normal", "Normal force", "N", 1, Scale::sequential, any},
-    {"shear", "Shear", "N", 1, Scale::sequential, pillars},
-    {"shear_x", "Shear x", "N", 1, Scale::diverging, pillars},
-    {"shear_y", "Shear y", "N", 1, Scale::diverging, pillars},
-    {"magnitude", "Magnitude", "N", 1, Scale::sequential, angles},
-    {"theta", "Inclination θ", "°", kDegrees, Scale::sequential, angles},
-    {"phi", "Direction φ", "°", kDegrees, Scale::cyclic, angles},
-    {"region", "Region", "", 1, Scale::classes, pillars},
-    {"status", "Status", "", 1, Scale::classes, any},
-    {"uncertainty", "Uncertainty", "N", 1, Scale::sequential, uncertain},
-    {"parity", "Parity residual", "counts", 1, Scale::diverging, readings},
-    {"peak", "Peak normal force", "N", 1, Scale::sequential, any},
-    {"pressure", "Pressure", "kPa", 1, Scale::sequential, any},
+    {"normal", "Normal force", Dimension::force, Scale::sequential, any},
+    {"shear", "Shear", Dimension::force, Scale::sequential, pillars},
+    {"shear_x", "Shear x", Dimension::force, Scale::diverging, pillars},
+    {"shear_y", "Shear y", Dimension::force, Scale::diverging, pillars},
+    {"magnitude", "Magnitude", Dimension::force, Scale::sequential, angles},
+    {"theta", "Inclination θ", Dimension::angle, Scale::sequential, angles},
+    {"phi", "Direction φ", Dimension::angle, Scale::cyclic, angles},
+    {"region", "Region", Dimension::none, Scale::classes, pillars},
+    {"status", "Status", Dimension::none, Scale::classes, any},
+    {"uncertainty", "Uncertainty", Dimension::force, Scale::sequential, uncertain},
+    {"parity", "Parity residual", Dimension::counts, Scale::diverging, readings},
+    {"pressure", "Pressure", Dimension::pressure, Scale::sequential, any},
 }};
 
 float root_of_squares(float x, float y) { return std::sqrt(x * x + y * y); }
@@ -102,7 +100,6 @@ float pressed_value(Quantity quantity, const ShownField& field, const Skin& skin
   const std::size_t pillar = std::size_t{row} * forces.cols + col;
   switch (quantity) {
     case Quantity::normal:
-    case Quantity::peak:
       return forces.normal[pillar];
     case Quantity::pressure:
       return forces.normal[pillar] * kpa_per_newton(skin);
@@ -141,12 +138,8 @@ float nice_float(float value) {
 
 }  // namespace
 
-QuantityInfo info_of(Quantity quantity, const PressureUnit& unit) {
-  QuantityInfo info = kInfos.at(static_cast<std::size_t>(quantity));
-  if (quantity != Quantity::pressure) return info;
-  info.unit = unit.name;
-  info.factor = 1 / unit.kpa;
-  return info;
+const QuantityInfo& info_of(Quantity quantity) {
+  return kInfos.at(static_cast<std::size_t>(quantity));
 }
 
 StatusClass status_class(std::uint8_t status) {
@@ -159,19 +152,14 @@ StatusClass status_class(std::uint8_t status) {
 bool is_pressed(std::uint8_t status) { return (status & status::kLoaded) != 0; }
 
 bool is_available(Quantity quantity, const SourceInfo& source) {
-  return kInfos.at(static_cast<std::size_t>(quantity)).is_in(source);
-}
-
-const ShownField& field_with(Quantity quantity, const ShownField& field) {
-  return quantity == Quantity::peak && field.peak != nullptr ? *field.peak : field;
+  return info_of(quantity).is_in(source);
 }
 
 float kpa_per_newton(const Skin& skin) {
   return pillarfield::kpa_per_newton(skin.element_pitch_mm());
 }
 
-float largest(Quantity quantity, const ShownField& shown, const Skin& skin) {
-  const ShownField& field = field_with(quantity, shown);
+float largest(Quantity quantity, const ShownField& field, const Skin& skin) {
   float largest = 0;
   float normal = 0;
   for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
@@ -204,9 +192,8 @@ Range fitting_range(Quantity quantity, float largest_value) {
   return {info_of(quantity).scale == Scale::diverging ? -high : 0, high};
 }
 
-float value_of(Quantity quantity, const ShownField& shown, const Skin& skin, std::uint32_t row,
+float value_of(Quantity quantity, const ShownField& field, const Skin& skin, std::uint32_t row,
                std::uint32_t col) {
-  const ShownField& field = field_with(quantity, shown);
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
   const bool has_status_class = quantity == Quantity::region || quantity == Quantity::status;
   if (!has_status_class && !is_pressed(status)) return kNothing;

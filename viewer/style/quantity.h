@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 
-#include "pillarfield/pressure_unit.h"
 #include "viewer/source/field_producer.h"
+#include "viewer/style/display.h"
 
 namespace pillarfield::viewer {
 
@@ -24,23 +23,20 @@ enum class Quantity : std::uint8_t {
   uncertainty,  ///< root of the summed variances of the components, N; for ambiguous pillars at
                 ///< least half the interval of the magnitude
   parity,       ///< V1 + V3 - V2 - V4 of the readings, counts
-  peak,         ///< largest normal force since it is held, N; the normal force where it is not
   pressure,     ///< normal force over the area of a pillar or sensel, kPa
 };
-inline constexpr int kQuantities = 13;
+inline constexpr int kQuantities = 12;
 
 enum class Scale : std::uint8_t { sequential, diverging, cyclic, classes };
 
 struct QuantityInfo {
-  const char* name;       ///< on the command line: "shear_x"
-  const char* title;      ///< in the picture: "Shear x"
-  std::string_view unit;  ///< displayed unit: "N", "°", "counts", ""
-  double factor;  ///< displayed number over value: 180/pi for angles, 1/kPa for pressure, else 1
+  const char* name;   ///< on the command line: "shear_x"
+  const char* title;  ///< in the picture: "Shear x"
+  Dimension dimension;
   Scale scale;
   bool (*is_in)(const SourceInfo& source);  ///< see is_available()
 };
-[[nodiscard]] QuantityInfo info_of(Quantity quantity,
-                                   const PressureUnit& unit = kPressureUnits.front());
+[[nodiscard]] const QuantityInfo& info_of(Quantity quantity);
 
 /// Values of `status`; the worst applies.
 enum class StatusClass : std::uint8_t {
@@ -67,15 +63,12 @@ struct Range {
   friend bool operator==(const Range&, const Range&) = default;
 };
 
-/// The field that holds the quantity: the held peaks, or `field` itself.
-[[nodiscard]] const ShownField& field_with(Quantity quantity, const ShownField& field);
-
 /// Pressure of a newton on a pillar or sensel, kPa.
 [[nodiscard]] float kpa_per_newton(const Skin& skin);
 
 /// Largest finite |value| over pillars that are neither idle, saturated nor inconsistent; 0 for
 /// none.
-[[nodiscard]] float largest(Quantity quantity, const ShownField& shown, const Skin& skin);
+[[nodiscard]] float largest(Quantity quantity, const ShownField& field, const Skin& skin);
 
 /// 0 for a shear that is rounding beside the normal force, so that no range is fitted to it.
 [[nodiscard]] float without_rounding(Quantity quantity, float value, float normal_n);
@@ -88,7 +81,7 @@ struct Range {
 /// without contraction. In the uncertainty of sensels the deviations of the shear are zero. NaN
 /// where the source lacks the data or the pillar is idle: not is_pressed(); for region no usable
 /// sensel; for status not pressed and no fault.
-[[nodiscard]] float value_of(Quantity quantity, const ShownField& shown, const Skin& skin,
+[[nodiscard]] float value_of(Quantity quantity, const ShownField& field, const Skin& skin,
                              std::uint32_t row, std::uint32_t col);
 
 }  // namespace pillarfield::viewer

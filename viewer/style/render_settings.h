@@ -11,7 +11,7 @@ namespace pillarfield::viewer {
 /// Everything that a picture depends on except the field and the size.
 struct RenderSettings {
   Quantity quantity = Quantity::normal;
-  PressureUnit pressure_unit = kPressureUnits.front();
+  Units units;  ///< of numbers and scales
   Range range;  ///< ends of the colour bar in the unit of the value
   ColourMap map = ColourMap::cividis;
   Theme theme = Theme::dark;

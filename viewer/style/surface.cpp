@@ -5,15 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "pillarfield/surface.h"
-#include "viewer/style/view.h"
-
 namespace pillarfield::viewer {
 namespace {
 
-bool is_curved(const Surface& surface) {
-  return surface.kind != SurfaceKind::plane && std::abs(surface.radius_mm) >= kLeastRadiusMm;
-}
+bool is_plane(const Surface& surface) { return surface.shape == SurfaceShape::plane; }
+bool is_sphere(const Surface& surface) { return surface.shape == SurfaceShape::sphere; }
 
 /// Unit vector of the bent direction of a cylinder.
 Vec2 bent_direction(const Surface& surface) {
@@ -44,42 +40,36 @@ std::array<double, 2> hits(Vec3 origin, Vec3 direction, double radius) {
   return {(to_foot - half_chord) / speed, (to_foot + half_chord) / speed};
 }
 
-/// The point of the sheet that lies at a point of the cylinder.
-Vec2 on_sheet_of_cylinder(const Surface& surface, Vec3 place) {
-  const Vec2 along = bent_direction(surface);
+/// The point of the sheet that lies at a place of the surface.
+Vec2 on_sheet(const Surface& surface, Vec3 place) {
+  Vec2 along = bent_direction(surface);
+  if (is_sphere(surface)) {
+    const double away = std::hypot(place.x, place.y);
+    if (away == 0) return {};
+    along = {place.x / away, place.y / away};
+  }
   const double radius = surface.radius_mm;
   const double arc = radius * std::atan2((along.x * place.x + along.y * place.y) / radius,
                                          (place.z + radius) / radius);
-  const double across = along.x * place.y - along.y * place.x;
+  const double across = is_sphere(surface) ? 0 : along.x * place.y - along.y * place.x;
   return {arc * along.x - across * along.y, arc * along.y + across * along.x};
 }
 
-Vec2 on_sheet_of_sphere(double radius, Vec3 place) {
-  const double away = std::hypot(place.x, place.y);
-  if (away == 0) return {};
-  const double arc = std::abs(radius) * std::atan2(away / std::abs(radius), 1 + place.z / radius);
-  return {arc * place.x / away, arc * place.y / away};
-}
-
 std::optional<Vec2> hit_on_curve(const Ray& ray, const Surface& surface, const SkinSize& skin) {
-  const bool sphere = surface.kind == SurfaceKind::sphere;
   const Vec2 along = bent_direction(surface);
   // A cylinder is hit in the plane across its axis.
   const auto flat = [&](Vec3 vector) {
-    return sphere ? vector : Vec3{along.x * vector.x + along.y * vector.y, 0, vector.z};
+    return is_sphere(surface) ? vector : Vec3{along.x * vector.x + along.y * vector.y, 0, vector.z};
   };
   const Vec3 from_middle = flat(ray.origin) + Vec3{0, 0, surface.radius_mm};
   for (const double way : hits(from_middle, flat(ray.direction), std::abs(surface.radius_mm))) {
     if (!(way > 0)) continue;
     const Vec3 place = ray.origin + way * ray.direction;
-    const Vec2 point = sphere ? on_sheet_of_sphere(surface.radius_mm, place)
-                              : on_sheet_of_cylinder(surface, place);
+    const Vec2 point = on_sheet(surface, place);
     if (is_on(skin, point)) return point;
   }
   return std::nullopt;
 }
-
-Vec3 to_view(const Vector3& vector) { return {vector.x, vector.y, vector.z}; }
 
 /// Half sizes of the skin seen from above, and its depth.
 Vec3 extent_of(const SkinSize& skin, const Surface& surface) {
@@ -89,7 +79,7 @@ Vec3 extent_of(const SkinSize& skin, const Surface& surface) {
   const auto depth = [&](double arc) {
     return radius * (1 - std::cos(std::min(arc / radius, std::numbers::pi)));
   };
-  if (surface.kind == SurfaceKind::sphere) {
+  if (is_sphere(surface)) {
     return {std::min(width, radius), std::min(height, radius), depth(std::hypot(width, height))};
   }
   const Vec2 along = bent_direction(surface);
@@ -103,46 +93,19 @@ Vec3 extent_of(const SkinSize& skin, const Surface& surface) {
 
 }  // namespace
 
-SurfaceFrame frame_at(const Surface& surface, Vec2 point_mm) {
-  pillarfield::Surface curve;
-  if (is_curved(surface)) {
-    curve.shape =
-        surface.kind == SurfaceKind::sphere ? SurfaceShape::sphere : SurfaceShape::cylinder;
-    curve.radius_mm = surface.radius_mm;
-    curve.axis_deg = surface.axis_deg;
-  }
-  const Pose pose = pose_at(curve, point_mm.x, point_mm.y);
-  return {to_view(pose.position_mm), to_view(pose.tangent_x), to_view(pose.tangent_y),
-          to_view(pose.normal)};
-}
-
-Surface drawn_surface(const std::optional<pillarfield::Surface>& surface) {
-  if (!surface) return {};
-  switch (surface->shape) {
-    case SurfaceShape::cylinder:
-      return {SurfaceKind::cylinder, surface->radius_mm, surface->axis_deg};
-    case SurfaceShape::sphere:
-      return {SurfaceKind::sphere, surface->radius_mm};
-    case SurfaceShape::plane:
-    case SurfaceShape::height_map:
-      break;
-  }
-  return {};
-}
-
 std::array<float, 4> shader_surface(const Surface& surface) {
-  if (!is_curved(surface)) return {};
+  if (is_plane(surface)) return {};
   const Vec2 along = bent_direction(surface);
   return {static_cast<float>(along.x), static_cast<float>(along.y),
-          static_cast<float>(surface.radius_mm), static_cast<float>(surface.kind)};
+          static_cast<float>(surface.radius_mm), static_cast<float>(surface.shape)};
 }
 
 std::optional<Vec2> first_hit(const Ray& ray, const Surface& surface, const SkinSize& skin) {
-  return is_curved(surface) ? hit_on_curve(ray, surface, skin) : hit_on_plane(ray, skin);
+  return is_plane(surface) ? hit_on_plane(ray, skin) : hit_on_curve(ray, surface, skin);
 }
 
 Box box_about(const SkinSize& skin, const Surface& surface) {
-  if (!is_curved(surface)) {
+  if (is_plane(surface)) {
     return {{-skin.width_mm / 2, -skin.height_mm / 2, 0},
             {skin.width_mm / 2, skin.height_mm / 2, 0}};
   }

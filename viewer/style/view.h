@@ -1,45 +1,15 @@
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <optional>
 #include <variant>
 
-namespace pillarfield::viewer {
+#include "viewer/style/surface.h"
 
-struct Vec2 {
-  double x = 0, y = 0;
-  friend bool operator==(const Vec2&, const Vec2&) = default;
-};
-struct Vec3 {
-  double x = 0, y = 0, z = 0;
-};
+namespace pillarfield::viewer {
 
 /// Column major: clip = matrix * (x, y, z, 1), in Vulkan's clip space (y down, z 0..1).
 using Matrix = std::array<float, 16>;
-
-/// Size of the flat sheet; its coordinates are x right, y up, mm from the middle.
-struct SkinSize {
-  double width_mm = 0, height_mm = 0;
-};
-
-/// The surface that the skin is drawn on: pillarfield::Surface without height maps. The middle of
-/// the sheet is the origin and its normal there is z. shaders/surface.glsl holds the GLSL version.
-enum class SurfaceKind : std::uint32_t { plane, cylinder, sphere };
-struct Surface {
-  SurfaceKind kind = SurfaceKind::plane;
-  /// Radius of a cylinder or sphere, negative with the skin inside; a plane below kLeastRadiusMm.
-  double radius_mm = 0;
-  double axis_deg = 90;  ///< direction of a cylinder's axis, from +x towards +y
-  friend bool operator==(const Surface&, const Surface&) = default;
-};
-inline constexpr double kLeastRadiusMm = 1e-3;
-struct SurfaceFrame {
-  Vec3 position;                      ///< mm
-  Vec3 tangent_x, tangent_y, normal;  ///< unit vectors
-};
-[[nodiscard]] SurfaceFrame frame_at(const Surface& surface, Vec2 point_mm);
 
 /// View from above without perspective; y up.
 struct TopView {
@@ -101,10 +71,27 @@ void keep_on_skin(View& view, const SkinSize& skin);
 /// Pixels per millimetre of the sheet in the middle of the viewport.
 [[nodiscard]] double pixels_per_mm(const View& view, const Viewport& viewport);
 
-[[nodiscard]] constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-[[nodiscard]] constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-[[nodiscard]] constexpr Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-[[nodiscard]] constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-[[nodiscard]] inline double length(Vec3 a) { return std::sqrt(dot(a, a)); }
+/// A camera in space, in double precision. An offset of 1 mm from its axis at depth d covers
+/// `pixels` / d pixels in perspective, else `pixels`.
+struct Camera {
+  Vec3 eye;
+  Vec3 right, up, forward;  ///< unit vectors, orthogonal
+  double pixels = 1;
+  bool perspective = false;
+  double distance_mm = 0;  ///< from the eye to the target
+};
+[[nodiscard]] Camera camera_of(const View& view, const Surface& surface, const Viewport& viewport);
+
+/// A point in camera coordinates, mm.
+[[nodiscard]] Vec3 in_camera(const Camera& camera, Vec3 point);  ///< x right, y up, z depth
+
+/// The ray through the pixel at `offset` (x right, y down) from the viewport's middle.
+[[nodiscard]] Ray ray_through(const Camera& camera, Vec2 offset);
+
+/// Range of depths of a box, grown by kArrowMarginMm, before the eye.
+struct DepthRange {
+  double near_mm, far_mm;
+};
+[[nodiscard]] DepthRange depths_of(const Camera& camera, const Box& box);
 
 }  // namespace pillarfield::viewer

@@ -31,7 +31,7 @@ void add_simulate(CLI::App& parent, Work& work) {
       parent, work, simulate, "simulate",
       "Make a recording from a scene: frames of the sensor and the true forces.",
       "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
-      "  pillarfield simulate scenes/sliding.toml -o noisy.h5 --frames 20 --seed 7\n");
+      "  pillarfield simulate scenes/touch/sliding.toml -o noisy.h5 --frames 20 --seed 7\n");
   Group input(command, "Input");
   input.file("SCENE", options->scene, "Scene (TOML), see docs/scenes.md");
   input.whole("--frames", options->frames, "N", "Number of frames [the scene's]", 1, 100'000'000);
@@ -128,7 +128,7 @@ void add_solve(CLI::App& parent, Work& work) {
 void add_compare(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<CompareOptions>(
       parent, work, compare, "compare", "Compare solved forces with the truth by region.",
-      "  pillarfield simulate scenes/sliding.toml -o sliding.h5\n"
+      "  pillarfield simulate scenes/touch/sliding.toml -o sliding.h5\n"
       "  pillarfield solve sliding.h5 -o sliding_forces.h5\n"
       "  pillarfield compare sliding_forces.h5 sliding.h5\n"
       "  pillarfield compare sliding_forces.h5 sliding.h5 --json\n");

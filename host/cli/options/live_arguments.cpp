@@ -125,7 +125,7 @@ void add_doctor(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<DoctorOptions>(
       parent, work, doctor, "doctor",
       "Look at the frames of any pressure array: what is broken, shorted or wired wrongly.",
-      "  pillarfield simulate scenes/new_skin_rolled.toml --uncalibrated -o rolled.h5\n"
+      "  pillarfield simulate scenes/calibration/new_skin_rolled.toml --uncalibrated -o rolled.h5\n"
       "  pillarfield doctor rolled.h5 --png rolled.png\n"
       "  pillarfield doctor rolled.h5 --json\n");
   Group input(command, "Input");

@@ -54,24 +54,24 @@ class FakeProducer final : public FieldProducer {
 
 /// The state of a window of 1000 x 700 pixels with a picture of 800 x 600.
 struct FakeAppState {
-  std::unique_ptr<Player> player;
   AppState state;
-  FieldPlace place{{0, 0, 800, 600}, &player->info()};
+  FieldPlace place;
   PendingActions pending;
 
-  explicit FakeAppState(SkinLayout layout = SkinLayout::pillars)
-      : player(play_file(std::make_unique<FakeProducer>(layout))) {
-    state.player = player.get();
+  explicit FakeAppState(SkinLayout layout = SkinLayout::pillars) {
+    state.source.player = play_file(std::make_unique<FakeProducer>(layout));
+    place = {{0, 0, 800, 600}, &player().info()};
     take_field(state, FakeProducer(layout).produce(0));
     reset_view(state, place);
   }
+  [[nodiscard]] Player& player() const { return *state.source.player; }
   [[nodiscard]] Command command() { return {state, place, pending}; }
 
   /// Window pixel of the centre of a pillar.
   [[nodiscard]] Vec2 pixel(std::uint32_t row, std::uint32_t col) const {
     const Vec2 corner = corner_of(place, row, col);
-    const double half = 0.5 * player->info().skin.pillar_pitch_mm();
-    return pixel_of(place, state.settings, {corner.x + half, corner.y - half}).value();
+    const double half = 0.5 * player().info().skin.pillar_pitch_mm();
+    return pixel_of(place, state.look.settings, {corner.x + half, corner.y - half}).value();
   }
 };
 
@@ -109,9 +109,9 @@ class FakeGui {
   /// Presses the widget at the end of a path of ImGui's names and numbers.
   using Name = std::variant<const char*, int>;
   template <class Draw>
-  void press(std::initializer_list<Name> path, const Draw& draw) {
+  void press(std::initializer_list<Name> path, const Draw& draw, const char* window = "panel") {
     frame(draw);
-    ImGuiID id = ImGui::FindWindowByName("panel")->ID;
+    ImGuiID id = ImGui::FindWindowByName(window)->ID;
     for (const Name& name : path) {
       const int* const number = std::get_if<int>(&name);
       id = number != nullptr ? ImHashData(number, sizeof *number, id)

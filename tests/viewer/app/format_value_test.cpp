@@ -8,8 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "viewer/app/panels/plot.h"
-
 namespace pillarfield::viewer {
 namespace {
 
@@ -90,32 +88,50 @@ TEST(FormatStatus, NameRegionAndFault) {
   EXPECT_EQ(format_status(status::kSaturated), "no usable sensel, saturated");
 }
 
-TEST(FormatValue, HaveTheDigitsThatTheirDeviationAllows) {
-  EXPECT_EQ(format_value(0.123456, 0.0056), "0.1235");
-  EXPECT_EQ(format_deviation(0.0056), "± 0.0056");
-  EXPECT_EQ(format_value(-123.456, 2.3), "−123.5");
-  EXPECT_EQ(format_value(-0.00001, 0.01), "0.000");
-  EXPECT_EQ(format_value(123.456, 230), "123");
-  EXPECT_EQ(format_value(0.123456, kNotANumber), "0.123");
-  EXPECT_EQ(format_deviation(kNotANumber), "");
-  EXPECT_EQ(format_deviation(0), "");
+const Units kUnits;
+
+TEST(Readout, HasTheDigitsThatItsDeviationAllows) {
+  const auto words = [](double value, double deviation) {
+    const ShownValue shown = kUnits.readout("F", Dimension::force, value, deviation);
+    return shown.label + " " + shown.value + " " + with_unit(shown.range, shown.unit);
+  };
+  EXPECT_EQ(words(0.123456, 0.0056), "F 0.1235 ± 0.0056 N");
+  EXPECT_EQ(words(-123.456, 2.3), "F −123.5 ± 2.3 N");
+  EXPECT_EQ(words(-0.00001, 0.01), "F 0.000 ± 0.010 N");
+  EXPECT_EQ(words(123.456, 230), "F 123 ± 230 N");
+  EXPECT_EQ(words(0.123456, kNotANumber), "F 0.123  N");
+  EXPECT_EQ(kUnits.readout("", Dimension::force, 1, 0).range, "");
 }
 
-TEST(FormatInterval, DistinguishTheEnds) {
-  EXPECT_EQ(format_interval(0.12, 0.34), "0.12 … 0.34");
-  EXPECT_EQ(format_interval(60, 73.3), "60 … 73");
-  EXPECT_EQ(format_interval(-5, -5), "−5.000 … −5.000");
-  EXPECT_EQ(format_interval(kNotANumber, 1), "");
+TEST(Readout, AnIntervalDistinguishesItsEnds) {
+  const auto range = [](double low, double high) {
+    return kUnits.readout_between("", Dimension::force, low, low, high).range;
+  };
+  EXPECT_EQ(range(0.12, 0.34), "0.12 … 0.34");
+  EXPECT_EQ(range(60, 73.3), "60 … 73");
+  EXPECT_EQ(range(-5, -5), "−5.000 … −5.000");
+  EXPECT_EQ(range(kNotANumber, 1), "");
+}
+
+TEST(Units, OfPressureScaleValuesAndNameThem) {
+  const Units psi{kPressureUnits[1]};
+  EXPECT_EQ(psi.title("Pressure", Dimension::pressure), "Pressure, psi");
+  EXPECT_EQ(psi.text(Dimension::pressure, 6.894757293168), "1.00 psi");
+  EXPECT_EQ(psi.readout("", Dimension::pressure, 68.94757293168, 6.894757293168).range, "± 1.0");
+  EXPECT_EQ(psi.text(Dimension::angle, std::numbers::pi / 4), "45.0°");
+  EXPECT_EQ(psi.plain(Dimension::length, 20), "20 mm");
+  EXPECT_EQ(psi.fixed(Dimension::time, 0.25, 3), "0.250 s");
+  EXPECT_EQ(psi.title("Region", Dimension::none), "Region");
 }
 
 TEST(ShownDirection, HasIntervalsWhereItIsAmbiguousAndDeviationsElsewhere) {
   PillarValues values = pillar(0.1, 0.05, 0.3, 0.004, 0.004, 0.003);
-  EXPECT_TRUE(shown_direction(values)[1].range.starts_with("± "));
+  EXPECT_TRUE(shown_direction(values, kUnits)[1].range.starts_with("± "));
   values.status = status::kSensel1 | status::kSensel2 | status::kAmbiguous;
   auto& planes = *values.uncertainty;
   const float pi = std::numbers::pi_v<float>;
   planes = {0.1f, 0.1f, 0.1f, pi / 4, pi / 3, 0.95f * pi, -0.95f * pi, 0.2f, 0.3f};
-  const auto shown = shown_direction(values);
+  const auto shown = shown_direction(values, kUnits);
   EXPECT_EQ(shown[0].range, "0.20 … 0.30");
   EXPECT_EQ(shown[1].range, "45 … 60");
   EXPECT_EQ(shown[2].range, "171 … 189");  // Counter-clockwise, past 180.
@@ -126,8 +142,8 @@ TEST(FormatPlace, CountFromTheMiddleOfTheSkin) {
   ForceFieldView forces;
   forces.rows = 4;
   forces.cols = 6;
-  EXPECT_EQ(format_place(forces, {0, 0}, 2), "x −5.00, y 3.00 mm");
-  EXPECT_EQ(format_place(forces, {3, 5}, 2), "x 5.00, y −3.00 mm");
+  EXPECT_EQ(format_place(forces, {0, 0}, 2, kUnits), "x −5.00, y 3.00 mm");
+  EXPECT_EQ(format_place(forces, {3, 5}, 2, kUnits), "x 5.00, y −3.00 mm");
   EXPECT_EQ(format_pillar({3, 5}), "row 3, column 5");
 }
 

@@ -36,42 +36,41 @@ struct Mouse : FakeAppState {
     move(to);
     button(false, to, which, modifiers);
   }
-  [[nodiscard]] TopView top() const { return std::get<TopView>(state.settings.view); }
+  [[nodiscard]] TopView top() const { return std::get<TopView>(state.look.settings.view); }
 };
 
 TEST(Mouse, HoverFindsThePillarUnderTheCursor) {
   Mouse mouse;
   mouse.move(mouse.pixel(7, 21));
-  EXPECT_EQ(mouse.state.hovered, (PillarIndex{7, 21}));
+  EXPECT_EQ(mouse.state.marks.hovered, (PillarIndex{7, 21}));
   mouse.move({799, 599});
-  EXPECT_FALSE(mouse.state.hovered);
+  EXPECT_FALSE(mouse.state.marks.hovered);
   mouse.move(mouse.pixel(0, 0));
-  EXPECT_EQ(mouse.state.hovered, (PillarIndex{0, 0}));
+  EXPECT_EQ(mouse.state.marks.hovered, (PillarIndex{0, 0}));
   mouse.controls.take(LeaveEvent{}, mouse.command());
-  EXPECT_FALSE(mouse.state.hovered);
+  EXPECT_FALSE(mouse.state.marks.hovered);
 }
 
 TEST(Mouse, AClickPinsAndAnotherUnpins) {
   Mouse mouse;
   mouse.click(mouse.pixel(7, 21));
   mouse.click(mouse.pixel(2, 3));
-  ASSERT_EQ(mouse.state.pins.size(), 2u);
-  EXPECT_EQ(mouse.state.pins[0].pillar, (PillarIndex{7, 21}));
+  ASSERT_EQ(mouse.state.marks.pins.size(), 2u);
+  EXPECT_EQ(mouse.state.marks.pins[0].pillar, (PillarIndex{7, 21}));
   mouse.click(mouse.pixel(7, 21));
-  ASSERT_EQ(mouse.state.pins.size(), 1u);
-  EXPECT_EQ(mouse.state.pins[0].pillar, (PillarIndex{2, 3}));
+  ASSERT_EQ(mouse.state.marks.pins.size(), 1u);
+  EXPECT_EQ(mouse.state.marks.pins[0].pillar, (PillarIndex{2, 3}));
   const Vec2 pixel = mouse.pixel(7, 21);
   mouse.drag(pixel, {pixel.x + 2, pixel.y + 1});
-  EXPECT_EQ(mouse.state.pins.size(), 2u) << "a trembling click";
-  EXPECT_FALSE(mouse.state.selection);
+  EXPECT_EQ(mouse.state.marks.pins.size(), 2u) << "a trembling click";
+  EXPECT_FALSE(mouse.state.marks.selection);
 }
 
 TEST(Mouse, PinsAreNotMoreThanThereMayBe) {
   Mouse mouse;
-  for (std::uint32_t col = 0; col < AppState::kMostPins + 2; ++col)
-    mouse.click(mouse.pixel(1, col));
-  EXPECT_EQ(mouse.state.pins.size(), AppState::kMostPins);
-  EXPECT_FALSE(mouse.state.notice.empty());
+  for (std::uint32_t col = 0; col < Marks::kMostPins + 2; ++col) mouse.click(mouse.pixel(1, col));
+  EXPECT_EQ(mouse.state.marks.pins.size(), Marks::kMostPins);
+  EXPECT_FALSE(mouse.state.window.notice.empty());
 }
 
 TEST(Mouse, ADoubleClickResetsTheViewAndLeavesPinsAlone) {
@@ -83,7 +82,7 @@ TEST(Mouse, ADoubleClickResetsTheViewAndLeavesPinsAlone) {
   mouse.click(pixel);
   mouse.click_again(pixel);
   EXPECT_EQ(mouse.top(), fitted);
-  EXPECT_TRUE(mouse.state.pins.empty());
+  EXPECT_TRUE(mouse.state.marks.pins.empty());
   mouse.controls.take(WheelEvent{3, {300, 250}}, mouse.command());
   mouse.click(pixel);
   mouse.click(pixel);
@@ -93,11 +92,11 @@ TEST(Mouse, ADoubleClickResetsTheViewAndLeavesPinsAlone) {
 TEST(Mouse, ADragSelectsThePillarsItTouches) {
   Mouse mouse;
   mouse.drag(mouse.pixel(12, 20), mouse.pixel(4, 6));
-  ASSERT_TRUE(mouse.state.selection);
-  EXPECT_EQ(mouse.state.selection->rect, (PillarRect{4, 13, 6, 21}));
-  EXPECT_TRUE(mouse.state.pins.empty());
+  ASSERT_TRUE(mouse.state.marks.selection);
+  EXPECT_EQ(mouse.state.marks.selection->rect, (PillarRect{4, 13, 6, 21}));
+  EXPECT_TRUE(mouse.state.marks.pins.empty());
   mouse.drag(mouse.pixel(10, 10), {2000, -500});
-  EXPECT_EQ(mouse.state.selection.value().rect, (PillarRect{0, 11, 10, FakeProducer::kCols}));
+  EXPECT_EQ(mouse.state.marks.selection.value().rect, (PillarRect{0, 11, 10, FakeProducer::kCols}));
 }
 
 TEST(Mouse, OtherButtonsAndShiftMoveTheView) {
@@ -106,23 +105,23 @@ TEST(Mouse, OtherButtonsAndShiftMoveTheView) {
         std::pair{MouseButton::left, Modifiers{true, false}}}) {
     Mouse mouse;
     const Vec2 from = mouse.pixel(10, 15);
-    const auto point = sheet_point(mouse.place, mouse.state.settings, from);
+    const auto point = sheet_point(mouse.place, mouse.state.look.settings, from);
     mouse.drag(from, {from.x + 60, from.y - 40}, button, modifiers);
-    const auto moved = pixel_of(mouse.place, mouse.state.settings, *point);
+    const auto moved = pixel_of(mouse.place, mouse.state.look.settings, *point);
     EXPECT_NEAR(moved->x, from.x + 60, 1e-6);
     EXPECT_NEAR(moved->y, from.y - 40, 1e-6);
-    EXPECT_FALSE(mouse.state.selection);
-    EXPECT_FALSE(mouse.state.view_is_fitted);
+    EXPECT_FALSE(mouse.state.marks.selection);
+    EXPECT_FALSE(mouse.state.look.view_is_fitted);
   }
 }
 
 TEST(Mouse, TheWheelZoomsAboutTheCursor) {
   Mouse mouse;
   const Vec2 pixel = mouse.pixel(5, 22);
-  const auto before = sheet_point(mouse.place, mouse.state.settings, pixel);
+  const auto before = sheet_point(mouse.place, mouse.state.look.settings, pixel);
   const double scale = mouse.top().pixels_per_mm;
   mouse.controls.take(WheelEvent{2, pixel}, mouse.command());
-  const auto after = sheet_point(mouse.place, mouse.state.settings, pixel);
+  const auto after = sheet_point(mouse.place, mouse.state.look.settings, pixel);
   EXPECT_NEAR(mouse.top().pixels_per_mm, scale * 1.44, 1e-9);
   EXPECT_NEAR(after->x, before->x, 1e-9);
   EXPECT_NEAR(after->y, before->y, 1e-9);
@@ -131,24 +130,24 @@ TEST(Mouse, TheWheelZoomsAboutTheCursor) {
 TEST(Mouse, ADragTurnsAViewInPerspective) {
   Mouse mouse;
   show_orbit(mouse.state, mouse.place, true);
-  const auto before = std::get<OrbitView>(mouse.state.settings.view);
+  const auto before = std::get<OrbitView>(mouse.state.look.settings.view);
   mouse.drag({400, 300}, {460, 320});
-  const auto after = std::get<OrbitView>(mouse.state.settings.view);
+  const auto after = std::get<OrbitView>(mouse.state.look.settings.view);
   EXPECT_NE(after.azimuth, before.azimuth);
   EXPECT_NE(after.elevation, before.elevation);
   EXPECT_EQ(after.distance_mm, before.distance_mm);
-  EXPECT_FALSE(mouse.state.selection);
+  EXPECT_FALSE(mouse.state.marks.selection);
 }
 
 TEST(Mouse, OutsideTheFieldItDoesNothing) {
   Mouse mouse;
-  const RenderSettings before = mouse.state.settings;
+  const RenderSettings before = mouse.state.look.settings;
   mouse.click({900, 300});
   mouse.drag({900, 300}, {950, 350});
   mouse.controls.take(WheelEvent{2, {900, 300}}, mouse.command());
-  EXPECT_TRUE(mouse.state.pins.empty());
-  EXPECT_FALSE(mouse.state.selection);
-  EXPECT_EQ(mouse.state.settings, before);
+  EXPECT_TRUE(mouse.state.marks.pins.empty());
+  EXPECT_FALSE(mouse.state.marks.selection);
+  EXPECT_EQ(mouse.state.look.settings, before);
 }
 
 TEST(Mouse, ADragThatBeganInTheFieldGoesOnOutside) {
@@ -177,22 +176,22 @@ TEST(Views, EachKeepsItsPositionWhileTheOtherIsShown) {
   const TopView zoomed = mouse.top();
   show_orbit(mouse.state, mouse.place, true);
   mouse.drag({400, 300}, {460, 320});
-  const View turned = mouse.state.settings.view;
+  const View turned = mouse.state.look.settings.view;
   show_orbit(mouse.state, mouse.place, false);
   EXPECT_EQ(mouse.top(), zoomed);
   show_orbit(mouse.state, mouse.place, true);
-  EXPECT_EQ(mouse.state.settings.view, turned);
+  EXPECT_EQ(mouse.state.look.settings.view, turned);
 }
 
 TEST(Views, PillarsInSightAreThoseOfThePlot) {
   Mouse mouse;
-  const PillarRect all = visible_pillars(mouse.place, mouse.state.settings);
+  const PillarRect all = visible_pillars(mouse.place, mouse.state.look.settings);
   EXPECT_EQ(all.row_end - all.row_begin, FakeProducer::kRows);
   EXPECT_EQ(all.col_end - all.col_begin, FakeProducer::kCols);
   for (int i = 0; i < 8; ++i) {
     mouse.controls.take(WheelEvent{2, mouse.pixel(5, 22)}, mouse.command());
   }
-  const PillarRect seen = visible_pillars(mouse.place, mouse.state.settings);
+  const PillarRect seen = visible_pillars(mouse.place, mouse.state.look.settings);
   EXPECT_LE(seen.row_begin, 5u);
   EXPECT_GT(seen.row_end, 5u);
   EXPECT_LE(seen.col_begin, 22u);

@@ -98,24 +98,24 @@ TEST(UserSettings, RememberBoxesAndSourcesWhateverTheFileHolds) {
 TEST(KeepSelection, MakesABoxThatStays) {
   FakeAppState fake;
   keep_selection(fake.state);
-  EXPECT_TRUE(fake.state.boxes.empty());
-  EXPECT_FALSE(fake.state.notice.empty());
+  EXPECT_TRUE(fake.state.marks.boxes.empty());
+  EXPECT_FALSE(fake.state.window.notice.empty());
   for (std::uint32_t i = 0; i < NamedBoxes::kMost; ++i) {
     select_pillars(fake.state, {i, i + 1, 3, 9});
     EXPECT_TRUE(dispatch({GLFW_KEY_O, {}}, fake.command()));
-    EXPECT_FALSE(fake.state.selection);
+    EXPECT_FALSE(fake.state.marks.selection);
   }
   clear_marks(fake.state);
-  ASSERT_EQ(fake.state.boxes.size(), NamedBoxes::kMost);
-  EXPECT_EQ(fake.state.boxes[1].name, "box 2");
-  EXPECT_EQ(fake.state.boxes[1].rect, (PillarRect{1, 2, 3, 9}));
-  fake.state.boxes.erase(fake.state.boxes.begin() + 1);
+  ASSERT_EQ(fake.state.marks.boxes.size(), NamedBoxes::kMost);
+  EXPECT_EQ(fake.state.marks.boxes[1].name, "box 2");
+  EXPECT_EQ(fake.state.marks.boxes[1].rect, (PillarRect{1, 2, 3, 9}));
+  fake.state.marks.boxes.erase(fake.state.marks.boxes.begin() + 1);
   for (int i = 0; i < 2; ++i) {  // The free number, then none.
     select_pillars(fake.state, {18, 19, 3, 9});
     keep_selection(fake.state);
   }
-  EXPECT_EQ(fake.state.boxes.back().name, "box 2");
-  EXPECT_TRUE(fake.state.selection);
+  EXPECT_EQ(fake.state.marks.boxes.back().name, "box 2");
+  EXPECT_TRUE(fake.state.marks.selection);
 }
 
 TEST(BoxesPanel, NamesANewBoxByTypingAndRemovesOne) {
@@ -130,19 +130,19 @@ TEST(BoxesPanel, NamesANewBoxByTypingAndRemovesOne) {
     gui.input.take(TextEvent{static_cast<std::uint32_t>(letter)});
   }
   gui.frame(draw);
-  EXPECT_EQ(fake.state.boxes[0].name, "toe");
+  EXPECT_EQ(fake.state.marks.boxes[0].name, "toe");
   // A tap between two frames is not lost.
   gui.input.take(KeyEvent{GLFW_KEY_ENTER, {}, true, false});
   gui.input.take(KeyEvent{GLFW_KEY_ENTER, {}, false, false});
   for (int i = 0; i < 3; ++i) gui.frame(draw);
   EXPECT_FALSE(ImGui::GetIO().WantTextInput);
   EXPECT_FALSE(ImGui::GetIO().KeysDown[GLFW_KEY_ENTER]);
-  const SelectionSums& sums = fake.state.boxes[0].cached.value().sums;
+  const SelectionSums& sums = fake.state.marks.boxes[0].cached.value().sums;
   EXPECT_NEAR(sums.normal, 2 * 0.1 * (2 + 3 + 4 + 5 + 6 + 7 + 8), 1e-4);
-  fake.state.boxes.push_back({"heel", {3, 4, 0, 5}, 2});
+  fake.state.marks.boxes.push_back({"heel", {3, 4, 0, 5}, 2});
   gui.press({"boxes", 1, "×"}, draw);
-  ASSERT_EQ(fake.state.boxes.size(), 1U);
-  EXPECT_EQ(fake.state.boxes[0].name, "heel");
+  ASSERT_EQ(fake.state.marks.boxes.size(), 1U);
+  EXPECT_EQ(fake.state.marks.boxes[0].name, "heel");
 }
 
 TEST(Legend, NoNameEndsBeyondItsChart) {

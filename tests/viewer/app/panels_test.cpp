@@ -9,6 +9,7 @@
 #include "tests/io/sample_files.h"
 #include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/export/export.h"
+#include "viewer/app/source/start_pictures.h"
 #include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
@@ -20,7 +21,7 @@ struct Panels : testing::Test {
   }
   [[nodiscard]] std::vector<int> pins() const {
     std::vector<int> numbers;
-    for (const Pin& pin : fake.state.pins) numbers.push_back(pin.number);
+    for (const Pin& pin : fake.state.marks.pins) numbers.push_back(pin.number);
     return numbers;
   }
 
@@ -29,8 +30,8 @@ struct Panels : testing::Test {
 };
 
 TEST_F(Panels, EachWidgetActs) {
-  RenderSettings& settings = fake.state.settings;
-  fake.state.has_truth = true;
+  RenderSettings& settings = fake.state.look.settings;
+  fake.state.source.open_truth = []() -> std::unique_ptr<FieldProducer> { return nullptr; };
   set_range(fake.state, {0, 100});
   press({"View", "Fit"});
   EXPECT_EQ(settings.range, (Range{0, 3}));
@@ -43,8 +44,6 @@ TEST_F(Panels, EachWidgetActs) {
     press({"View", name});
     EXPECT_NE(settings.*layer, before) << name;
   }
-  press({"View", "trails"});
-  EXPECT_TRUE(fake.state.show_trails);
   press({"View", "truth"});
   EXPECT_TRUE(fake.pending.truth);
   press({"View", "light"});
@@ -52,7 +51,7 @@ TEST_F(Panels, EachWidgetActs) {
   press({"View", "view", "3-D"});
   EXPECT_TRUE(shows_orbit(settings));
   press({"View", "surface", "Sphere"});
-  EXPECT_EQ(settings.surface.kind, SurfaceKind::sphere);
+  EXPECT_EQ(settings.surface.shape, SurfaceShape::sphere);
   for (const auto& [name, request] :
        {std::pair{"Picture", &PendingActions::picture},
         std::pair{"Frames", &PendingActions::sequence}, std::pair{"Video", &PendingActions::video},
@@ -62,44 +61,45 @@ TEST_F(Panels, EachWidgetActs) {
   }
   select_pillars(fake.state, {1, 8, 2, 9});
   press({"Selection", "Keep as a named box"});
-  EXPECT_EQ(fake.state.boxes.size(), 1U);
+  EXPECT_EQ(fake.state.marks.boxes.size(), 1U);
 }
 
 TEST_F(Panels, AHeadingFoldsItsPanel) {
   press({"View", "View"});
   press({"View", "relief"});
-  EXPECT_FALSE(fake.state.settings.relief);
+  EXPECT_FALSE(fake.state.look.settings.relief);
 }
 
 TEST_F(Panels, PinsAreChosenByTheirNumbersAndRemoved) {
-  for (std::uint32_t i = 0; i < 3; ++i) fake.state.pins.push_back({{10 + i, 20}});
+  for (std::uint32_t i = 0; i < 3; ++i) fake.state.marks.pins.push_back({{10 + i, 20}});
   press({"Pillar", "pin 1"});
   EXPECT_EQ(pins(), (std::vector<int>{2, 3, 1}));
   press({"Pillar", "pin 3"});
   EXPECT_EQ(pins(), (std::vector<int>{2, 1, 3}));
   for (const std::size_t left : {2U, 1U, 0U}) {
     press({"Pillar", "remove"});
-    EXPECT_EQ(fake.state.pins.size(), left);
+    EXPECT_EQ(fake.state.marks.pins.size(), left);
   }
-  fake.state.pins.push_back({{1000, 1000}});
+  fake.state.marks.pins.push_back({{1000, 1000}});
   gui.frame([&] { draw_panels(fake.command()); });
-  fake.state.field.reset();
+  fake.state.source.field.reset();
   gui.frame([&] { draw_panels(fake.command()); });
-  EXPECT_EQ(fake.state.pins.size(), 1U) << "a pin outside the field";
+  EXPECT_EQ(fake.state.marks.pins.size(), 1U) << "a pin outside the field";
 }
 
 TEST_F(Panels, SumsOfTheSelectionFollowRectangleAndFrame) {
-  fake.state.selection = Selection{{4, 20, 8, 30}};
+  fake.state.marks.selection = Selection{{4, 20, 8, 30}};
   const auto sum = [&](const PillarRect& rect) {
-    return sums_over(*fake.state.field, rect, fake.player->info().skin.element_pitch_mm()).normal;
+    return sums_over(*fake.state.source.field, rect, fake.player().info().skin.element_pitch_mm())
+        .normal;
   };
   EXPECT_EQ(selection_sums(fake.state).normal, sum({4, 20, 8, 30}));
-  fake.state.selection->rect.row_end = 14;
+  fake.state.marks.selection->rect.row_end = 14;
   const double second = sum({4, 14, 8, 30});
   EXPECT_EQ(selection_sums(fake.state).normal, second);
-  fake.state.field->forces.normal = fake.state.field->forces.shear_x;
+  fake.state.source.field->forces.normal = fake.state.source.field->forces.shear_x;
   EXPECT_EQ(selection_sums(fake.state).normal, second) << "cached for the frame";
-  ++fake.state.field->index;
+  ++fake.state.source.field->index;
   EXPECT_LT(selection_sums(fake.state).normal, second);
 }
 
@@ -115,9 +115,9 @@ std::set<std::string> available(const SourceInfo& source) {
 TEST(QuantitiesOfSensels, AreThoseOfNormalForce) {
   SourceInfo source = FakeProducer(SkinLayout::sensels).info();
   EXPECT_EQ(available(source),
-            (std::set<std::string>{"normal", "peak", "pressure", "status", "uncertainty"}));
+            (std::set<std::string>{"normal", "pressure", "status", "uncertainty"}));
   source.has_uncertainty = false;
-  EXPECT_EQ(available(source), (std::set<std::string>{"normal", "peak", "pressure", "status"}));
+  EXPECT_EQ(available(source), (std::set<std::string>{"normal", "pressure", "status"}));
   EXPECT_EQ(available(FakeProducer().info()).size(), static_cast<std::size_t>(kQuantities));
 }
 
@@ -126,12 +126,12 @@ TEST(KeysOfSensels, ThoseOfPillarsOnlySaySo) {
   for (const Shortcut& shortcut : shortcuts()) {
     EXPECT_TRUE(applies(shortcut, FakeProducer().info())) << shortcut.keys;
     FakeAppState fake(SkinLayout::sensels);
-    const RenderSettings before = fake.state.settings;
+    const RenderSettings before = fake.state.look.settings;
     if (applies(shortcut, *fake.place.source)) continue;
     ++left_out;
     EXPECT_TRUE(dispatch(shortcut.chords[0], fake.command()));
-    EXPECT_TRUE(fake.state.settings == before) << shortcut.keys;
-    EXPECT_EQ(fake.state.notice.find("this source has no "), 0U) << shortcut.keys;
+    EXPECT_TRUE(fake.state.look.settings == before) << shortcut.keys;
+    EXPECT_EQ(fake.state.window.notice.find("this source has no "), 0U) << shortcut.keys;
   }
   EXPECT_EQ(left_out, 8U + 3U);  // quantities and layers
 }
@@ -140,14 +140,14 @@ TEST(KeysOfSensels, ThoseOfPillarsOnlySaySo) {
 std::string words_of_panels(SkinLayout layout) {
   FakeAppState fake(layout);
   const SourceInfo& source = *fake.place.source;
-  fake.state.settings.contacts = true;
-  fake.state.field->contacts = std::make_shared<const ShownContacts>(
+  fake.state.look.settings.contacts = true;
+  fake.state.source.field->contacts = std::make_shared<const ShownContacts>(
       FieldContacts(source.skin.element_pitch_mm(), source.contacts)
-          .contacts_of(*fake.state.field));
+          .contacts_of(*fake.state.source.field));
   toggle_pin(fake.state, {3, 4});
   select_pillars(fake.state, {1, 8, 2, 9});
-  fake.state.hovered = PillarIndex{5, 6};
-  fake.state.boxes = {{"heel", {1, 8, 2, 9}, 1}};
+  fake.state.marks.hovered = PillarIndex{5, 6};
+  fake.state.marks.boxes = {{"heel", {1, 8, 2, 9}, 1}};
   FakeGui gui;
   std::string words;
   for (int i = 0; i < 2; ++i) {  // Sizes are known in the second frame.
@@ -176,17 +176,32 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
   }
 }
 
+TEST(StartPage, APictureAndARecentSourceAreChosenByTheirNames) {
+  StartChoices choices{{"old.h5"}, {{"scenes/demo.toml", "scenes/wave.toml"}, {}}, {}};
+  choices.pictures.resize(embedded_pictures().size());
+  FakeGui gui;
+  std::string chosen;
+  const auto draw = [&] {
+    const std::string source = start_page(choices, {0, 0, 500, 1600}, "", 1);
+    if (!source.empty()) chosen = source;
+  };
+  gui.press({"demo"}, draw, "start");
+  EXPECT_EQ(chosen, "scenes/demo.toml");
+  gui.press({"recent", "old.h5"}, draw, "start");
+  EXPECT_EQ(chosen, "old.h5");
+}
+
 TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
   FakeAppState fake;
-  const View whole = fake.state.settings.view;
+  const View whole = fake.state.look.settings.view;
   const PillarRect extent{2, 4, 20, 24};
   mark_contact(fake.state, fake.place, {3, 2}, extent);
-  EXPECT_EQ(fake.state.selection.value().rect, extent);
-  EXPECT_EQ(fake.state.settings.view, whole);
-  fake.state.settings.view = TopView{{-10, -5}, 500};
+  EXPECT_EQ(fake.state.marks.selection.value().rect, extent);
+  EXPECT_EQ(fake.state.look.settings.view, whole);
+  fake.state.look.settings.view = TopView{{-10, -5}, 500};
   mark_contact(fake.state, fake.place, {3, 2}, extent);
-  EXPECT_EQ(std::get<TopView>(fake.state.settings.view).centre_mm, (Vec2{3, 2}));
-  EXPECT_FALSE(fake.state.view_is_fitted);
+  EXPECT_EQ(std::get<TopView>(fake.state.look.settings.view).centre_mm, (Vec2{3, 2}));
+  EXPECT_FALSE(fake.state.look.view_is_fitted);
 }
 
 using Export = io_test::TemporaryDirectory;
@@ -196,10 +211,10 @@ TEST(WriteCsv, HasThePillarsOfARectangleThatAreNotIdle) {
   FakeAppState fake;
   std::vector<std::uint8_t> status(600, status::kUsable);
   status[3] = 0;
-  fake.state.field->forces.status = status;
+  fake.state.source.field->forces.status = status;
   const auto lines_of = [&](SkinLayout layout, const PillarRect& rect) {
     ShownField field =
-        layout == SkinLayout::pillars ? *fake.state.field : FakeProducer(layout).produce(7);
+        layout == SkinLayout::pillars ? *fake.state.source.field : FakeProducer(layout).produce(7);
     write_csv(folder / "t.csv", field, rect, Replace::anything);
     std::istringstream text(io_test::bytes_of(folder / "t.csv"));
     std::vector<std::string> lines;

@@ -18,23 +18,23 @@ namespace {
 /// All state that a shortcut may change, for comparison.
 auto state_of(const FakeAppState& fake) {
   const AppState& state = fake.state;
-  const PlayerState player = fake.player->state();
+  const PlayerState player = fake.player().state();
   const PendingActions& pending = fake.pending;
-  return std::tuple(state.settings, state.pins.size(), state.selection.has_value(), state.show_help,
-                    state.show_panels, player.frame, player.playing, player.loops, player.follows,
-                    player.speed, pending.quit, pending.picture, pending.sequence, pending.video,
-                    pending.table, pending.stop, pending.record, pending.truth, pending.start,
-                    state.notice, state.show_trails, state.show_counters);
+  return std::tuple(state.look.settings, state.marks.pins.size(), state.marks.selection.has_value(),
+                    state.window.show_help, state.window.show_panels, player.frame, player.playing,
+                    player.loops, player.follows, player.speed, pending.quit, pending.picture,
+                    pending.sequence, pending.video, pending.table, pending.stop, pending.record,
+                    pending.truth, pending.start, state.window.notice, state.window.show_counters);
 }
 
 /// A state that every shortcut changes.
 void set_up(FakeAppState& fake, Quantity quantity) {
   show_quantity(fake.state, quantity);
   set_range(fake.state, {0, 7.5f});
-  fake.player->seek(50);
+  fake.player().seek(50);
   toggle_pin(fake.state, {3, 4});
   select_pillars(fake.state, {1, 2, 3, 4});
-  zoom(fake.state.settings.view, fake.place.plot(fake.state.settings), {300, 300}, 2);
+  zoom(fake.state.look.settings.view, fake.place.plot(fake.state.look.settings), {300, 300}, 2);
 }
 
 std::vector<Chord> chords_of(const Shortcut& shortcut) {
@@ -84,33 +84,33 @@ TEST(Shortcuts, OthersDoNothing) {
 
 TEST(Shortcuts, StepsGoOnAndBack) {
   FakeAppState fake;
-  fake.player->set_loop(false);
-  fake.player->seek(50);
+  fake.player().set_loop(false);
+  fake.player().seek(50);
   dispatch({GLFW_KEY_RIGHT, {true, false}}, fake.command());
-  EXPECT_EQ(fake.player->state().frame, 60u);
+  EXPECT_EQ(fake.player().state().frame, 60u);
   dispatch({GLFW_KEY_LEFT, {}}, fake.command());
-  EXPECT_EQ(fake.player->state().frame, 59u);
+  EXPECT_EQ(fake.player().state().frame, 59u);
   dispatch({GLFW_KEY_END, {}}, fake.command());
-  EXPECT_EQ(fake.player->state().frame, FakeProducer::kFrames - 1);
+  EXPECT_EQ(fake.player().state().frame, FakeProducer::kFrames - 1);
   dispatch({GLFW_KEY_HOME, {}}, fake.command());
-  EXPECT_EQ(fake.player->state().frame, 0u);
+  EXPECT_EQ(fake.player().state().frame, 0u);
 }
 
 TEST(Shortcuts, EscapeClosesTheHelpFirstAndStopsWritingBeforeItClears) {
   FakeAppState fake;
   toggle_pin(fake.state, {3, 4});
-  fake.state.show_help = true;
-  fake.state.writing = true;
+  fake.state.window.show_help = true;
+  fake.state.window.writing = true;
   const Chord escape{GLFW_KEY_ESCAPE, {}};
   dispatch(escape, fake.command());
-  EXPECT_FALSE(fake.state.show_help);
+  EXPECT_FALSE(fake.state.window.show_help);
   EXPECT_FALSE(fake.pending.stop);
   dispatch(escape, fake.command());
   EXPECT_TRUE(fake.pending.stop);
-  EXPECT_EQ(fake.state.pins.size(), 1u);
-  fake.state.writing = false;
+  EXPECT_EQ(fake.state.marks.pins.size(), 1u);
+  fake.state.window.writing = false;
   dispatch(escape, fake.command());
-  EXPECT_TRUE(fake.state.pins.empty());
+  EXPECT_TRUE(fake.state.marks.pins.empty());
 }
 
 TEST(Shortcuts, AQuantityKeepsItsRange) {
@@ -118,11 +118,11 @@ TEST(Shortcuts, AQuantityKeepsItsRange) {
   show_quantity(fake.state, Quantity::normal);
   set_range(fake.state, {0.5f, 2.5f});
   show_quantity(fake.state, Quantity::shear_x);
-  EXPECT_EQ(fake.state.settings.range.low, -fake.state.settings.range.high);
-  EXPECT_EQ(fake.state.settings.map, default_map(Scale::diverging));
+  EXPECT_EQ(fake.state.look.settings.range.low, -fake.state.look.settings.range.high);
+  EXPECT_EQ(fake.state.look.settings.map, default_map(Scale::diverging));
   show_quantity(fake.state, Quantity::normal);
-  EXPECT_EQ(fake.state.settings.range, (Range{0.5f, 2.5f}));
-  EXPECT_EQ(fake.state.settings.map, default_map(Scale::sequential));
+  EXPECT_EQ(fake.state.look.settings.range, (Range{0.5f, 2.5f}));
+  EXPECT_EQ(fake.state.look.settings.map, default_map(Scale::sequential));
 }
 
 }  // namespace

@@ -98,22 +98,5 @@ TEST_F(Video, WrongEndingsSizesAndRatesAreErrors) {
   EXPECT_NE(error_of([&] { video.finish(); }).find("has no pictures"), std::string::npos);
 }
 
-TEST_F(Video, FfmpegWritesVideosOfOddSizes) {
-  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) {
-    GTEST_SKIP() << "ffmpeg is not installed (Debian package ffmpeg)";
-  }
-  for (const char* name : {"a.mp4", "a.mkv", "a.mov", "a.webm"}) {
-    VideoWriter video(folder_ / name, 65, 33, 30);
-    for (std::uint8_t level = 0; level < 12; ++level) video.add(grey(65, 33, level));
-    video.finish();
-    EXPECT_GT(fs::file_size(folder_ / name), 500u);
-    const std::string settings = "ffmpeg -loglevel error -i " + (folder_ / name).string() +
-                                 " -f rawvideo -pix_fmt gray " + (folder_ / "raw").string();
-    ASSERT_EQ(std::system(settings.c_str()), 0);
-    EXPECT_EQ(fs::file_size(folder_ / "raw"), 12u * 66 * 34);
-    fs::remove(folder_ / "raw");
-  }
-}
-
 }  // namespace
 }  // namespace pillarfield::viewer

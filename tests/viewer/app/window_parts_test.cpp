@@ -2,14 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/viewer/source/touched_field.h"
 #include "viewer/app/load_range.h"
-#include "viewer/app/panels/time_window.h"
-#include "viewer/app/trails.h"
+#include "viewer/app/panels/plot.h"
 #include "viewer/app/window/gui.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/options.h"
-#include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -113,22 +110,6 @@ TEST(TimeWindow, FollowsASensorUntilItIsMovedBack) {
   expect_span(window.of({0, 200}, 20), 75, 80);
   window.reset();
   expect_span(window.of({0, 200}, 20), 180, 200);
-}
-
-TEST(Trails, HoldTheLastSecondsOfEachContact) {
-  Trails trails;
-  const auto add = [&](std::uint64_t index, std::uint32_t col) {
-    ShownField field = touched_field(index, 20, 40, {{{4, 8, col, col + 4}}});
-    field.time_s = static_cast<double>(index);
-    field.contacts = std::make_shared<const ShownContacts>(FieldContacts(1).contacts_of(field));
-    trails.add(field);
-  };
-  for (std::uint32_t i = 0; i < 5; ++i) add(i, 10 + i);
-  ASSERT_EQ(trails.all().size(), 1U);
-  ASSERT_EQ(trails.all().front().places.size(), 3U) << "of two seconds";
-  EXPECT_DOUBLE_EQ(trails.all().front().places.back().x_mm, 14 + 2 - 20);
-  add(1, 10);
-  EXPECT_EQ(trails.all().front().places.size(), 1U) << "a step back";
 }
 
 /// Draws while due; returns the number of frames.

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/render/overlay.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -71,34 +70,6 @@ TEST(ContactMarks, ArrowsPointUpWhereShearDoesAndGrowWithTheScaleAndNotForEver) 
   settings.scale = 2;
   expect_point(tip_of(-0.5F).value(), 280, 80 + kContactArrowPixels);
   expect_point(tip_of(-1).value(), 280, 80 + diagonal);
-}
-
-TEST(ContactMarks, HeaviestFirstAndNoneOutOfSight) {
-  const ShownContacts contacts =
-      contacts_of({{{1, 3, 1, 3}, 1}, {{8, 10, 8, 10}, 3}, {{15, 17, 35, 37}, 2}});
-  const auto marks = contact_marks(contacts, Ground(nullptr, source(), top_settings(), kPlot));
-  ASSERT_EQ(marks.size(), 3U);
-  EXPECT_EQ(marks[0].words, "2  12.0 N");
-  EXPECT_EQ(marks[1].words, "3  8.00 N");
-  EXPECT_EQ(marks[2].words, "1  4.00 N");
-  RenderSettings near = top_settings();
-  near.view = TopView{{-10, 1}, 100};
-  EXPECT_EQ(contact_marks(contacts, Ground(nullptr, source(), near, kPlot)).size(), 1U);
-}
-
-TEST(ContactMarks, OnACylinderFollowTheSurface) {
-  RenderSettings settings = top_settings();
-  settings.surface = {SurfaceKind::cylinder, 10};
-  settings.view = fit_orbit({kCols, kRows}, settings.surface, kPlot);
-  const ShownContacts contacts = contacts_of({{{4, 8, 18, 24}, 1, 0.5F, 0}});
-  const auto marks = contact_marks(contacts, Ground(nullptr, source(), settings, kPlot));
-  ASSERT_EQ(marks.size(), 1U);
-  EXPECT_EQ(marks[0].outline.size(), 4U * 32U);
-  const auto middle = project(settings.view, settings.surface, {kCols, kRows}, kPlot,
-                              frame_at(settings.surface, {1, 4}).position);
-  ASSERT_TRUE(middle);
-  expect_point(marks[0].centre, middle->x, middle->y);
-  EXPECT_TRUE(marks[0].tip);
 }
 
 TEST(ContactMarks, TheHeaviestAreDrawnAndTheRestIsReported) {

@@ -9,7 +9,6 @@
 
 #include "pillarfield/error.h"
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/source/plane_block.h"
 #include "viewer/source/survey.h"
 
 namespace pillarfield::viewer {
@@ -133,31 +132,6 @@ TEST(Survey, AFailureIsReportedAndWhatWasMeasuredStays) {
   wait_until([&] { return !survey.progress().failure.empty(); });
   EXPECT_NE(survey.progress().failure.find("frame 40 is damaged"), std::string::npos);
   EXPECT_EQ(curves->of(pillar, 0, 1, 100).size(), 40U);
-}
-
-TEST(PeakHold, KeepsTheLargestNormalForceOfEachPillar) {
-  PeakHold peaks;
-  for (const std::uint64_t index : {3U, 7U, 5U}) peaks.add(rising_field(index).forces);
-  ShownField nan = touched_field(8, 20, 30, {{{0, 1, 0, 1}, NAN}});
-  peaks.add(nan.forces);
-  const auto held = peaks.field(rising_field(5));
-  ASSERT_NE(held, nullptr);
-  EXPECT_EQ(held->forces.normal[2 * 30 + 12], 8);
-  EXPECT_EQ(held->forces.status[2 * 30 + 12], status::kUsable);
-  EXPECT_EQ(held->forces.normal[0], 0);
-  EXPECT_EQ(held->forces.status[0], 0);
-  EXPECT_EQ(held->forces.shear_x[2 * 30 + 12], 0);
-  EXPECT_EQ(held->index, 5U);
-  EXPECT_NE(held->pages.data(), nullptr);
-  ShownField sensels = rising_field(5);
-  sensels.forces.shear_x = sensels.forces.shear_y = {};
-  PeakHold of_sensels;
-  of_sensels.add(sensels.forces);
-  EXPECT_TRUE(of_sensels.field(sensels)->forces.shear_x.empty());
-  EXPECT_EQ(of_sensels.field(sensels)->forces.status[2 * 30 + 12], status::kSensel1);
-  peaks.reset();
-  peaks.add(rising_field(1).forces);
-  EXPECT_EQ(peaks.field(rising_field(1))->forces.normal[2 * 30 + 12], 2);
 }
 
 }  // namespace

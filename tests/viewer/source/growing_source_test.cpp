@@ -41,24 +41,6 @@ TEST(GrowingFile, ReportsEachChangeOnce) {
   EXPECT_FALSE(file.may_have_changed()) << "a file that is away is nothing new";
 }
 
-TEST(GrowingFile, IsOpenedAgainUntilItsWriterLetsIt) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "a.h5";
-  write_bytes(path, "1");
-  settle();
-  GrowingFile file(path);
-  int attempts = 0;
-  const auto third_time = [&](const std::filesystem::path& asked) {
-    EXPECT_EQ(asked, path);
-    if (++attempts < 3) throw Error("a.h5", "is not ready");
-  };
-  EXPECT_TRUE(file.reopen(third_time));
-  EXPECT_EQ(attempts, 3);
-  EXPECT_FALSE(file.may_have_changed());
-  EXPECT_FALSE(file.reopen([](const auto&) { throw Error("a.h5", "is damaged"); }));
-  EXPECT_TRUE(file.may_have_changed()) << "there shall be another look";
-}
-
 TEST(GrowingFile, APartGoesOnUnderItsFinalName) {
   const TemporaryDirectory directory;
   write_bytes(directory / "a.h5.part", "1");

@@ -8,8 +8,6 @@
 #include <mutex>
 #include <thread>
 
-#include "pillarfield/status.h"
-
 namespace pillarfield::viewer {
 namespace {
 
@@ -128,29 +126,6 @@ TEST(LivePlayer, SolvesEveryFrameAndShowsTheNewest) {
   EXPECT_EQ(live.player->state().frames, 0U);
 }
 
-TEST(LivePlayer, TimesAreThoseOfTheSensorWhileItsClockRuns) {
-  LiveFixture live;
-  for (int i = 0; i < 5; ++i) {
-    live.send(50);
-    std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
-  }
-  live.wire->jump_s = 1000;
-  live.send(50, 2);
-  live.wire->jump_s = -1000;
-  live.send(50, 2);
-  const auto points = live.curves->total(-1, 1e9, 1000);
-  ASSERT_EQ(points.size(), 9U);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const double step_s = points[i].time_s - points[i - 1].time_s;
-    if (i == 5 || i == 7) {
-      EXPECT_GT(step_s, 0);
-      EXPECT_LT(step_s, 20) << "a clock that jumps";
-    } else {
-      EXPECT_NEAR(step_s, 0.001, 1e-9);
-    }
-  }
-}
-
 TEST(LivePlayer, PauseFreezesThePictureNotTheSensor) {
   LiveFixture live;
   live.send(50);
@@ -164,48 +139,21 @@ TEST(LivePlayer, PauseFreezesThePictureNotTheSensor) {
   EXPECT_EQ(live.newest().forces.normal[2 * 8 + 2], 1);
 }
 
-TEST(LivePlayer, MissingReadingsGiveNoForce) {
-  LiveFixture live;
-  live.wire->partial = 1;
-  live.send(100);
-  const ShownField field = live.newest();
-  EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0);
-  EXPECT_NE(field.forces.status[2 * 8 + 2] & status::kInconsistent, 0);
-}
-
-TEST(LivePlayer, ContactsAndPeaksComeWhenAskedFor) {
+TEST(LivePlayer, ContactsComeWhenAskedFor) {
   LiveFixture live;
   live.send(100);
   EXPECT_EQ(live.newest().contacts, nullptr);
   live.player->set_contacts(true);
-  live.player->set_peak(true);
   live.send(100, 2);
   ShownField field;
   LiveFixture::wait_until([&] {
     live.send(50);
     field = live.newest();
-    return field.contacts != nullptr && field.peak != nullptr;
+    return field.contacts != nullptr;
   });
   ASSERT_EQ(field.contacts->found.contacts.size(), 1U);
   EXPECT_FLOAT_EQ(static_cast<float>(field.contacts->found.total.normal_n), 2);
   EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0.5F);
-  EXPECT_EQ(field.peak->forces.normal[2 * 8 + 2], 1);
-}
-
-TEST(LivePlayer, ATareIsTakenFromUntouchedReadingsOnly) {
-  LiveFixture live;
-  live.player->live()->tare();
-  EXPECT_TRUE(live.status().taring);
-  LiveFixture::wait_until([&] {
-    live.send(0, 1);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    return !live.status().taring;
-  });
-  // Without noise, four standard deviations of the rounding to whole counts are the threshold.
-  EXPECT_EQ(live.status().message,
-            "tare taken: readings above 1.15 counts are usable, and a touch of less than 3 counts "
-            "(0.03 N) on a sensel would not have been seen");
-  EXPECT_EQ(live.status().messages, 1U);
 }
 
 TEST(LivePlayer, ASensorMayStopAndEnd) {
@@ -222,6 +170,22 @@ TEST(LivePlayer, ASensorMayStopAndEnd) {
   live.wire->end();
   LiveFixture::wait_until([&] { return live.status().ended; });
   EXPECT_EQ(live.newest().forces.normal[2 * 8 + 2], 1);
+}
+
+TEST(FieldClock, IsTheSensorsWhileThatRuns) {
+  FieldClock clock;
+  const auto arrived = std::chrono::steady_clock::now().time_since_epoch();
+  double last_s = clock.time_s(50, arrived);
+  for (const double sensor_s : {50.001, 50.003, 1050.0, -3.0}) {
+    const double time_s = clock.time_s(sensor_s, arrived + std::chrono::milliseconds(7));
+    if (sensor_s < 51 && sensor_s > 0) {
+      EXPECT_NEAR(time_s - last_s, sensor_s - (sensor_s > 50.002 ? 50.001 : 50), 1e-9);
+    } else {
+      EXPECT_GT(time_s, last_s);
+      EXPECT_LT(time_s, last_s + 1) << "a clock that jumps";
+    }
+    last_s = time_s;
+  }
 }
 
 }  // namespace

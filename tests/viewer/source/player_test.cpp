@@ -124,15 +124,6 @@ TEST(Player, NeverWaitsForASlowDisplayAndCountsWhatItDoesNotShow) {
   EXPECT_LE(fixture.seen->most_alive, 3) << "one waits, one is made, one is being let go";
 }
 
-TEST(Player, LeavesNoFrameOut) {
-  Fixture fixture(1e5, 7);
-  fixture.player->play();
-  fixture.wait_until([&] { return fixture.player->statistics().produced > 500; });
-  fixture.player.reset();
-  const auto frames = fixture.seen->produced();
-  for (std::size_t i = 0; i < frames.size(); ++i) ASSERT_EQ(frames[i], i % 7);
-}
-
 TEST(Player, FieldsOutliveIt) {
   Fixture fixture;
   const ShownField field = fixture.next_field();
@@ -140,24 +131,6 @@ TEST(Player, FieldsOutliveIt) {
   fixture.wait_until([&] { return fixture.player->statistics().waiting == 1; });
   fixture.player.reset();
   EXPECT_EQ(fixture.seen->alive, 1) << "the one taken, and not the one that waited";
-}
-
-TEST(Player, ObeysSeekAndStep) {
-  Fixture fixture;
-  EXPECT_EQ(fixture.next_field().index, 0U);
-  fixture.player->seek(7);
-  EXPECT_EQ(fixture.player->state().frame, 7U);
-  EXPECT_EQ(fixture.next_field().index, 7U);
-  fixture.player->step(-2);
-  EXPECT_EQ(fixture.next_field().index, 5U);
-  fixture.player->set_loop(false);
-  fixture.player->step(100);
-  EXPECT_EQ(fixture.next_field().index, 9U);
-  fixture.player->set_speed(0.5);
-  const PlayerState state = fixture.player->state();
-  EXPECT_EQ(state.frames, 10U);
-  EXPECT_EQ(state.speed, 0.5);
-  EXPECT_FALSE(state.loops);
 }
 
 TEST(Player, AnErrorComesOnceAfterTheFieldsBeforeIt) {
@@ -212,16 +185,6 @@ TEST(Player, FollowsASourceThatGrows) {
     fixture.seen->length = frames;
     EXPECT_EQ(fixture.next_field().index, frames - 1);
     EXPECT_EQ(fixture.player->state().frames, frames);
-  }
-}
-
-TEST(Player, EndsWhileItPlaysAndWhileItSleeps) {
-  for (const bool plays : {false, true}) {
-    for (int i = 0; i < 50; ++i) {
-      Fixture fixture(0.01);
-      if (plays) fixture.player->play();
-      if (i % 2 == 0) static_cast<void>(fixture.next_field());
-    }
   }
 }
 

@@ -6,21 +6,57 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "pillarfield/error.h"
+#include "pillarfield/force_field.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/solver_plan.h"
 #include "tests/io/sample_files.h"
-#include "tests/viewer/source/solved_scene.h"
 #include "tests/viewer/source/touched_field.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/selection.h"
 
 namespace pillarfield::viewer {
+template <class Value>
+bool same_bytes(std::span<const Value> left, std::span<const Value> right) {
+  return std::ranges::equal(std::as_bytes(left), std::as_bytes(right));
+}
+
+inline void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected) {
+  ASSERT_EQ(actual.rows, expected.rows);
+  ASSERT_EQ(actual.cols, expected.cols);
+  EXPECT_TRUE(same_bytes(actual.shear_x, expected.shear_x));
+  EXPECT_TRUE(same_bytes(actual.shear_y, expected.shear_y));
+  EXPECT_TRUE(same_bytes(actual.normal, expected.normal));
+  EXPECT_TRUE(same_bytes(actual.status, expected.status));
+}
+
+inline ForceField copy_of(const ForceFieldView& forces) {
+  ForceField copy(forces.rows, forces.cols);
+  std::ranges::copy(forces.shear_x, copy.shear_x.begin());
+  std::ranges::copy(forces.shear_y, copy.shear_y.begin());
+  std::ranges::copy(forces.normal, copy.normal.begin());
+  std::ranges::copy(forces.status, copy.status.begin());
+  return copy;
+}
+
+/// The viewer's plan for a scene with known noise.
+inline SolverPlan plan_of(const Simulator& simulator) {
+  SolverPlan plan;
+  plan.skin = simulator.scene().skin;
+  plan.sensel_type = simulator.sensel_type();
+  plan.calibration = simulator.calibration();
+  set_solver(plan, simulator.scene());
+  plan.uncertainty = true;
+  return plan;
+}
+
 namespace {
 
 using io_test::error_of;
@@ -85,22 +121,6 @@ TEST(SceneProducer, SolvesTheFramesOfTheSceneInAnyOrder) {
   }
 }
 
-TEST(SceneProducer, DescribesTheScene) {
-  const auto producer = open_producer(kDemo, {.memory = Memory::staged, .most_frames = 4});
-  const SourceInfo& info = producer->info();
-  EXPECT_EQ(info.name, "demo.toml");
-  EXPECT_EQ(info.kind, "scene");
-  EXPECT_EQ(info.frames, 4U);
-  EXPECT_EQ(info.rate_hz, 100);
-  EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
-  EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
-  ASSERT_EQ(info.notes.size(), 1U);
-  EXPECT_TRUE(has_all(info.notes[0], {"4 of 60 frames", "as requested"}));
-  EXPECT_FALSE(producer->refresh());
-  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
-                      {"demo.toml", "no frame 4", "4 frames"}));
-}
-
 TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {
   std::vector<double> shares;
   const auto thread = std::this_thread::get_id();
@@ -116,25 +136,6 @@ TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {
   struct Stopped {};
   EXPECT_THROW(static_cast<void>(open_producer(kDemo, {}, [](double) { throw Stopped(); })),
                Stopped);
-}
-
-TEST(SceneProducer, TheBaselineIsFixedAndThePaperHasNoUncertainty) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "paper.toml";
-  write_bytes(path,
-              "[skin]\nsize_mm = [20, 20]\n[sensor]\nnoise_counts = 1\ntare_counts = 5\n"
-              "[solver]\nestimator = \"paper\"\nbaseline_time_s = 0.01\n[time]\nframes = 3\n"
-              "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 5\n"
-              "position_mm = [0, 0]\nload_n = 5\n");
-  const auto producer = open_producer(path, {});
-  EXPECT_FALSE(producer->info().has_uncertainty);
-  EXPECT_TRUE(producer->info().warnings.empty());
-  ASSERT_EQ(producer->info().notes.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().notes[0], {"baseline is fixed"}));
-  EXPECT_TRUE(has_all(producer->info().solver, {"paper on "}));
-  const ForceField first = copy_of(producer->produce(2).forces);
-  static_cast<void>(producer->produce(1));
-  expect_same_forces(producer->produce(2).forces, first.view());
 }
 
 /// Expects that fields of any source stay valid, up to kMostShown.
@@ -237,7 +238,7 @@ TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
 }
 
 TEST(SceneProducer, OpensAgainAndHasATruth) {
-  const auto producer = open_producer(PILLARFIELD_SCENES "/sliding.toml", {.most_frames = 3});
+  const auto producer = open_producer(PILLARFIELD_SCENES "/touch/sliding.toml", {.most_frames = 3});
   const auto again = producer->open_again();
   EXPECT_EQ(again->info().frames, 3U);
   for (std::uint64_t index = 0; index < 3; ++index) {
@@ -352,35 +353,6 @@ TEST(FieldProducer, FieldsOutliveTheirProducer) {
   }
 }
 
-TEST(FieldProducer, RejectsFilesThatItCannotShow) {
-  const TemporaryDirectory directory;
-  EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.h5", {})), Error);
-  EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.toml", {})), Error);
-  write_bytes(directory / "text.h5", "no frames at all");
-  EXPECT_THROW(static_cast<void>(open_producer(directory / "text.h5", {})), Error);
-  const auto empty = directory / "empty.h5";
-  create_force_sink(empty, {2, 2, 1.3, "direct", "", "", false, false})->finish();
-  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_producer(empty, {})); }),
-                      {"empty.h5", "no frames"}));
-  EXPECT_THROW(static_cast<void>(open_producer(kDemo, {.device = "no such device"})), Error);
-}
-
-/// The frames of a scene solved in order, with the prior carried over.
-std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::uint64_t frames) {
-  const Simulator simulator(load_scene(path));
-  const SolverPlan plan = plan_of(simulator);
-  Processor processor(open_device(), plan);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  std::vector<ForceField> solved;
-  for (std::uint64_t index = 0; index < frames; ++index) {
-    simulator.render(index, raw, truth);
-    processor.submit(raw.view());
-    solved.push_back(copy_of(processor.receive()));
-  }
-  return solved;
-}
-
 /// A ball with growing shear: the friction observed in frame 4 sharpens frame 5.
 constexpr const char* kGrowingShear =
     "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n"
@@ -400,16 +372,6 @@ class FramesInOrder : public testing::Test {
   TemporaryDirectory directory_;
   std::filesystem::path path_ = directory_ / "growing.toml";
 };
-
-TEST_F(FramesInOrder, CarryThePriorOverWhilePlayed) {
-  const std::vector<ForceField> expected = solved_in_order(path_, 4);
-  for (const Memory memory : {Memory::automatic, Memory::staged}) {
-    const auto producer = open_producer(path_, {.memory = memory});
-    for (std::uint64_t index = 0; index < expected.size(); ++index) {
-      expect_same_forces(producer->produce(index).forces, expected[index].view());
-    }
-  }
-}
 
 TEST_F(FramesInOrder, HaveNoPriorAfterAJump) {
   const auto producer = open_producer(path_, {});

@@ -95,7 +95,6 @@ TEST(ResultPlayer, ShowsForcesAndContactsOfTheOtherProgram) {
   Program program;
   const ShownResults shown;
   shown.player.set_contacts(true);
-  shown.player.set_peak(true);
   program.send(5);
   const SourceInfo& info = shown.player.info();
   EXPECT_EQ(info.kind, "results");
@@ -119,11 +118,9 @@ TEST(ResultPlayer, ShowsForcesAndContactsOfTheOtherProgram) {
   EXPECT_EQ(contacts.extents[first].row_begin, 4U);
   EXPECT_EQ(contacts.extents[first].col_end, 9U);
   EXPECT_EQ(contacts.found.contacts[first].quantities.slip_forecast->time_s, 0.4);
-  ASSERT_NE(field.peak, nullptr);
   program.send(2);
   const ShownField next = shown.newest();
   EXPECT_EQ(next.forces.normal[heavy], 2);
-  EXPECT_EQ(next.peak->forces.normal[heavy], 5);
   EXPECT_GT(next.time_s, field.time_s);
   EXPECT_EQ(next.index, 1U);
   const auto points = shown.opened.curves->total(-1, 1e9, 10);

@@ -130,29 +130,6 @@ TEST(ValuesAt, ASenselHasTheReadingOfItsPlaceAndNormalForceAlone) {
   EXPECT_EQ(values_at(field, {0, 1}).readings[0], 1001);
 }
 
-TEST(Selection, CountsEveryPillarOnce) {
-  const Sample sample(9, 14);
-  const ShownField field = sample.shown();
-  const SelectionSums sums = sums_over(field, {0, 9, 0, 14}, kPitch);
-  std::uint64_t all = 0;
-  for (const std::uint64_t pillars : sums.by_region) all += pillars;
-  EXPECT_EQ(sums.pillars, 9U * 14U);
-  EXPECT_EQ(all, sums.pillars);
-  // Saturated pillars without a usable sensel are loaded, and in no region.
-  EXPECT_GE(sums.in_contact + sums.by_region[static_cast<std::size_t>(Region::none)], all);
-  std::uint64_t ambiguous = 0;
-  std::uint64_t saturated = 0;
-  std::uint64_t inconsistent = 0;
-  for (const std::uint8_t state : field.forces.status) {
-    ambiguous += state / 16 % 2;
-    saturated += state / 32 % 2;
-    inconsistent += state / 64 % 2;
-  }
-  EXPECT_EQ(sums.ambiguous, ambiguous);
-  EXPECT_EQ(sums.saturated, saturated);
-  EXPECT_EQ(sums.inconsistent, inconsistent);
-}
-
 TEST(Selection, ATurnToTheLeftIsPositive) {
   Sample sample(3, 3);
   ForceField& forces = sample.forces();
@@ -232,6 +209,29 @@ TEST(Selection, AnglesAndUncertaintyAreThoseOfThePlanesWhereThereAreSome) {
   EXPECT_EQ(values.magnitude, 5);
   ASSERT_TRUE(values.uncertainty);
   EXPECT_EQ((*values.uncertainty)[kUncertaintyPlanes - 1], 5);
+}
+
+TEST(Selection, CountsEveryPillarOnce) {
+  const Sample sample(9, 14);
+  const ShownField field = sample.shown();
+  const SelectionSums sums = sums_over(field, {0, 9, 0, 14}, kPitch);
+  std::uint64_t all = 0;
+  for (const std::uint64_t pillars : sums.by_region) all += pillars;
+  EXPECT_EQ(sums.pillars, 9U * 14U);
+  EXPECT_EQ(all, sums.pillars);
+  // Saturated pillars without a usable sensel are loaded, and in no region.
+  EXPECT_GE(sums.in_contact + sums.by_region[static_cast<std::size_t>(Region::none)], all);
+  std::uint64_t ambiguous = 0;
+  std::uint64_t saturated = 0;
+  std::uint64_t inconsistent = 0;
+  for (const std::uint8_t state : field.forces.status) {
+    ambiguous += state / 16 % 2;
+    saturated += state / 32 % 2;
+    inconsistent += state / 64 % 2;
+  }
+  EXPECT_EQ(sums.ambiguous, ambiguous);
+  EXPECT_EQ(sums.saturated, saturated);
+  EXPECT_EQ(sums.inconsistent, inconsistent);
 }
 
 }  // namespace

@@ -77,17 +77,5 @@ TEST(FieldContacts, FollowsOnwardsAlsoPastFramesLeftOut) {
             (std::vector<std::uint64_t>{2}));
 }
 
-TEST(FieldContacts, RestartsWhenThePlayHeadGoesBack) {
-  FieldContacts watch(kContactPitch);
-  const Touch left{{2, 6, 2, 6}};
-  const Touch right{{12, 16, 20, 24}};
-  static_cast<void>(watch.contacts_of(touched_field(7, 20, 30, {left})));
-  EXPECT_EQ(shown_ids_of(watch.contacts_of(touched_field(8, 20, 30, {right}))),
-            (std::vector<std::uint64_t>{2}));
-  const ShownContacts back = watch.contacts_of(touched_field(6, 20, 30, {right}));
-  EXPECT_EQ(shown_ids_of(back), (std::vector<std::uint64_t>{1}));
-  EXPECT_EQ(back.found.contacts.front().age_s, 0);
-}
-
 }  // namespace
 }  // namespace pillarfield::viewer

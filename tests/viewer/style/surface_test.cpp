@@ -7,30 +7,23 @@
 #include <random>
 #include <vector>
 
-#include "viewer/style/view.h"
-
 namespace pillarfield::viewer {
 namespace {
 
-Surface cylinder(double radius_mm) { return {SurfaceKind::cylinder, radius_mm}; }
+Surface cylinder(double radius_mm, double axis_deg = 90) {
+  return {SurfaceShape::cylinder, radius_mm, axis_deg, {}};
+}
+Surface sphere(double radius_mm) { return {SurfaceShape::sphere, radius_mm, 90, {}}; }
 
 std::vector<Surface> all_surfaces() {
   return {{},
           cylinder(3),
           cylinder(40),
           cylinder(5000),
-          {SurfaceKind::cylinder, -50, 30},
-          {SurfaceKind::cylinder, 70, -120},
-          {SurfaceKind::sphere, 120},
-          {SurfaceKind::sphere, -3000}};
-}
-
-TEST(Surface, ACylinderWithoutRadiusIsAPlane) {
-  for (const double radius : {0.0, -1e-9, 1e-9, std::nan("")}) {
-    const SurfaceFrame frame = frame_at(cylinder(radius), {100, 20});
-    EXPECT_EQ(length(frame.position - Vec3{100, 20, 0}), 0);
-    EXPECT_EQ(frame.normal.z, 1);
-  }
+          cylinder(-50, 30),
+          cylinder(70, -120),
+          sphere(120),
+          sphere(-3000)};
 }
 
 /// The ray from outside or inside through a point hits that point.
@@ -43,9 +36,9 @@ TEST(FirstHit, FindsThePointOfEverySurface) {
     for (int i = 0; i < 200; ++i) {
       const double x = share(random) * skin.width_mm;
       const Vec2 point{x, share(random) * skin.height_mm};
-      const SurfaceFrame frame = frame_at(surface, point);
+      const Pose frame = pose_at(surface, point);
       for (const double side : {-1.0, 1.0}) {
-        const Ray ray{frame.position + side * 5 * frame.normal, (-side) * frame.normal};
+        const Ray ray{frame.position_mm + side * 5 * frame.normal, (-side) * frame.normal};
         const auto hit = first_hit(ray, surface, skin);
         ASSERT_TRUE(hit.has_value());
         EXPECT_NEAR(hit->x, point.x, 1e-9);
@@ -53,8 +46,8 @@ TEST(FirstHit, FindsThePointOfEverySurface) {
       }
       const Box box = box_about(skin, surface);
       for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-        EXPECT_GE(frame.position.*axis, box.low.*axis - 1e-9);
-        EXPECT_LE(frame.position.*axis, box.high.*axis + 1e-9);
+        EXPECT_GE(frame.position_mm.*axis, box.low.*axis - 1e-9);
+        EXPECT_LE(frame.position_mm.*axis, box.high.*axis + 1e-9);
       }
     }
   }

@@ -3,13 +3,47 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-
-#include "random_view.h"
-#include "viewer/style/camera.h"
+#include <random>
 
 namespace pillarfield::viewer {
 namespace {
+
+/// A view on some skin, as a user may have turned it.
+struct Situation {
+  View view;
+  Surface surface;
+  SkinSize skin;
+  Viewport viewport;
+};
+
+double random_between(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Vec2 random_place_on(const SkinSize& skin, std::mt19937& random, double share = 0.999) {
+  const double x = random_between(random, -share, share) * skin.width_mm / 2;
+  return {x, random_between(random, -share, share) * skin.height_mm / 2};
+}
+
+Situation random_situation(std::mt19937& random) {
+  Situation situation;
+  auto& [view, surface, skin, viewport] = situation;
+  skin = {random_between(random, 20, 1200), random_between(random, 20, 1200)};
+  viewport = {random_between(random, 0, 300), random_between(random, 0, 200),
+              random_between(random, 200, 2000), random_between(random, 200, 1500)};
+  if (random() % 2 == 0) {
+    surface.shape = SurfaceShape::cylinder;
+    surface.radius_mm = skin.width_mm * random_between(random, 0.17, 3);
+  }
+  if (random() % 3 == 0) {
+    view = TopView{random_place_on(skin, random), random_between(random, 0.2, 40)};
+  } else {
+    view = OrbitView{random_place_on(skin, random), random_between(random, -3.1, 3.1),
+                     random_between(random, 0.1, 1.57), random_between(random, 30, 3000),
+                     random_between(random, 0.3, 1.2)};
+  }
+  return situation;
+}
 
 constexpr int kSituations = 3000;
 
@@ -23,9 +57,9 @@ Surface shown_surface(const Situation& situation) {
 /// Cosine between the line of sight and the surface normal at a point of the sheet.
 double facing(const Situation& situation, Vec2 point) {
   const Surface surface = shown_surface(situation);
-  const SurfaceFrame frame = frame_at(surface, point);
+  const Pose frame = pose_at(surface, point);
   const Camera camera = camera_of(situation.view, surface, situation.viewport);
-  const Vec3 sight = camera.perspective ? frame.position - camera.eye : camera.forward;
+  const Vec3 sight = camera.perspective ? frame.position_mm - camera.eye : camera.forward;
   return dot(sight, frame.normal) / length(sight);
 }
 
@@ -60,12 +94,12 @@ TEST(Views, PickFindsWhatProjectShows) {
     const Situation situation = random_situation(random);
     const Surface surface = shown_surface(situation);
     const Vec2 point = random_place_on(situation.skin, random);
-    const Vec3 place = frame_at(surface, point).position;
+    const Vec3 place = pose_at(surface, point).position_mm;
     const auto pixel = projected(situation, place);
     if (!pixel || std::abs(facing(situation, point)) < 0.02) continue;
     const auto found = picked(situation, *pixel);
     ASSERT_TRUE(found) << i;
-    const Vec3 found_place = frame_at(surface, *found).position;
+    const Vec3 found_place = pose_at(surface, *found).position_mm;
     if (length(found_place - place) > 1e-6) {
       // Another part of the skin hides it.
       const Camera camera = camera_of(situation.view, surface, situation.viewport);
@@ -98,8 +132,8 @@ TEST(Views, MatrixShowsPointsWhereProjectSays) {
     const Situation situation = random_situation(random);
     const Viewport& viewport = situation.viewport;
     const Surface surface = shown_surface(situation);
-    const SurfaceFrame frame = frame_at(surface, random_place_on(situation.skin, random));
-    const Vec3 point = frame.position + random_between(random, 0, kArrowMarginMm) * frame.normal;
+    const Pose frame = pose_at(surface, random_place_on(situation.skin, random));
+    const Vec3 point = frame.position_mm + random_between(random, 0, kArrowMarginMm) * frame.normal;
     const auto pixel = projected(situation, point);
     const Clip clip = clipped(situation, point);
     EXPECT_EQ(pixel.has_value(), clip.w > 0);
@@ -119,7 +153,7 @@ TEST(Views, DepthIsWithinVulkansRangeForAllArrowsAndGrowsWithTheWay) {
     const Situation situation = random_situation(random);
     const Surface surface = shown_surface(situation);
     const Camera camera = camera_of(situation.view, surface, situation.viewport);
-    const SurfaceFrame frame = frame_at(surface, random_place_on(situation.skin, random));
+    const Pose frame = pose_at(surface, random_place_on(situation.skin, random));
     const Vec3 lean = random_between(random, -1, 1) * frame.tangent_x +
                       random_between(random, -1, 1) * frame.tangent_y +
                       random_between(random, 0.1, 1) * frame.normal;
@@ -128,7 +162,7 @@ TEST(Views, DepthIsWithinVulkansRangeForAllArrowsAndGrowsWithTheWay) {
     // From the arrow's nearer end to the other one.
     const bool towards_eye = dot(arrow, camera.forward) < 0;
     for (const double share : {0.0, 0.5, 1.0}) {
-      const Vec3 point = frame.position + (towards_eye ? 1 - share : share) * arrow;
+      const Vec3 point = frame.position_mm + (towards_eye ? 1 - share : share) * arrow;
       const Clip clip = clipped(situation, point);
       const bool cut = camera.perspective && in_camera(camera, point).z < camera.distance_mm / 99;
       if (cut) break;

@@ -66,10 +66,6 @@ class Window:
     def move(self, x, y):
         self.screen.xdotool("mousemove", "--window", self.id, round(x), round(y))
 
-    def click(self, x, y, button=1, times=1):
-        self.move(x, y)
-        self.screen.xdotool("click", "--repeat", times, "--delay", 60, button)
-
     def drag(self, begin, end, button=1):
         self.move(*begin)
         self.screen.xdotool("mousedown", button)
@@ -157,18 +153,15 @@ class WindowTest(unittest.TestCase):
         for _ in range(pictures):
             last = self.shoot_changed("moving", last, still=False)
 
-    def shoot_field(self, name):
-        """Waits for a picture of a field: with the bright end of a colour bar."""
-        def field():
-            pixels = self.shoot(name, still=False).astype(int)
-            bright = (pixels[..., 0] > 230) & (pixels[..., 1] > 200) & (pixels[..., 2] < 90)
-            return [pixels] if bright.sum() > 20 else None
-        return self.wait_for(field, "no field is shown")[0]
-
     def shoot_page(self, name):
         """Waits for a page with words."""
         self.wait_for(lambda: (self.screen.pixels().min(axis=2) > 180).any(), "no page is shown")
         return self.shoot(name)
+
+    def settings(self):
+        """What the viewer remembers between runs."""
+        file = self.folder / "config/pillarfield/viewer.conf"
+        return file.read_text(encoding="utf-8") if file.exists() else ""
 
     def assert_quiet(self, window):
         """Closes the window; expects no validation messages."""

@@ -46,33 +46,13 @@ class KeyTest(WindowTest):
         before = self.shoot("opened")
         for key in ("2", "a", "k", "v", "b", "w", "t", "i", "Tab", "Right", "question", "Escape"):
             before = self.act("key_" + key, lambda key=key: window.key(key), before)
-        self.assert_quiet(window)
-
-    def test_space_plays_and_pauses(self):
-        window = self.open(SCENES / "demo.toml", "--paused")
-        self.screen.still_pixels()
         window.key("space")
         self.wait_for_motion()
         window.key("space")
-        self.shoot("paused_again")
         statistics = self.assert_quiet(window)
         self.assertGreater(statistics["produced"], 3)
         self.assertIn(statistics["produced"] - statistics["taken"] - statistics["not_shown"],
                       (0, 1))
-
-
-class MouseTest(WindowTest):
-    def test_the_mouse_marks_turns_and_opens_lists(self):
-        window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20)
-        before = self.shoot("mouse_opened")
-        (x, y) = (411, 216)  # In the field, left of the panels and above the play head.
-        for (name, action) in (("hover", lambda: window.move(x, y)),
-                               ("pin", lambda: window.click(x, y)),
-                               ("selection", lambda: window.drag((x - 70, y - 70), (x + 40, y + 50))),
-                               ("zoom", lambda: window.click(x, y, button=4, times=5)),
-                               ("scrub", lambda: window.drag((130, 594), (340, 594)))):
-            before = self.act("mouse_" + name, action, before)
-        self.assert_quiet(window)
 
 
 class Sensor(threading.Thread):
@@ -107,19 +87,17 @@ class Sensor(threading.Thread):
 
 
 class SourceTest(WindowTest):
-    def test_start_page_opens_a_scene_and_remembers_it(self):
-        window = self.open("--paused")
-        before = self.shoot_page("start")
-        window.click(312, 150)  # The first picture.
-        window.wait_for_source()
+    def test_start_page_covers_a_source_and_remembers_it(self):
+        window = self.open(SCENES / "demo.toml", "--paused")
         opened = self.shoot("start_opened")
         window.key("ctrl+o")
         covered = self.shoot_changed("start_covered", opened)
         window.key("Escape")
         self.shoot_changed("start_uncovered", covered)
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
+        self.assertIn("demo.toml", self.settings())
         window = self.open()
-        self.shoot_changed("start_recent", before)
+        self.shoot_page("start_recent")
         self.assert_quiet(window)
 
     def test_a_missing_file_is_an_error(self):
@@ -128,92 +106,48 @@ class SourceTest(WindowTest):
         self.assertEqual(ended.returncode, 1)
         self.assertIn("none.h5", ended.stderr)
 
-    def test_truth_and_a_second_source_beside(self):
-        shots = []
-        for arguments in (["--truth"], [SCENES / "spin.toml"], []):
-            window = self.open(SCENES / "demo.toml", *arguments, "--paused", "--frame", 20)
-            shots.append(self.shoot(f"beside_{len(shots)}"))
-            self.assert_quiet(window)
-        for (index, shot) in enumerate(shots[:2]):
-            self.assertFalse(numpy.array_equal(shot, shots[2]), index)
-        self.assertFalse(numpy.array_equal(shots[0], shots[1]))
-
     def test_a_sensor_comes_goes_and_is_recorded(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
         window = self.open(f"udp:127.0.0.1:{port}")
-        self.shoot("sensor_awaited")
         sensor = Sensor(port)
-        self.shoot_field("sensor_found")
-        for key in ("k", "j", "z", "ctrl+r"):
+        window.wait_for_source()
+        for key in ("k", "z", "ctrl+r"):
             window.key(key)
             time.sleep(0.7)
         self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5*")), "no recording")
-        running = self.shoot("sensor", still=False)
+        self.shoot("sensor", still=False)
         window.key("ctrl+r")
         self.wait_for(lambda: any(self.folder.glob("udp_*recording.h5")), "no end of the recording")
         sensor.stop()
-        (x, y) = (866, 50)  # The bright end of the colour bar.
-        colour = running[y, x].astype(int)
-        self.wait_for(lambda: (self.shoot("sensor_stopped", still=False)[y, x] < colour).all(),
-                      "the field of a stopped sensor is not dimmed")
+        time.sleep(2)
         stopped = self.shoot("sensor_stopped", still=False)
         sensor = Sensor(port)
         self.shoot_changed("sensor_again", stopped, still=False)
         statistics = self.assert_quiet(window)
         sensor.stop()
         self.assertGreater(statistics["produced"], 10)
-        recordings = list(self.folder.glob("udp_*recording.h5"))
-        self.assertEqual(len(recordings), 1, list(self.folder.iterdir()))
-        printed = subprocess.run([PROGRAM, "info", recordings[0]], check=True, capture_output=True,
-                              text=True).stdout
+        (recording,) = self.folder.glob("udp_*recording.h5")
+        printed = subprocess.run([PROGRAM, "info", recording], check=True, capture_output=True,
+                                 text=True).stdout
         self.assertIn("32", printed)
 
 
 class BoxTest(WindowTest):
-    """Named boxes, in the top view and in relief."""
-
-    def has_selected_text(self):
-        return (abs(self.screen.pixels().astype(int) - [64, 92, 101]).max(axis=2) < 4).sum() > 100
-
-    def test_boxes_stay(self):
-        (width, height) = self.SIZE
-        size = ["--size", f"{width}x{height}"]
-        settings = self.folder / "config/pillarfield/viewer.conf"
-        arguments = [SCENES / "demo.toml", "--paused", "--frame", 31, *size]
+    def test_a_box_that_is_drawn_stays(self):
+        arguments = [SCENES / "demo.toml", "--paused", "--frame", 31]
         window = self.open(*arguments)
-        name = f"boxes_{height}"
-        shots = [self.shoot(name + "_none")]
-
-        def do(step, action):
-            shots.append(self.act(f"{name}_{step}", action, *shots[-1:]))
-
-        middle = (width - 284) / 2  # of the field, left of the panels; the skin fills its height
-
-        def place(x, y):
-            return (middle + x * height, y * height)
-
-        for (begin, end, word) in ((place(-0.33, 0.06), place(-0.13, 0.27), "ball"),
-                                   (place(0.04, 0.05), place(0.22, 0.26), "slides"),
-                                   (place(-0.05, 0.29), place(0.15, 0.5), "twist")):
-            do(word + "_selected", lambda begin=begin, end=end: window.drag(begin, end))
-            window.key("o")
-            self.wait_for(self.has_selected_text, "the name has no focus")
-            self.screen.xdotool("type", "--window", window.id, word)
-            window.key("Return")
-            self.wait_for(lambda: word in settings.read_text(encoding="utf-8"), "the name is not kept")
-        self.screen.xdotool("mousemove", width + 150, height + 110)
-        shots.append(self.shoot(name))
-        do("orbit", lambda: window.key("v"))
-        window.key("b")
-        shots.append(self.shoot_changed(name + "_relief", *shots[-2:]))
+        before = self.shoot("box_none")
+        window.drag((340, 60), (420, 190))  # in the field
+        window.key("o")
+        self.wait_for(lambda: "box 1" in self.settings(), "the box is not kept")
+        window.key("Return")
+        self.shoot_changed("box", before)
         self.assert_quiet(window)
-        kept = [line for line in settings.read_text(encoding="utf-8").splitlines() if line.startswith("box ")]
-        self.assertEqual([line.split()[-1] for line in kept], ["ball", "slides", "twist"])
-        self.assertTrue(all(line.startswith("box 79 79 pillars ") for line in kept), kept)
+        self.assertIn("box 79 79 pillars ", self.settings())
         window = self.open(*arguments)
-        self.shoot_changed(name + "_again", shots[0])
+        self.shoot_changed("box_again", before)
         self.assert_quiet(window)
 
 
@@ -225,7 +159,7 @@ class WholeWindowTest(WindowTest):
 
     def test_interrupt_ends_it(self):
         for ending in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-            window = self.open(SCENES / "spin.toml", "--paused")
+            window = self.open(SCENES / "touch/spin.toml", "--paused")
             self.screen.still_pixels()
             window.process.send_signal(ending)
             window.process.communicate(timeout=PATIENCE_S)
@@ -233,7 +167,7 @@ class WholeWindowTest(WindowTest):
 
     def test_without_a_display(self):
         environment = {name: value for (name, value) in os.environ.items() if name != "DISPLAY"}
-        ended = subprocess.run([VIEWER, SCENES / "spin.toml"], env=environment, check=False,
+        ended = subprocess.run([VIEWER, SCENES / "touch/spin.toml"], env=environment, check=False,
                                capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(ended.returncode, 1)
         self.assertIn("--headless", ended.stderr)

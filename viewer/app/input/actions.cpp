@@ -16,46 +16,40 @@ constexpr std::array kSpeeds{0.01, 0.02, 0.05, 0.1,  0.2,  0.5,  1.0,
                              2.0,  5.0,  10.0, 20.0, 50.0, 100.0};
 
 std::optional<Range>& remembered(AppState& state) {
-  return state.ranges.at(static_cast<std::size_t>(state.settings.quantity));
+  return state.look.ranges.at(static_cast<std::size_t>(state.look.settings.quantity));
 }
 
 View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
-  const Layout layout = layout_of(place.area.width, place.area.height, state.settings);
-  if (orbit) return fitted_orbit(place.skin(), state.settings.surface, layout);
+  const Layout layout = layout_of(place.area.width, place.area.height, state.look.settings);
+  if (orbit) return fitted_orbit(place.skin(), state.look.settings.surface, layout);
   return fitted_top(place.skin(), layout);
 }
 
 }  // namespace
 
 void show_quantity(AppState& state, Quantity quantity) {
-  RenderSettings& settings = state.settings;
+  RenderSettings& settings = state.look.settings;
   const QuantityInfo info = info_of(quantity);
-  if (!is_available(quantity, state.player->info())) {
-    state.notice = fmt::format("this source has no {}", info.title);
+  if (!is_available(quantity, state.source.player->info())) {
+    state.window.notice = fmt::format("this source has no {}", info.title);
     return;
   }
   const bool same_scale = info_of(settings.quantity).scale == info.scale;
   remembered(state) = settings.range;
   settings.quantity = quantity;
   if (!same_scale) settings.map = default_map(info.scale);
-  if (quantity == Quantity::peak && state.field && state.field->peak == nullptr) hold_peak(state);
-  if (const auto& range = remembered(state); range && !state.fit_each_field) {
+  if (const auto& range = remembered(state); range && !state.look.fit_each_field) {
     settings.range = *range;
   } else {
     fit_range(state);
   }
 }
 
-void hold_peak(AppState& state) {
-  state.player->set_peak(true);
-  state.notice = "peaks are held from now on";
-  if (state.beside != nullptr) state.beside->set_peak(true);
-}
-
 void fit_range(AppState& state) {
-  RenderSettings& settings = state.settings;
-  const float most =
-      state.field ? largest(settings.quantity, *state.field, state.player->info().skin) : 0;
+  RenderSettings& settings = state.look.settings;
+  const float most = state.source.field ? largest(settings.quantity, *state.source.field,
+                                                  state.source.player->info().skin)
+                                        : 0;
   settings.range = fitting_range(settings.quantity, most);
   if (settings.quantity == Quantity::normal) {
     settings.relief_full_n = static_cast<double>(settings.range.high);
@@ -64,14 +58,14 @@ void fit_range(AppState& state) {
 }
 
 void set_range(AppState& state, Range range) {
-  const Scale scale = info_of(state.settings.quantity).scale;
+  const Scale scale = info_of(state.look.settings.quantity).scale;
   const float least = 1e-6f;
   if (scale == Scale::diverging) {
     range.high = std::max(range.high, least);
     range.low = -range.high;
   }
   range.high = std::max(range.high, range.low + least);
-  state.settings.range = range;
+  state.look.settings.range = range;
   remembered(state) = range;
 }
 
@@ -80,122 +74,121 @@ bool shows_orbit(const RenderSettings& settings) {
 }
 
 void show_orbit(AppState& state, const FieldPlace& place, bool orbit) {
-  if (shows_orbit(state.settings) == orbit) return;
-  View next = state.other_view.value_or(fitted(state, place, orbit));
-  state.other_view = state.settings.view;
-  if (state.view_is_fitted) {
+  if (shows_orbit(state.look.settings) == orbit) return;
+  View next = state.look.other_view.value_or(fitted(state, place, orbit));
+  state.look.other_view = state.look.settings.view;
+  if (state.look.view_is_fitted) {
     next = fitted(state, place, orbit);
-    state.other_view.reset();
+    state.look.other_view.reset();
   }
-  state.settings.view = next;
+  state.look.settings.view = next;
 }
 
 void show_contacts(AppState& state, bool shown) {
-  state.settings.contacts = shown;
-  state.player->set_contacts(shown);
-  if (state.beside != nullptr) state.beside->set_contacts(shown);
-}
-
-void show_trails(AppState& state, bool shown) {
-  state.show_trails = shown;
-  state.trails = {};
+  state.look.settings.contacts = shown;
+  state.source.player->set_contacts(shown);
+  if (state.source.beside != nullptr) state.source.beside->set_contacts(shown);
 }
 
 void reset_view(AppState& state, const FieldPlace& place) {
-  state.settings.view = fitted(state, place, shows_orbit(state.settings));
-  state.view_is_fitted = true;
-  state.other_view.reset();
+  state.look.settings.view = fitted(state, place, shows_orbit(state.look.settings));
+  state.look.view_is_fitted = true;
+  state.look.other_view.reset();
 }
 
 void stop_at_skin(AppState& state, const FieldPlace& place) {
-  const Layout layout = layout_of(place.area.width, place.area.height, state.settings);
-  if (const auto* const top = std::get_if<TopView>(&state.settings.view)) {
+  const Layout layout = layout_of(place.area.width, place.area.height, state.look.settings);
+  if (const auto* const top = std::get_if<TopView>(&state.look.settings.view)) {
     const double least = fitted_top(place.skin(), layout).pixels_per_mm;
     if (top->pixels_per_mm <= least) reset_view(state, place);
     return;
   }
-  auto& view = std::get<OrbitView>(state.settings.view);
-  const OrbitView whole = fitted_orbit(place.skin(), state.settings.surface, layout, view);
+  auto& view = std::get<OrbitView>(state.look.settings.view);
+  const OrbitView whole = fitted_orbit(place.skin(), state.look.settings.surface, layout, view);
   if (view.distance_mm >= whole.distance_mm) view = whole;
 }
 
 void set_surface(AppState& state, const FieldPlace& place, const Surface& surface) {
-  state.settings.surface = surface;
-  if (state.view_is_fitted) reset_view(state, place);
+  state.look.settings.surface = surface;
+  if (state.look.view_is_fitted) reset_view(state, place);
 }
 
 void toggle_pin(AppState& state, PillarIndex pillar) {
-  auto& pins = state.pins;
+  auto& pins = state.marks.pins;
   const auto known =
       std::find_if(pins.begin(), pins.end(), [&](const Pin& pin) { return pin.pillar == pillar; });
   if (known != pins.end()) {
     pins.erase(known);
     return;
   }
-  if (pins.size() == AppState::kMostPins) {
-    state.notice = fmt::format("{} pins at most; click one to take it away", AppState::kMostPins);
+  if (pins.size() == Marks::kMostPins) {
+    state.window.notice =
+        fmt::format("{} pins at most; click one to take it away", Marks::kMostPins);
     return;
   }
   pins.push_back({pillar});
-  number_pins(state);
+  number_pins(state.marks);
 }
 
-void select_pillars(AppState& state, const PillarRect& rect) { state.selection = Selection{rect}; }
+void select_pillars(AppState& state, const PillarRect& rect) {
+  state.marks.selection = Selection{rect};
+}
 
 void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
                   const PillarRect& extent) {
   select_pillars(state, extent);
   const Vec2 point{centre.x_mm, centre.y_mm};
-  const auto pixel = pixel_of(place, state.settings, point);
-  if (pixel && contains(place.plot(state.settings), *pixel)) return;
-  if (auto* const top = std::get_if<TopView>(&state.settings.view)) {
+  const auto pixel = pixel_of(place, state.look.settings, point);
+  if (pixel && contains(place.plot(state.look.settings), *pixel)) return;
+  if (auto* const top = std::get_if<TopView>(&state.look.settings.view)) {
     top->centre_mm = point;
   } else {
-    std::get<OrbitView>(state.settings.view).target_mm = point;
+    std::get<OrbitView>(state.look.settings.view).target_mm = point;
   }
-  state.view_is_fitted = false;
+  state.look.view_is_fitted = false;
 }
 
 void clear_marks(AppState& state) {
-  state.pins.clear();
-  state.selection.reset();
+  state.marks.pins.clear();
+  state.marks.selection.reset();
 }
 
 void keep_selection(AppState& state) {
-  if (!state.selection) {
-    state.notice = "select a part first; drag over the field";
+  if (!state.marks.selection) {
+    state.window.notice = "select a part first; drag over the field";
     return;
   }
-  if (state.boxes.size() == NamedBoxes::kMost) {
-    state.notice = fmt::format("{} boxes at most; remove one", NamedBoxes::kMost);
+  if (state.marks.boxes.size() == NamedBoxes::kMost) {
+    state.window.notice = fmt::format("{} boxes at most; remove one", NamedBoxes::kMost);
     return;
   }
   int number = 1;
-  while (std::ranges::find(state.boxes, number, &NamedBox::number) != state.boxes.end()) ++number;
-  state.boxes.push_back({fmt::format("box {}", number), state.selection->rect, number});
-  state.selection.reset();
-  state.names_box = state.show_panels;
+  while (std::ranges::find(state.marks.boxes, number, &NamedBox::number) != state.marks.boxes.end())
+    ++number;
+  state.marks.boxes.push_back({fmt::format("box {}", number), state.marks.selection->rect, number});
+  state.marks.selection.reset();
+  state.marks.names_box = state.window.show_panels;
 }
 
 void change_speed(AppState& state, int steps) {
-  const double speed = state.player->state().speed;
+  const double speed = state.source.player->state().speed;
   constexpr double kTolerance = 1e-9;
   if (steps > 0) {
     const auto* const faster =
         std::upper_bound(kSpeeds.begin(), kSpeeds.end(), speed * (1 + kTolerance));
-    state.player->set_speed(faster == kSpeeds.end() ? kSpeeds.back() : *faster);
+    state.source.player->set_speed(faster == kSpeeds.end() ? kSpeeds.back() : *faster);
   } else {
     const auto* const not_slower =
         std::lower_bound(kSpeeds.begin(), kSpeeds.end(), speed * (1 - kTolerance));
-    state.player->set_speed(not_slower == kSpeeds.begin() ? kSpeeds.front() : *(not_slower - 1));
+    state.source.player->set_speed(not_slower == kSpeeds.begin() ? kSpeeds.front()
+                                                                 : *(not_slower - 1));
   }
-  state.notice = fmt::format("speed {:g}", state.player->state().speed);
+  state.window.notice = fmt::format("speed {:g}", state.source.player->state().speed);
 }
 
 void take_field(AppState& state, ShownField field) {
-  state.field = std::move(field);
-  if (state.show_trails) state.trails.add(*state.field);
-  if (state.fit_each_field) fit_range(state);
+  state.source.field = std::move(field);
+  if (state.look.fit_each_field) fit_range(state);
 }
 
 }  // namespace pillarfield::viewer

@@ -12,9 +12,6 @@ namespace pillarfield::viewer {
 /// source lacks it.
 void show_quantity(AppState& state, Quantity quantity);
 
-/// Holds the peak of the normal force from the frame on display on.
-void hold_peak(AppState& state);
-
 /// Fits the range to the field on display.
 void fit_range(AppState& state);
 
@@ -28,9 +25,6 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit);
 
 /// Switches finding and marking contacts.
 void show_contacts(AppState& state, bool shown);
-
-/// Switches the trails of the centres of pressure.
-void show_trails(AppState& state, bool shown);
 
 /// Fits the view to the whole skin.
 void reset_view(AppState& state, const FieldPlace& place);
@@ -55,7 +49,7 @@ void keep_selection(AppState& state);
 /// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);
 
-/// Displays a new field and extends the trails.
+/// Displays a new field.
 void take_field(AppState& state, ShownField field);
 
 }  // namespace pillarfield::viewer

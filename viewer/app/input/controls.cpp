@@ -14,11 +14,11 @@ constexpr double kZoomOfStep = 1.2;
 
 double distance(Vec2 a, Vec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-double shake_of(const Command& command) { return kShake * command.state.settings.scale; }
+double shake_of(const Command& command) { return kShake * command.state.look.settings.scale; }
 
 /// The plot in pixels of the picture, which views use.
 Viewport plot_of(const Command& command) {
-  return layout_of(command.place.area.width, command.place.area.height, command.state.settings)
+  return layout_of(command.place.area.width, command.place.area.height, command.state.look.settings)
       .plot;
 }
 
@@ -28,12 +28,12 @@ Vec2 in_picture(const Command& command, Vec2 pixel) {
 
 /// After a move: clamps the view to the skin and detaches it from the window's size.
 void settle(const Command& command) {
-  keep_on_skin(command.state.settings.view, command.place.skin());
-  command.state.view_is_fitted = false;
+  keep_on_skin(command.state.look.settings.view, command.place.skin());
+  command.state.look.view_is_fitted = false;
 }
 
 void mark_between(const Command& command, Vec2 begin_mm, Vec2 pixel) {
-  const RenderSettings& settings = command.state.settings;
+  const RenderSettings& settings = command.state.look.settings;
   const auto* const view = std::get_if<TopView>(&settings.view);
   if (view == nullptr) return;
   const Vec2 end_mm = sheet_point_beyond(command.place, settings, *view, pixel);
@@ -41,7 +41,7 @@ void mark_between(const Command& command, Vec2 begin_mm, Vec2 pixel) {
   if (rect) {
     select_pillars(command.state, *rect);
   } else {
-    command.state.selection.reset();
+    command.state.marks.selection.reset();
   }
 }
 
@@ -64,12 +64,13 @@ void Controls::take(const InputEvent& event, const Command& command) {
 
 void Controls::hover(const Command& command) const {
   AppState& state = command.state;
-  state.hovered = cursor_ ? pillar_at(command.place, state.settings, *cursor_) : std::nullopt;
+  state.marks.hovered =
+      cursor_ ? pillar_at(command.place, state.look.settings, *cursor_) : std::nullopt;
 }
 
 void Controls::press(const ButtonEvent& event, const Command& command) {
   if (drag_ || !contains(command.place.area, event.pixel)) return;
-  const RenderSettings& settings = command.state.settings;
+  const RenderSettings& settings = command.state.look.settings;
   const bool pans = event.button != MouseButton::left || event.modifiers.shift;
   const Purpose purpose = pans                    ? Purpose::pan
                           : shows_orbit(settings) ? Purpose::orbit
@@ -88,7 +89,7 @@ void Controls::move(Vec2 pixel, const Command& command) {
   drag_->moved = true;
   const Vec2 way{pixel.x - drag_->last.x, pixel.y - drag_->last.y};
   drag_->last = pixel;
-  View& view = command.state.settings.view;
+  View& view = command.state.look.settings.view;
   if (drag_->purpose == Purpose::mark) {
     mark_between(command, drag_->begin_mm, pixel);
   } else if (drag_->purpose == Purpose::orbit) {
@@ -112,7 +113,7 @@ void Controls::click(const ButtonEvent& event, const Command& command) {
   const bool again = last_click_ && event.time_s - last_click_->time_s < kDoubleClickSeconds &&
                      distance(last_click_->pixel, event.pixel) <= shake_of(command);
   // Undoes the first click's change of the pin.
-  if (const auto pillar = pillar_at(command.place, command.state.settings, event.pixel)) {
+  if (const auto pillar = pillar_at(command.place, command.state.look.settings, event.pixel)) {
     toggle_pin(command.state, *pillar);
   }
   last_click_ = Click{event.time_s, event.pixel};
@@ -123,7 +124,7 @@ void Controls::click(const ButtonEvent& event, const Command& command) {
 
 void Controls::turn_wheel(const WheelEvent& event, const Command& command) {
   if (!contains(command.place.area, event.pixel)) return;
-  zoom(command.state.settings.view, plot_of(command), in_picture(command, event.pixel),
+  zoom(command.state.look.settings.view, plot_of(command), in_picture(command, event.pixel),
        std::pow(kZoomOfStep, event.steps));
   settle(command);
   if (event.steps < 0) stop_at_skin(command.state, command.place);

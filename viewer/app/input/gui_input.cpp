@@ -96,4 +96,58 @@ void GuiInput::begin_frame(double seconds_since_last) {
   }
 }
 
+namespace {
+
+void route_key(const KeyEvent& key, const Command& command, Controls& controls, GuiInput& gui) {
+  const bool types = ImGui::GetIO().WantTextInput;
+  if (types || !key.pressed) gui.take(key);
+  if (key.pressed && GuiInput::has_open_list()) {
+    GuiInput::close_lists();
+  } else if (!types) {
+    controls.take(key, command);
+  }
+}
+
+/// The second picture has the view of the first, so a place in it means the one in the first.
+InputEvent in_first_half(InputEvent event, const AppState& state, const Viewport& field) {
+  if (state.source.beside == nullptr) return event;
+  const Viewport second = second_half(field);
+  std::visit(
+      [&](auto& each) {
+        if constexpr (requires { each.pixel; }) {
+          if (contains(second, each.pixel)) each.pixel.x -= second.x - field.x;
+        }
+      },
+      event);
+  return event;
+}
+
+}  // namespace
+
+void route(const InputEvent& event, const Command& command, const Viewport& field,
+           Controls& controls, GuiInput& gui) {
+  if (const auto* key = std::get_if<KeyEvent>(&event)) {
+    return route_key(*key, command, controls, gui);
+  }
+  if (std::holds_alternative<TextEvent>(event)) {
+    if (ImGui::GetIO().WantTextInput) gui.take(event);
+    return;
+  }
+  WindowState& window = command.state.window;
+  const bool covered = GuiInput::has_open_list();
+  const auto* const button = std::get_if<ButtonEvent>(&event);
+  const bool presses = button != nullptr && button->pressed;
+  const auto* const wheel = std::get_if<WheelEvent>(&event);
+  if (window.show_help && (presses || wheel != nullptr)) {  // The help scrolls, or goes.
+    if (wheel != nullptr || contains(window.help_place, button->pixel)) return gui.take(event);
+    window.show_help = false;
+    return;
+  }
+  const bool in_field = wheel != nullptr && contains(field, wheel->pixel) && !covered;
+  if (!in_field) gui.take(event);
+  if (!covered || (button != nullptr && !presses)) {
+    controls.take(in_first_half(event, command.state, field), command);
+  }
+}
+
 }  // namespace pillarfield::viewer

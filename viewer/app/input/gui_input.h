@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "viewer/app/input/input.h"
+#include "viewer/app/input/controls.h"
 
 namespace pillarfield::viewer {
 
@@ -33,5 +33,10 @@ class GuiInput {
   std::vector<int> released_;  ///< of these
   std::vector<int> ending_;    ///< released in the frame after the next
 };
+
+/// Sends an event to the controls of the field, which lies at `field`, or to Dear ImGui. Text input
+/// suppresses shortcuts; popups and the help take the mouse.
+void route(const InputEvent& event, const Command& command, const Viewport& field,
+           Controls& controls, GuiInput& gui);
 
 }  // namespace pillarfield::viewer

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -23,12 +22,12 @@ namespace {
 class Marker {
  public:
   Marker(const AppState& state, const FieldPlace& place)
-      : settings_(state.settings),
+      : settings_(state.look.settings),
         place_(place),
-        ground_(state.field ? &*state.field : nullptr, *place.source, state.settings,
-                place.plot(state.settings)),
+        ground_(state.source.field ? &*state.source.field : nullptr, *place.source,
+                state.look.settings, place.plot(state.look.settings)),
         list_(*ImGui::GetBackgroundDrawList()),
-        unit_(static_cast<float>(state.settings.scale)) {}
+        unit_(static_cast<float>(state.look.settings.scale)) {}
 
   void outline(const PillarRect& rect, ImU32 colour) const {
     const auto points = ground_.outline(rect);
@@ -77,34 +76,6 @@ class Marker {
                   words.c_str());
   }
 
-  /// A dotted line, in a colour of its own; older places are fainter.
-  void trail(const std::deque<Trails::Place>& places) const {
-    if (places.empty()) return;
-    const double every = 7 * settings_.scale;  // pixels between dots
-    const double last_s = places.back().time_s;
-    std::optional<Vec2> before;
-    double to_next = every;
-    for (const Trails::Place& place : places) {
-      const auto here = ground_.seen({place.x_mm, place.y_mm});
-      if (!here) continue;
-      const double fresh = 1 - (last_s - place.time_s) / Trails::kSeconds;
-      const int alpha = static_cast<int>(std::clamp(255 * fresh, 60.0, 255.0));
-      const Vec2 from = before.value_or(*here);
-      const double length = std::hypot(here->x - from.x, here->y - from.y);
-      while (to_next <= length) {
-        const double share = length > 0 ? to_next / length : 0;
-        to_next += every;
-        if (here->hidden) continue;
-        const ImVec2 dot =
-            to_imgui({from.x + share * (here->x - from.x), from.y + share * (here->y - from.y)});
-        list_.AddCircleFilled(dot, 2.9f * unit_, IM_COL32(0, 0, 0, alpha));
-        list_.AddCircleFilled(dot, 1.9f * unit_, IM_COL32(255, 150, 205, alpha));
-      }
-      to_next -= length;
-      before = here;
-    }
-  }
-
   void clip() const {
     const Viewport plot = place_.plot(settings_);
     list_.PushClipRect(to_imgui({plot.x, plot.y}),
@@ -126,47 +97,32 @@ class Marker {
   float unit_;
 };
 
-/// Trails of each contact while contacts are shown, else of the whole skin.
-void draw_trails(const AppState& state, const Marker& marker) {
-  for (const Trails::Trail& trail : state.trails.all()) marker.trail(trail.places);
-  if (!state.trails.all().empty() || state.curves == nullptr || !state.field) return;
-  constexpr std::size_t kMostPlaces = 512;
-  const double now_s = state.field->time_s;
-  std::deque<Trails::Place> places;
-  for (const CurvePoint& point :
-       state.curves->total(now_s - Trails::kSeconds, now_s, kMostPlaces)) {
-    if (point.time_s > now_s || std::isnan(point.centre_x_mm)) continue;
-    places.push_back({point.time_s, static_cast<double>(point.centre_x_mm),
-                      static_cast<double>(point.centre_y_mm)});
-  }
-  marker.trail(places);
-}
-
 }  // namespace
 
 FieldPlace beside_place(const AppState& state, const FieldPlace& place) {
   FieldPlace beside = place;
   beside.area.x += place.area.width;
-  beside.source = &state.beside->info();
+  beside.source = &state.source.beside->info();
   return beside;
 }
 
 void draw_marks(const AppState& state, const FieldPlace& place) {
   const Marker marker(state, place);
   marker.clip();
-  if (state.show_trails) draw_trails(state, marker);
-  for (const NamedBox& box : state.boxes) marker.box(box);
-  if (state.selection) marker.outline(state.selection->rect, palette_of(Theme::dark).accent);
-  if (state.hovered) marker.outline(rect_of(Pin{*state.hovered}), IM_COL32(255, 255, 255, 230));
-  for (std::size_t i = 0; i < state.pins.size(); ++i) {
-    marker.pin(state.pins[i], i + 1 == state.pins.size());
+  for (const NamedBox& box : state.marks.boxes) marker.box(box);
+  if (state.marks.selection)
+    marker.outline(state.marks.selection->rect, palette_of(Theme::dark).accent);
+  if (state.marks.hovered)
+    marker.outline(rect_of(Pin{*state.marks.hovered}), IM_COL32(255, 255, 255, 230));
+  for (std::size_t i = 0; i < state.marks.pins.size(); ++i) {
+    marker.pin(state.marks.pins[i], i + 1 == state.marks.pins.size());
   }
   marker.unclip();
 }
 
 namespace {
 
-using PinColours = std::array<Colour, AppState::kMostPins>;
+using PinColours = std::array<Colour, Marks::kMostPins>;
 
 // After Okabe and Ito; lighter on a dark background, darker on a light one.
 constexpr PinColours kOnDark{{{86, 180, 233},

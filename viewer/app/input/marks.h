@@ -7,7 +7,7 @@
 namespace pillarfield::viewer {
 
 /// Draws numbered pins, named boxes, the selection and the pillar under the cursor over the
-/// picture; files do not include them. The trails of the centres of pressure are among them.
+/// picture; files do not include them.
 void draw_marks(const AppState& state, const FieldPlace& place);
 
 /// The place of the second source, at the right of the first.

@@ -40,7 +40,7 @@ constexpr Shortcut shows(std::array<Chord, 3> chords, const char* keys, const ch
 
 template <bool RenderSettings::*layer>
 void toggle(const Command& command) {
-  command.state.settings.*layer = !(command.state.settings.*layer);
+  command.state.look.settings.*layer = !(command.state.look.settings.*layer);
 }
 
 bool with_pillars(const SourceInfo& source) { return source.skin.has_pillars(); }
@@ -48,13 +48,13 @@ bool with_pillars(const SourceInfo& source) { return source.skin.has_pillars(); 
 /// A layer that shows the shear of pillars.
 template <bool RenderSettings::*layer>
 void toggle_of_pillars(const Command& command) {
-  if (with_pillars(command.state.player->info())) return toggle<layer>(command);
-  command.state.notice = "this source has no pillars";
+  if (with_pillars(command.state.source.player->info())) return toggle<layer>(command);
+  command.state.window.notice = "this source has no pillars";
 }
 
 template <std::int64_t frames>
 void step(const Command& command) {
-  command.state.player->step(frames);
+  command.state.source.player->step(frames);
 }
 
 template <bool PendingActions::*request>
@@ -63,7 +63,7 @@ void ask(const Command& command) {
 }
 
 void toggle_play(const Command& command) {
-  Player& player = *command.state.player;
+  Player& player = *command.state.source.player;
   if (player.state().playing) {
     player.pause();
   } else {
@@ -71,51 +71,47 @@ void toggle_play(const Command& command) {
   }
 }
 
-void go_to_begin(const Command& command) { command.state.player->seek(0); }
+void go_to_begin(const Command& command) { command.state.source.player->seek(0); }
 
 void go_to_end(const Command& command) {
-  command.state.player->seek(command.state.player->state().frames - 1);
+  command.state.source.player->seek(command.state.source.player->state().frames - 1);
 }
 
 void toggle_loop(const Command& command) {
-  command.state.player->set_loop(!command.state.player->state().loops);
+  command.state.source.player->set_loop(!command.state.source.player->state().loops);
 }
 
 void toggle_follow(const Command& command) {
-  command.state.player->set_follow(!command.state.player->state().follows);
+  command.state.source.player->set_follow(!command.state.source.player->state().follows);
 }
 
 void toggle_theme(const Command& command) {
-  Theme& theme = command.state.settings.theme;
+  Theme& theme = command.state.look.settings.theme;
   theme = theme == Theme::dark ? Theme::light : Theme::dark;
 }
 
 void toggle_view(const Command& command) {
-  show_orbit(command.state, command.place, !shows_orbit(command.state.settings));
+  show_orbit(command.state, command.place, !shows_orbit(command.state.look.settings));
 }
 
 void toggle_contacts(const Command& command) {
-  show_contacts(command.state, !command.state.settings.contacts);
+  show_contacts(command.state, !command.state.look.settings.contacts);
 }
 
 void take_tare(const Command& command) {
-  if (LiveControl* const live = command.state.player->live()) {
+  if (LiveControl* const live = command.state.source.player->live()) {
     live->tare();
-    command.state.notice = "measuring the tare; touch nothing";
+    command.state.window.notice = "measuring the tare; touch nothing";
   } else {
-    command.state.notice = "only a sensor has a live tare";
+    command.state.window.notice = "only a sensor has a live tare";
   }
-}
-
-void toggle_trails(const Command& command) {
-  show_trails(command.state, !command.state.show_trails);
 }
 
 /// Closes help, else stops writing, else clears the marks.
 void escape(const Command& command) {
-  if (command.state.show_help) {
-    command.state.show_help = false;
-  } else if (command.state.writing) {
+  if (command.state.window.show_help) {
+    command.state.window.show_help = false;
+  } else if (command.state.window.writing) {
     command.pending.stop = true;
   } else {
     clear_marks(command.state);
@@ -155,9 +151,6 @@ constexpr std::array kShortcuts{
     shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
     shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
-    shows<Quantity::peak>(plain(GLFW_KEY_E), "E", "peak of the normal force"),
-    Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
-             [](const Command& command) { hold_peak(command.state); }},
 
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows",
              toggle_of_pillars<&RenderSettings::arrows>, with_pillars},
@@ -174,15 +167,16 @@ constexpr std::array kShortcuts{
     Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
              [](const Command& command) { fit_range(command.state); }},
     Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
-    Shortcut{Group::view, plain(GLFW_KEY_J), "J", "trail of the centre of pressure", toggle_trails},
     Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
              ask<&PendingActions::truth>},
-    Shortcut{
-        Group::view, plain(GLFW_KEY_I), "I", "times of solving and drawing",
-        [](const Command& command) { command.state.show_counters = !command.state.show_counters; }},
-    Shortcut{
-        Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
-        [](const Command& command) { command.state.show_panels = !command.state.show_panels; }},
+    Shortcut{Group::view, plain(GLFW_KEY_I), "I", "times of solving and drawing",
+             [](const Command& command) {
+               command.state.window.show_counters = !command.state.window.show_counters;
+             }},
+    Shortcut{Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
+             [](const Command& command) {
+               command.state.window.show_panels = !command.state.window.show_panels;
+             }},
 
     Shortcut{Group::mark, plain(GLFW_KEY_O), "O", "keep the selection as a named box",
              [](const Command& command) { keep_selection(command.state); }},
@@ -205,7 +199,9 @@ constexpr std::array kShortcuts{
              {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
              "?, H, F1",
              "this help",
-             [](const Command& command) { command.state.show_help = !command.state.show_help; }},
+             [](const Command& command) {
+               command.state.window.show_help = !command.state.window.show_help;
+             }},
     Shortcut{Group::write, plain(GLFW_KEY_Q), "Q", "quit", ask<&PendingActions::quit>},
 };
 

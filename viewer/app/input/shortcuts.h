@@ -22,6 +22,11 @@ struct PendingActions {
   bool truth = false;     ///< show or hide the truth beside
   bool start = false;     ///< show the start page
   std::string open;       ///< a source to open; empty: none
+
+  /// True if something of the open source is asked for.
+  [[nodiscard]] bool anything() const {
+    return picture || sequence || video || table || stop || record || truth;
+  }
 };
 
 /// Arguments of an action.

@@ -43,15 +43,15 @@ void speed_buttons(AppState& state, const PlayerState& playback) {
 }
 
 void mode_buttons(AppState& state, const PlayerState& playback) {
-  Player& player = *state.player;
+  Player& player = *state.source.player;
   if (icon_button("loop", icon::loop, playback.loops, "Loop (L)")) player.set_loop(!playback.loops);
   ImGui::SameLine(0, 2);
   if (icon_button("follow", icon::follow, playback.follows, "Follow the newest frame (F)")) {
     player.set_follow(!playback.follows);
   }
   ImGui::SameLine(0, 2);
-  if (icon_button("help", icon::question, state.show_help, "Keys and mouse (?)")) {
-    state.show_help = !state.show_help;
+  if (icon_button("help", icon::question, state.window.show_help, "Keys and mouse (?)")) {
+    state.window.show_help = !state.window.show_help;
   }
 }
 
@@ -85,8 +85,9 @@ void scrub(Player& player, const PlayerState& playback, std::uint64_t shown, flo
 }
 
 std::string time_text(const AppState& state, const PlayerState& playback, std::uint64_t shown) {
-  const double time = state.field ? state.field->time_s : 0;
-  return fmt::format("{:.3f} s   {} / {}", time, shown + 1, playback.frames);
+  const double time = state.source.field ? state.source.field->time_s : 0;
+  return fmt::format("{}   {} / {}", state.look.settings.units.fixed(Dimension::time, time, 3),
+                     shown + 1, playback.frames);
 }
 
 /// Record and tare, where frames are solved here.
@@ -107,7 +108,7 @@ void sensor_icons(const Command& command, LiveControl& live, const LiveStatus& s
 /// The row of a sensor: freeze, record, tare, and the time.
 void live_transport(const Command& command, LiveControl& live) {
   AppState& state = command.state;
-  Player& player = *state.player;
+  Player& player = *state.source.player;
   const LiveStatus status = live.status();
   const bool playing = player.state().playing;
   const float gap = ImGui::GetFontSize();
@@ -117,9 +118,12 @@ void live_transport(const Command& command, LiveControl& live) {
   }
   if (player.info().has_readings) sensor_icons(command, live, status);
   ImGui::SameLine(0, gap);
-  const std::string time =
-      state.field ? fmt::format("{:.2f} s   frame {}", state.field->time_s, state.field->index + 1)
-                  : "";
+  const std::string time = state.source.field
+                               ? fmt::format("{}   frame {}",
+                                             state.look.settings.units.fixed(
+                                                 Dimension::time, state.source.field->time_s, 2),
+                                             state.source.field->index + 1)
+                               : "";
   const std::string words = status.ended                                   ? "ended"
                             : status.health.since_frame_s > kSilentSeconds ? silent_words(status)
                             : playing                                      ? "live"
@@ -127,8 +131,8 @@ void live_transport(const Command& command, LiveControl& live) {
   text_in(fmt::format("{}   {}", words, time), 10 * gap, 0);
   const float side = std::round(ImGui::GetFontSize() * 2);
   ImGui::SameLine(ImGui::GetWindowWidth() - side - ImGui::GetStyle().WindowPadding.x);
-  if (icon_button("help", icon::question, state.show_help, "Keys and mouse (?)")) {
-    state.show_help = !state.show_help;
+  if (icon_button("help", icon::question, state.window.show_help, "Keys and mouse (?)")) {
+    state.window.show_help = !state.window.show_help;
   }
 }
 
@@ -136,10 +140,10 @@ void live_transport(const Command& command, LiveControl& live) {
 
 void transport(const Command& command) {
   AppState& state = command.state;
-  Player& player = *state.player;
+  Player& player = *state.source.player;
   if (LiveControl* const live = player.live()) return live_transport(command, *live);
   const PlayerState playback = player.state();
-  const std::uint64_t shown = state.field ? state.field->index : playback.frame;
+  const std::uint64_t shown = state.source.field ? state.source.field->index : playback.frame;
   const float side = std::round(ImGui::GetFontSize() * 2);
   const float gap = ImGui::GetFontSize();
   const std::string widest = fmt::format("0000.000 s   {0} / {0}", playback.frames);

@@ -46,14 +46,17 @@ void name_cell(NamedBox& box, Theme theme, bool focused) {
 
 /// Returns true where the box is to be removed.
 bool write_box(const AppState& state, NamedBox& box, bool focused) {
-  const Skin& skin = state.player->info().skin;
+  const Skin& skin = state.source.player->info().skin;
   const SelectionSums& sums = sums_of(state, box.rect, box.cached);
   ImGui::TableNextRow();
-  name_cell(box, state.settings.theme, focused);
-  number_cell(sums.normal);
-  if (skin.has_pillars()) number_cell(std::hypot(sums.shear_x, sums.shear_y));
+  name_cell(box, state.look.settings.theme, focused);
+  const Units& units = state.look.settings.units;
+  number_cell(units.shown(Dimension::force, sums.normal));
+  if (skin.has_pillars()) {
+    number_cell(units.shown(Dimension::force, std::hypot(sums.shear_x, sums.shear_y)));
+  }
   const double kpa = static_cast<double>(kpa_per_newton(skin)) * sums.mean_normal;
-  number_cell(kpa / state.settings.pressure_unit.kpa);
+  number_cell(units.shown(Dimension::pressure, kpa));
   ImGui::TableNextColumn();
   const bool removed = ImGui::Button("×");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("remove this box");
@@ -62,19 +65,23 @@ bool write_box(const AppState& state, NamedBox& box, bool focused) {
 
 struct BoxColumn {
   std::string head;
-  const char* help;
+  std::string help;
   float width;  ///< 0: what is left
 };
 
 std::vector<BoxColumn> box_columns(const AppState& state) {
   const auto number = static_cast<float>(std::ceil(width_of(kWidestNumber)));
   const auto button = static_cast<float>(std::ceil(width_of("×")));
-  std::vector<BoxColumn> columns{{"name", "click to rename", 0}, {"N", "normal force, N", number}};
-  if (state.player->info().skin.has_pillars()) {
-    columns.push_back({"shear", "length of the total shear, N", number});
+  const Units& units = state.look.settings.units;
+  const auto unit = [&](Dimension dimension) { return std::string(units.of(dimension).name); };
+  std::vector<BoxColumn> columns{
+      {"name", "click to rename", 0},
+      {unit(Dimension::force), units.title("normal force", Dimension::force), number}};
+  if (state.source.player->info().skin.has_pillars()) {
+    columns.push_back(
+        {"shear", units.title("length of the total shear", Dimension::force), number});
   }
-  columns.push_back({std::string(state.settings.pressure_unit.name),
-                     "mean pressure on what is in contact", number});
+  columns.push_back({unit(Dimension::pressure), "mean pressure on what is in contact", number});
   columns.push_back({"", "", button + 2 * ImGui::GetStyle().FramePadding.x});
   return columns;
 }
@@ -93,30 +100,31 @@ void write_box_heads(const std::vector<BoxColumn>& columns) {
     } else {
       ImGui::TextUnformatted(head.c_str());
     }
-    if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+    if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
   }
 }
 
 }  // namespace
 
 void boxes_panel(AppState& state) {
-  if (state.boxes.empty() || !state.field) {
-    return faint_text(panel_style(state.settings.scale), "No part has a name.");
+  if (state.marks.boxes.empty() || !state.source.field) {
+    return faint_text(panel_style(state.look.settings.scale), "No part has a name.");
   }
   const std::vector<BoxColumn> columns = box_columns(state);
   constexpr int kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_NoPadOuterX;
   if (!ImGui::BeginTable("boxes", static_cast<int>(columns.size()), kFlags)) return;
   write_box_heads(columns);
   std::optional<std::size_t> removed;
-  for (std::size_t i = 0; i < state.boxes.size(); ++i) {
-    const bool focused = state.names_box && i + 1 == state.boxes.size();
-    ImGui::PushID(state.boxes[i].number);
-    if (write_box(state, state.boxes[i], focused)) removed = i;
+  for (std::size_t i = 0; i < state.marks.boxes.size(); ++i) {
+    const bool focused = state.marks.names_box && i + 1 == state.marks.boxes.size();
+    ImGui::PushID(state.marks.boxes[i].number);
+    if (write_box(state, state.marks.boxes[i], focused)) removed = i;
     ImGui::PopID();
   }
   ImGui::EndTable();
-  state.names_box = false;
-  if (removed) state.boxes.erase(state.boxes.begin() + static_cast<std::ptrdiff_t>(*removed));
+  state.marks.names_box = false;
+  if (removed)
+    state.marks.boxes.erase(state.marks.boxes.begin() + static_cast<std::ptrdiff_t>(*removed));
 }
 
 }  // namespace pillarfield::viewer

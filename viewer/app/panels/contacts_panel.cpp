@@ -125,14 +125,16 @@ std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownCon
 }  // namespace
 
 void contacts_panel(AppState& state, const FieldPlace& place) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  if (!state.settings.contacts || !state.field || state.field->contacts == nullptr) {
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  if (!state.look.settings.contacts || !state.source.field ||
+      state.source.field->contacts == nullptr) {
     faint_text(style, "Contacts are off; K shows them.");
     return;
   }
-  const ShownContacts& contacts = *state.field->contacts;
-  const SkinLayout layout = state.player->info().skin.layout;
-  if (const auto clicked = contact_table(style, contacts, layout, state.settings.pressure_unit)) {
+  const ShownContacts& contacts = *state.source.field->contacts;
+  const SkinLayout layout = state.source.player->info().skin.layout;
+  if (const auto clicked =
+          contact_table(style, contacts, layout, state.look.settings.units.pressure)) {
     mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
   }

@@ -4,37 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <span>
 
-#include "viewer/app/panels/plot.h"
 #include "viewer/style/quantity.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kMostDecimals = 6;
-
-bool is_bounded(double value) { return std::abs(value) < 0.1 * kOpenN; }  // false for NaN
-
-bool tells(double deviation) { return is_bounded(deviation) && deviation > 0; }
-
-/// Number of decimals that show `digits` digits of `size`.
-int decimals_of(double size, int digits) {
-  const int first = static_cast<int>(std::floor(std::log10(size)));
-  return std::clamp(digits - 1 - first, 0, kMostDecimals);
-}
-
-std::string fixed(double value, int decimals) {
-  if (!is_bounded(value)) return "–";
-  const std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
-  const bool zero = text.find_first_not_of("0.") == std::string::npos;
-  return value < 0 && !zero ? "\u2212" + text : text;
-}
+constexpr double kUnknown = Units::kUnknown;
 
 double plane(const PillarValues& values, Uncertainty which) {
   if (!values.uncertainty) return kUnknown;
@@ -43,22 +22,15 @@ double plane(const PillarValues& values, Uncertainty which) {
 
 bool is_ambiguous(const PillarValues& values) { return (values.status & status::kAmbiguous) != 0; }
 
-ShownValue with_deviation(const char* label, double value, double deviation,
-                          std::string_view unit) {
-  return {label, format_value(value, deviation), format_deviation(deviation), std::string(unit)};
-}
+struct Ends {
+  double low, high;
+};
 
-/// A value known only as an interval.
-ShownValue with_interval(const char* label, double value, Span ends, const char* unit) {
-  return {label, format_value(value, ends.to - ends.from), format_interval(ends.from, ends.to),
-          unit};
-}
-
-/// Interval of phi; beyond 180 degrees where it crosses pi.
-Span phi_span(const PillarValues& values) {
-  const double low = plane(values, Uncertainty::phi_low) * kDegrees;
-  const double high = plane(values, Uncertainty::phi_high) * kDegrees;
-  return {low, high < low ? high + 360 : high};
+/// Interval of phi; beyond pi where it crosses it.
+Ends phi_ends(const PillarValues& values) {
+  const double low = plane(values, Uncertainty::phi_low);
+  const double high = plane(values, Uncertainty::phi_high);
+  return {low, high < low ? high + 2 * std::numbers::pi : high};
 }
 
 }  // namespace
@@ -87,15 +59,17 @@ std::string format_pillar(PillarIndex pillar) {
 }
 
 std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
-                         const Pitch& element_pitch_mm) {
+                         const Pitch& element_pitch_mm, const Units& units) {
   const double x = (pillar.col + 0.5 - 0.5 * forces.cols) * element_pitch_mm.col_mm;
   const double y = (0.5 * forces.rows - pillar.row - 0.5) * element_pitch_mm.row_mm;
-  return fmt::format("x {}, y {} mm", fixed(x, 2), fixed(y, 2));
+  return fmt::format("x {}, y {}",
+                     units.fixed(Dimension::none, units.shown(Dimension::length, x), 2),
+                     units.fixed(Dimension::length, y, 2));
 }
 
 std::string format_count(double counts) {
   if (!std::isfinite(counts) || counts != std::round(counts)) return three_digits(counts);
-  return fixed(counts, 0);
+  return Units().fixed(Dimension::none, counts, 0);
 }
 
 std::string format_readings(const PillarValues& values) {
@@ -133,52 +107,39 @@ std::string format_sensel_status(std::uint8_t status) {
   return (status & status::kLoaded) != 0 ? "in contact" : "no contact";
 }
 
-std::string format_value(double value, double deviation) {
-  if (!tells(deviation)) return three_digits(value);
-  return fixed(value, decimals_of(deviation, 2));
-}
-
-std::string format_deviation(double deviation) {
-  if (!tells(deviation)) return {};
-  return "± " + fixed(deviation, decimals_of(deviation, 2));
-}
-
-std::string format_interval(double low, double high) {
-  if (!is_bounded(low) || !is_bounded(high)) return {};
-  const double width = high - low;
-  const int decimals = width > 0 ? decimals_of(width, 2) : 3;
-  return fixed(low, decimals) + " … " + fixed(high, decimals);
-}
-
-std::array<ShownValue, 3> shown_direction(const PillarValues& values) {
+std::array<ShownValue, 3> shown_direction(const PillarValues& values, const Units& units) {
   const auto magnitude = static_cast<double>(values.magnitude);
-  const double theta = static_cast<double>(values.theta) * kDegrees;
-  const double phi = static_cast<double>(values.phi) * kDegrees;
+  const auto theta = static_cast<double>(values.theta);
+  const auto phi = static_cast<double>(values.phi);
   if (is_ambiguous(values) && values.uncertainty) {
-    const auto span = [&](Uncertainty low, Uncertainty high, double factor) {
-      return Span{plane(values, low) * factor, plane(values, high) * factor};
+    const auto between = [&](const char* label, Dimension dimension, double value,
+                             const Ends& ends) {
+      return units.readout_between(label, dimension, value, ends.low, ends.high);
     };
-    return {with_interval("magnitude", magnitude,
-                          span(Uncertainty::magnitude_low, Uncertainty::magnitude_high, 1), "N"),
-            with_interval("θ", theta,
-                          span(Uncertainty::theta_low, Uncertainty::theta_high, kDegrees), "°"),
-            with_interval("φ", phi, phi_span(values), "°")};
+    const auto ends = [&](Uncertainty low, Uncertainty high) {
+      return Ends{plane(values, low), plane(values, high)};
+    };
+    return {between("magnitude", Dimension::force, magnitude,
+                    ends(Uncertainty::magnitude_low, Uncertainty::magnitude_high)),
+            between("θ", Dimension::angle, theta,
+                    ends(Uncertainty::theta_low, Uncertainty::theta_high)),
+            between("φ", Dimension::angle, phi, phi_ends(values))};
   }
   const DirectionDeviation deviation = direction_deviation(values);
-  return {with_deviation("magnitude", magnitude, deviation.magnitude, "N"),
-          with_deviation("θ", theta, deviation.theta * kDegrees, "°"),
-          with_deviation("φ", phi, deviation.phi * kDegrees, "°")};
+  return {units.readout("magnitude", Dimension::force, magnitude, deviation.magnitude),
+          units.readout("θ", Dimension::angle, theta, deviation.theta),
+          units.readout("φ", Dimension::angle, phi, deviation.phi)};
 }
 
-std::array<ShownValue, 3> shown_components(const PillarValues& values) {
+std::array<ShownValue, 3> shown_components(const PillarValues& values, const Units& units) {
   const auto shown = [&](const char* label, float force, Uncertainty deviation, ComponentEnd low) {
     const auto value = static_cast<double>(force);
     if (!is_ambiguous(values) || !values.uncertainty) {
-      return with_deviation(label, value, plane(values, deviation), "N");
+      return units.readout(label, Dimension::force, value, plane(values, deviation));
     }
     const auto* const end = &values.component_ends[static_cast<std::size_t>(low)];
-    return with_interval(label, value, {static_cast<double>(end[0]), static_cast<double>(end[1])},
-                         "N");
+    return units.readout_between(label, Dimension::force, value, static_cast<double>(end[0]),
+                                 static_cast<double>(end[1]));
   };
   return {shown("normal", values.normal, Uncertainty::normal, ComponentEnd::normal_low),
           shown("shear x", values.shear_x, Uncertainty::shear_x, ComponentEnd::shear_x_low),
@@ -186,13 +147,13 @@ std::array<ShownValue, 3> shown_components(const PillarValues& values) {
 }
 
 std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,
-                                     const PressureUnit& unit) {
-  const auto components = shown_components(values);
+                                     const Units& units) {
+  const auto components = shown_components(values, units);
   if (values.has_pillars) return {components.begin(), components.end()};
-  const double pressure = static_cast<double>(kpa_per_newton(skin)) / unit.kpa;
+  const auto kpa = static_cast<double>(kpa_per_newton(skin));
   return {components.front(),
-          with_deviation("pressure", pressure * static_cast<double>(values.normal),
-                         pressure * plane(values, Uncertainty::normal), unit.name)};
+          units.readout("pressure", Dimension::pressure, kpa * static_cast<double>(values.normal),
+                        kpa * plane(values, Uncertainty::normal))};
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "pillarfield/pressure_unit.h"
 #include "pillarfield/skin.h"
 #include "viewer/source/selection.h"
+#include "viewer/style/display.h"
 
 namespace pillarfield::viewer {
 
@@ -27,7 +28,7 @@ struct DirectionDeviation {
 
 /// "x 12.65, y −3.79 mm": the centre of a pillar or sensel from the middle of the skin.
 [[nodiscard]] std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
-                                       const Pitch& element_pitch_mm);
+                                       const Pitch& element_pitch_mm, const Units& units);
 
 /// "12", or "12.3" for a number that is not whole.
 [[nodiscard]] std::string format_count(double counts);
@@ -42,34 +43,18 @@ struct DirectionDeviation {
 /// State of a sensel without a pillar: "in contact", "no contact", "saturated", "no reading".
 [[nodiscard]] std::string format_sensel_status(std::uint8_t status);
 
-/// The value with the decimals of two digits of its deviation ("0.1234" for 0.0056); three_digits()
-/// where the deviation is NaN or 0.
-[[nodiscard]] std::string format_value(double value, double deviation);
-
-/// "± 0.0056", with two digits; empty for NaN.
-[[nodiscard]] std::string format_deviation(double deviation);
-
-/// "0.12 … 0.34", with the decimals of two digits of its width.
-[[nodiscard]] std::string format_interval(double low, double high);
-
-/// Displayed texts of a quantity.
-struct ShownValue {
-  std::string label;
-  std::string value;
-  std::string range;  ///< deviation or interval, if known
-  std::string unit;
-};
-
 /// Magnitude, theta and phi, with intervals for an ambiguous pillar, else deviations.
-[[nodiscard]] std::array<ShownValue, 3> shown_direction(const PillarValues& values);
+[[nodiscard]] std::array<ShownValue, 3> shown_direction(const PillarValues& values,
+                                                        const Units& units);
 
 /// Normal, shear x and shear y, with deviations.
-[[nodiscard]] std::array<ShownValue, 3> shown_components(const PillarValues& values);
+[[nodiscard]] std::array<ShownValue, 3> shown_components(const PillarValues& values,
+                                                         const Units& units);
 
 /// Normal force with its deviation, of a pillar with the other components, of a sensel with the
 /// pressure.
 [[nodiscard]] std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,
-                                                   const PressureUnit& unit);
+                                                   const Units& units);
 
 /// A column of the table of contacts.
 struct ContactColumn {

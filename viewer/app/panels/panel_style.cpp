@@ -128,11 +128,11 @@ void swatch(const PanelStyle& style, ImU32 colour) {
 
 void status_line(const PanelStyle& style, const AppState& state, PillarIndex pillar,
                  std::uint8_t status) {
-  const SourceInfo& source = state.player->info();
+  const SourceInfo& source = state.source.player->info();
   const bool absent = lacks_sensels(source.calibration, source.skin, pillar.row, pillar.col);
   const bool pillars = source.skin.has_pillars();
   const std::string words = pillars ? format_status(status) : format_sensel_status(status);
-  swatch(style, packed(status_colour(status, pillars, state.settings.theme)));
+  swatch(style, packed(status_colour(status, pillars, state.look.settings.theme)));
   ImGui::TextUnformatted(absent ? "no sensel" : words.c_str());
 }
 

@@ -21,9 +21,8 @@ namespace pillarfield::viewer {
 void hover_panel(const AppState& state);
 
 /// The inspected pillar, after the paper's testbed interface (Figure 7): readings as bars; theta,
-/// phi and magnitude with uncertainty; the region diagram (Figure 3) with the current point, its
-/// uncertainty and, in region 3, the contour of Figure 4. Of a sensel reading, force and pressure.
-/// Selects and removes pins.
+/// phi and magnitude with uncertainty. Of a sensel reading, force and pressure. Selects and removes
+/// pins.
 void pillar_panel(AppState& state);
 
 /// The selection: total force, centre of pressure, area, peak, mean; of pillars the shares of the
@@ -43,9 +42,6 @@ void time_panel(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
 void sensor_panel(const Command& command);
-
-/// After this time without a frame the window says so.
-inline constexpr double kSilentSeconds = 1;
 
 /// "no frames for 3 s".
 [[nodiscard]] std::string silent_words(const LiveStatus& status);

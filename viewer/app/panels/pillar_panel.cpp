@@ -8,8 +8,8 @@
 #include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/region_plot.h"
 #include "viewer/app/panels/widgets.h"
+#include "viewer/style/quantity.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -56,25 +56,26 @@ bool remove_button(const PanelStyle& style) {
 /// Buttons in the order of pin numbers, so that choosing one does not move them.
 void choose_pin(const PanelStyle& style, AppState& state) {
   std::vector<std::size_t> order;
-  for (std::size_t index = 0; index < state.pins.size(); ++index) order.push_back(index);
-  std::ranges::sort(order, {}, [&](std::size_t index) { return state.pins[index].number; });
+  for (std::size_t index = 0; index < state.marks.pins.size(); ++index) order.push_back(index);
+  std::ranges::sort(order, {}, [&](std::size_t index) { return state.marks.pins[index].number; });
   std::optional<std::size_t> chosen;
   for (const std::size_t index : order) {
-    const bool inspected = index + 1 == state.pins.size();
-    if (pin_button(style, state.pins[index], state.settings.theme, inspected)) chosen = index;
+    const bool inspected = index + 1 == state.marks.pins.size();
+    if (pin_button(style, state.marks.pins[index], state.look.settings.theme, inspected))
+      chosen = index;
     ImGui::SameLine(0, static_cast<float>(6 * style.unit));
   }
   const bool removed = remove_button(style);
-  if (chosen) inspect_pin(state, *chosen);
-  if (removed) remove_pin(state, state.pins.size() - 1);
+  if (chosen) inspect_pin(state.marks, *chosen);
+  if (removed) remove_pin(state.marks, state.marks.pins.size() - 1);
 }
 
 void draw_readings(const PanelStyle& style, const AppState& state, const PillarValues& values,
                    ImU32 colour) {
-  const Pin& pin = state.pins.back();
-  const SourceInfo& source = state.player->info();
+  const Pin& pin = state.marks.pins.back();
+  const SourceInfo& source = state.source.player->info();
   const auto bars = reading_bars(values, pin.pillar, source);
-  const double full = full_bar(bars, source, state.field->raw.type);
+  const double full = full_bar(bars, source, state.source.field->raw.type);
   const Viewport box = reserve(kReadingBarsSize.x * style.unit, kReadingBarsSize.y * style.unit);
   draw_reading_bars(*ImGui::GetWindowDrawList(), {box.x, box.y}, bars, full, colour, style);
 }
@@ -85,7 +86,7 @@ void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
   constexpr double kLeast = 130;
   constexpr double kMost = 190;
   double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (state.field->raw.data == nullptr) {
+  if (state.source.field->raw.data == nullptr) {
     faint_text(style, "The source has no readings.");
   } else {
     draw_readings(style, state, values, colour);
@@ -96,29 +97,8 @@ void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
       width = beside;
     }
   }
-  readouts(style, shown_direction(values), std::min(width, kMost * style.unit));
-}
-
-/// The last pin in the second before the field on display.
-std::vector<CurvePoint> points_before(const AppState& state) {
-  constexpr double kSeconds = 1;
-  constexpr std::size_t kMostPoints = 256;
-  if (state.curves == nullptr) return {};
-  const double now_s = state.field->time_s;
-  auto points = state.curves->of(rect_of(state.pins.back()), now_s - kSeconds, now_s, kMostPoints);
-  std::erase_if(points, [&](const CurvePoint& point) { return point.time_s > now_s; });
-  return points;
-}
-
-void draw_diagram(const PanelStyle& style, const AppState& state, const PillarValues& values,
-                  ImU32 colour) {
-  const std::string section = section_name(values.status);
-  heading(style, "θ over φ, in degrees", section.empty() ? "" : "region " + section);
-  const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  const double height = std::clamp(0.5 * width, 120 * style.unit, 230 * style.unit);
-  const Viewport outer = reserve(0, height);
-  draw_region_plot(*ImGui::GetWindowDrawList(), outer, values, points_before(state), style, colour,
-                   state.settings.theme);
+  readouts(style, shown_direction(values, state.look.settings.units),
+           std::min(width, kMost * style.unit));
 }
 
 bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
@@ -128,35 +108,97 @@ bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
 }  // namespace
 
 void pillar_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  number_pins(state);
-  if (state.pins.empty()) {
-    const char* const name = element_name(state.player->info().skin);
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  number_pins(state.marks);
+  if (state.marks.pins.empty()) {
+    const char* const name = element_name(state.source.player->info().skin);
     faint_text(style, fmt::format("Click a {} to pin it.", name).c_str());
     return;
   }
   choose_pin(style, state);
-  if (state.pins.empty() || !state.field) return;
-  const Pin& pin = state.pins.back();
-  if (!is_in(state.field->forces, pin.pillar)) return;
-  const PillarValues values = values_at(*state.field, pin.pillar);
-  const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
-  const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
-  heading(style, format_pillar(pin.pillar),
-          format_place(state.field->forces, pin.pillar, pitch_mm));
+  if (state.marks.pins.empty() || !state.source.field) return;
+  const Pin& pin = state.marks.pins.back();
+  if (!is_in(state.source.field->forces, pin.pillar)) return;
+  const PillarValues values = values_at(*state.source.field, pin.pillar);
+  const ImU32 colour = packed(pin_colour(pin.number, state.look.settings.theme));
+  const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
+  heading(
+      style, format_pillar(pin.pillar),
+      format_place(state.source.field->forces, pin.pillar, pitch_mm, state.look.settings.units));
   status_line(style, state, pin.pillar, values.status);
   if (!values.has_pillars) {
-    if (state.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
+    if (state.source.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
     leave_gap(style, 2);
     return value_table(
-        style, shown_forces(values, state.player->info().skin, state.settings.pressure_unit));
+        style, shown_forces(values, state.source.player->info().skin, state.look.settings.units));
   }
   leave_gap(style, 4);
   draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);
-  value_table(style, shown_components(values));
+  value_table(style, shown_components(values, state.look.settings.units));
+}
+
+namespace {
+
+/// Adds the quantity of the heat map unless another line shows it.
+void add_mapped(std::vector<ShownValue>& lines, const AppState& state) {
+  const Quantity quantity = state.look.settings.quantity;
+  const Skin& skin = state.source.player->info().skin;
+  const bool elsewhere = quantity == Quantity::pressure && !skin.has_pillars();
+  const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
+                    quantity == Quantity::pressure;
+  if (!adds || elsewhere) return;
+  const QuantityInfo info = info_of(quantity);
+  const double value = value_of(quantity, *state.source.field, skin, state.marks.hovered->row,
+                                state.marks.hovered->col);
+  lines.push_back(state.look.settings.units.readout(info.title, info.dimension, value));
+}
+
+std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& values) {
+  std::vector<ShownValue> lines =
+      shown_forces(values, state.source.player->info().skin, state.look.settings.units);
+  if (values.has_pillars) {
+    for (const ShownValue& value : shown_direction(values, state.look.settings.units)) {
+      lines.push_back(value);
+    }
+  }
+  add_mapped(lines, state);
+  return lines;
+}
+
+/// The same place in the second source, if it has one.
+void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pillar) {
+  if (!state.source.beside_field) return;
+  const ForceFieldView& forces = state.source.beside_field->forces;
+  if (pillar.row >= forces.rows || pillar.col >= forces.cols) return;
   leave_gap(style, 4);
-  draw_diagram(style, state, values, colour);
+  heading(style, state.source.beside_is_truth ? "truth" : state.source.beside->info().name);
+  value_table(style, shown_forces(values_at(*state.source.beside_field, pillar),
+                                  state.source.beside->info().skin, state.look.settings.units));
+}
+
+}  // namespace
+
+void hover_panel(const AppState& state) {
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  if (!state.source.field || !state.marks.hovered) {
+    const char* const name = element_name(state.source.player->info().skin);
+    faint_text(style, fmt::format("A click pins a {}, a drag selects.", name).c_str());
+    return;
+  }
+  const PillarIndex pillar = *state.marks.hovered;
+  const PillarValues values = values_at(*state.source.field, pillar);
+  const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
+  heading(style, format_pillar(pillar),
+          format_place(state.source.field->forces, pillar, pitch_mm, state.look.settings.units));
+  status_line(style, state, pillar, values.status);
+  if (state.source.field->raw.data != nullptr) {
+    faint_text(style, format_readings(values).c_str());
+  }
+  if (values.status == 0) return show_beside(style, state, pillar);
+  leave_gap(style, 2);
+  value_table(style, lines_of(state, values));
+  show_beside(style, state, pillar);
 }
 
 }  // namespace pillarfield::viewer

@@ -19,54 +19,51 @@ std::string rect_words(const PillarRect& rect) {
                      rect.col_end - 1);
 }
 
-std::string size_words(const PillarRect& rect, const Pitch& pitch_mm) {
-  return fmt::format("{} × {} mm", three_digits((rect.col_end - rect.col_begin) * pitch_mm.col_mm),
-                     three_digits((rect.row_end - rect.row_begin) * pitch_mm.row_mm));
-}
-
-ShownValue shown(const char* label, double value, std::string_view unit) {
-  return {label, three_digits(value), {}, std::string(unit)};
-}
-
-/// A length to 0.01 mm.
-ShownValue shown_mm(const char* label, double value) {
-  return shown(label, std::round(100 * value) / 100, "mm");
+std::string size_words(const PillarRect& rect, const Pitch& pitch_mm, const Units& units) {
+  return fmt::format(
+      "{} × {}", units.number(Dimension::length, (rect.col_end - rect.col_begin) * pitch_mm.col_mm),
+      units.text(Dimension::length, (rect.row_end - rect.row_begin) * pitch_mm.row_mm));
 }
 
 /// Total force and pressure of the selection.
 std::vector<ShownValue> force_lines(const SelectionSums& sums, const Skin& skin,
-                                    const PressureUnit& unit) {
-  const double pressure = static_cast<double>(kpa_per_newton(skin)) / unit.kpa;
-  std::vector<ShownValue> lines{shown("normal", sums.normal, "N"),
-                                shown("mean", pressure * sums.mean_normal, unit.name),
-                                shown("peak", pressure * sums.peak_normal, unit.name)};
+                                    const Units& units) {
+  const auto kpa = static_cast<double>(kpa_per_newton(skin));
+  std::vector<ShownValue> lines{units.readout("normal", Dimension::force, sums.normal),
+                                units.readout("mean", Dimension::pressure, kpa * sums.mean_normal),
+                                units.readout("peak", Dimension::pressure, kpa * sums.peak_normal)};
   if (!skin.has_pillars()) return lines;
-  lines.push_back(shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"));
-  lines.push_back(shown("shear x", sums.shear_x, "N"));
-  lines.push_back(shown("shear y", sums.shear_y, "N"));
-  const double rounding = 1e-6 * sums.normal * std::sqrt(sums.area_mm2);
   lines.push_back(
-      shown("moment z", std::abs(sums.moment_z) < rounding ? 0 : sums.moment_z, "N mm"));
+      units.readout("|shear|", Dimension::force, std::hypot(sums.shear_x, sums.shear_y)));
+  lines.push_back(units.readout("shear x", Dimension::force, sums.shear_x));
+  lines.push_back(units.readout("shear y", Dimension::force, sums.shear_y));
+  const double rounding = 1e-6 * sums.normal * std::sqrt(sums.area_mm2);
+  lines.push_back(units.readout("moment z", Dimension::torque,
+                                std::abs(sums.moment_z) < rounding ? 0 : sums.moment_z));
   return lines;
 }
 
-/// Centre of pressure, area, mean and peak.
-std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
-  std::vector<ShownValue> lines{
-      shown_mm("centre x", sums.centre_x_mm), shown_mm("centre y", sums.centre_y_mm),
-      shown("area", sums.area_mm2, "mm²"), shown("mean", sums.mean_normal, "N"),
-      shown("peak", sums.peak_normal, "N")};
+/// Centre of pressure to 0.01 mm, area, mean and peak.
+std::vector<ShownValue> spread_lines(const SelectionSums& sums, const Units& units) {
+  const auto place = [&](const char* label, double mm) {
+    return units.readout(label, Dimension::length, std::round(100 * mm) / 100);
+  };
+  std::vector<ShownValue> lines{place("centre x", sums.centre_x_mm),
+                                place("centre y", sums.centre_y_mm),
+                                units.readout("area", Dimension::area, sums.area_mm2),
+                                units.readout("mean", Dimension::force, sums.mean_normal),
+                                units.readout("peak", Dimension::force, sums.peak_normal)};
   if (sums.in_contact > 0) {
-    lines.back().unit = fmt::format("N  at {}, {}", sums.peak.row, sums.peak.col);
+    lines.back().unit += fmt::format("  at {}, {}", sums.peak.row, sums.peak.col);
   }
   return lines;
 }
 
 /// Two tables, side by side if they fit.
 void draw_tables(const PanelStyle& style, const SelectionSums& sums, const Skin& skin,
-                 const PressureUnit& unit) {
+                 const Units& units) {
   const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  value_table(style, force_lines(sums, skin, unit));
+  value_table(style, force_lines(sums, skin, units));
   const double second = value_table_width(style) - 60 * style.unit;
   if (second + value_table_width(style) <= available) {
     ImGui::SameLine(0, 0);
@@ -74,7 +71,7 @@ void draw_tables(const PanelStyle& style, const SelectionSums& sums, const Skin&
   } else {
     leave_gap(style, 2);
   }
-  value_table(style, spread_lines(sums));
+  value_table(style, spread_lines(sums, units));
 }
 
 constexpr std::array<Region, 5> kShown{Region::one, Region::two, Region::three, Region::four,
@@ -137,17 +134,18 @@ std::string fault_words(const SelectionSums& sums) {
 }  // namespace
 
 void selection_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  if (!state.selection || !state.field) {
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  if (!state.marks.selection || !state.source.field) {
     faint_text(style, "Nothing is selected.");
     return;
   }
-  const PillarRect& rect = state.selection->rect;
-  const Skin& skin = state.player->info().skin;
+  const PillarRect& rect = state.marks.selection->rect;
+  const Skin& skin = state.source.player->info().skin;
   const SelectionSums& sums = selection_sums(state);
-  heading(style, rect_words(rect), size_words(rect, skin.element_pitch_mm()));
+  heading(style, rect_words(rect),
+          size_words(rect, skin.element_pitch_mm(), state.look.settings.units));
   leave_gap(style, 2);
-  draw_tables(style, sums, skin, state.settings.pressure_unit);
+  draw_tables(style, sums, skin, state.look.settings.units);
   leave_gap(style, 4);
   const bool keeps = ImGui::Button("Keep as a named box", ImVec2(-1, 0));
   if (keeps) return keep_selection(state);
@@ -160,23 +158,23 @@ void selection_panel(AppState& state) {
   }
   heading(style, "Regions of usable sensels", touched);
   if (sums.in_contact == 0) return;
-  draw_shares(style, sums, state.settings.theme);
-  draw_legend(style, sums, state.settings.theme);
+  draw_shares(style, sums, state.look.settings.theme);
+  draw_legend(style, sums, state.look.settings.theme);
   faint_text(style, fault_words(sums).c_str());
 }
 
 const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
                              std::optional<CachedSums>& cached) {
-  const std::uint64_t frame = state.field->index;
+  const std::uint64_t frame = state.source.field->index;
   if (!cached || cached->frame != frame || cached->rect != rect) {
-    const Pitch pitch_mm = state.player->info().skin.element_pitch_mm();
-    cached = {frame, rect, sums_over(*state.field, rect, pitch_mm)};
+    const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
+    cached = {frame, rect, sums_over(*state.source.field, rect, pitch_mm)};
   }
   return cached->sums;
 }
 
 const SelectionSums& selection_sums(AppState& state) {
-  return sums_of(state, state.selection->rect, state.selection->cached);
+  return sums_of(state, state.marks.selection->rect, state.marks.selection->cached);
 }
 
 }  // namespace pillarfield::viewer

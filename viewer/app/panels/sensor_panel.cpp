@@ -64,7 +64,7 @@ std::string silent_words(const LiveStatus& status) {
 }
 
 double silence_s(const AppState& state) {
-  LiveControl* const live = state.player->live();
+  LiveControl* const live = state.source.player->live();
   if (live == nullptr) return 0;
   const LiveStatus status = live->status();
   const bool silent = status.ended || status.health.since_frame_s > kSilentSeconds;
@@ -74,7 +74,7 @@ double silence_s(const AppState& state) {
 void draw_silence(const AppState& state, const Viewport& field) {
   const double silent_s = silence_s(state);
   if (!(silent_s > 0)) return;
-  const LiveStatus status = state.player->live()->status();
+  const LiveStatus status = state.source.player->live()->status();
   const auto ago =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(silent_s));
   const std::time_t last =
@@ -85,7 +85,7 @@ void draw_silence(const AppState& state, const Viewport& field) {
   if (!status.ended && !status.health.stream.mismatch.empty()) {
     words += "\n" + status.health.stream.mismatch;
   }
-  const PanelStyle style = panel_style(state.settings.scale);
+  const PanelStyle style = panel_style(state.look.settings.scale);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   draw_block(list, field, with_alpha(style.ground, 0.6));
   const ImVec2 size = ImGui::CalcTextSize(words.c_str());
@@ -98,11 +98,11 @@ void draw_silence(const AppState& state, const Viewport& field) {
 }
 
 void sensor_panel(const Command& command) {
-  const PanelStyle style = panel_style(command.state.settings.scale);
-  LiveControl* const live = command.state.player->live();
+  const PanelStyle style = panel_style(command.state.look.settings.scale);
+  LiveControl* const live = command.state.source.player->live();
   if (live == nullptr) return;
   const LiveStatus status = live->status();
-  if (command.state.player->info().has_readings) sensor_buttons(command, *live, status);
+  if (command.state.source.player->info().has_readings) sensor_buttons(command, *live, status);
   faint_text(style, state_words(status).c_str());
   if (!status.recording.empty()) {
     const std::string name = std::filesystem::path(status.recording).filename().string();

@@ -52,8 +52,8 @@ class Row {
 };
 
 void add_measures(Row& row, const AppState& state) {
-  const PlayerStatistics solved = state.player->statistics();
-  const DrawStatistics& drawn = state.draw;
+  const PlayerStatistics solved = state.source.player->statistics();
+  const DrawStatistics& drawn = state.window.draw;
   row.add("solve", fmt::format("{:.0f} Hz", solved.produced_hz), "0000 Hz");
   row.add("", fmt::format("{:.1f} ms", solved.produce_ms_median), "000.0 ms");
   row.add("show", fmt::format("{:.0f} Hz", drawn.frames_hz), "000 Hz");
@@ -84,7 +84,7 @@ std::string sensor_words(const LiveStatus& status) {
 }
 
 std::string source_words(const AppState& state) {
-  Player& player = *state.player;
+  Player& player = *state.source.player;
   const Skin& skin = player.info().skin;
   const std::string size =
       fmt::format("{} × {} {}", skin.element_rows(), skin.element_cols(), name_of(skin.layout));
@@ -104,17 +104,18 @@ bool fits_beside_measures(const std::string& words) {
 
 void status_row(const AppState& state, const std::string& gpu) {
   Row row;
-  const std::string& notice = state.notice;
+  const std::string& notice = state.window.notice;
   const bool fits = notice.empty() || fits_beside_measures(notice);
-  if (fits && state.show_counters) add_measures(row, state);
-  if (fits && !state.show_counters) row.begin(source_words(state), ImGuiCol_Text);
+  if (fits && state.window.show_counters) add_measures(row, state);
+  if (fits && !state.window.show_counters) row.begin(source_words(state), ImGuiCol_Text);
   if (!notice.empty()) {
-    if (state.notice.is_failure) ImGui::PushStyleColor(ImGuiCol_CheckMark, packed(kWarningColour));
+    if (state.window.notice.is_failure)
+      ImGui::PushStyleColor(ImGuiCol_CheckMark, packed(kWarningColour));
     if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
-    if (state.notice.is_failure) ImGui::PopStyleColor();
+    if (state.window.notice.is_failure) ImGui::PopStyleColor();
     return;
   }
-  const std::string& solver = state.player->info().solver;
+  const std::string& solver = state.source.player->info().solver;
   if (!row.finish(fmt::format("{}  ·  {}", solver, gpu), ImGuiCol_TextDisabled)) {
     row.finish(gpu, ImGuiCol_TextDisabled);
   }

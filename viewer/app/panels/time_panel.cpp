@@ -31,9 +31,15 @@ struct Curve {
 
 struct Chart {
   std::string title;
-  const char* unit;
+  Dimension dimension;
   std::vector<Curve> curves;
   double rounding = 0;  ///< values up to here are zero but for rounding
+  Unit unit = {};
+
+  /// In the unit of display.
+  [[nodiscard]] double value(const Curve& curve, const CurvePoint& point) const {
+    return unit.factor * curve.value(point);
+  }
 };
 
 double normal_of(const CurvePoint& point) { return static_cast<double>(point.normal); }
@@ -58,7 +64,7 @@ Colours colours_of(const PanelStyle& style, Theme theme) {
 
 /// Components of a force; without pillars only the normal one exists.
 Chart force_chart(const char* title, const Points& points, const Colours& colours, bool pillars) {
-  Chart chart{title, "N", {}};
+  Chart chart{title, Dimension::force, {}};
   if (pillars) {
     chart.curves = {{"x", points, shear_x_of, colours.x}, {"y", points, shear_y_of, colours.y}};
   }
@@ -70,10 +76,12 @@ Chart force_chart(const char* title, const Points& points, const Colours& colour
 void add_total(std::vector<Chart>& charts, const Points& points, const Colours& colours,
                bool pillars) {
   charts.push_back(force_chart("Force", points, colours, pillars));
-  if (pillars) charts.push_back({"Torque", "N mm", {{"", points, torque_of, colours.normal}}});
+  if (pillars) {
+    charts.push_back({"Torque", Dimension::torque, {{"", points, torque_of, colours.normal}}});
+  }
   charts.push_back(
       {"Centre of pressure",
-       "mm",
+       Dimension::length,
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
@@ -88,23 +96,23 @@ struct MarkedPart {
 void add_parts(std::vector<Chart>& charts, const AppState& state, const Span& time,
                const std::string& title, const std::vector<MarkedPart>& parts) {
   if (parts.empty()) return;
-  Chart normal{title + ", normal", "N", {}};
-  Chart shear{title + ", |shear|", "N", {}};
+  Chart normal{title + ", normal", Dimension::force, {}};
+  Chart shear{title + ", |shear|", Dimension::force, {}};
   for (const auto& [name, rect, number] : parts) {
-    const Points points = state.curves->of(rect, time.from, time.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(number, state.settings.theme));
+    const Points points = state.source.curves->of(rect, time.from, time.to, kMostShownPoints);
+    const ImU32 colour = packed(pin_colour(number, state.look.settings.theme));
     normal.curves.push_back({name, points, normal_of, colour});
     shear.curves.push_back({name, points, shear_of, colour});
   }
   charts.push_back(std::move(normal));
-  if (state.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
+  if (state.source.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
 }
 
 void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
   std::vector<MarkedPart> boxes;
-  for (const NamedBox& box : state.boxes) boxes.push_back({box.name, box.rect, box.number});
+  for (const NamedBox& box : state.marks.boxes) boxes.push_back({box.name, box.rect, box.number});
   std::vector<MarkedPart> pins;
-  for (const Pin& pin : state.pins) {
+  for (const Pin& pin : state.marks.pins) {
     pins.push_back({std::to_string(pin.number), rect_of(pin), pin.number});
   }
   add_parts(charts, state, time, "Boxes", boxes);
@@ -113,9 +121,9 @@ void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& ti
 
 void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
                    const Colours& colours, bool pillars) {
-  if (!state.selection) return;
+  if (!state.marks.selection) return;
   const Points points =
-      state.curves->of(state.selection->rect, time.from, time.to, kMostShownPoints);
+      state.source.curves->of(state.marks.selection->rect, time.from, time.to, kMostShownPoints);
   charts.push_back(force_chart("Selection", points, colours, pillars));
 }
 
@@ -129,36 +137,39 @@ void set_rounding(std::vector<Chart>& charts, const SourceInfo& source) {
   const SkinSize size = skin_size(source);
   const double length_mm = std::max(size.width_mm, size.height_mm);
   for (Chart& chart : charts) {
-    const bool force = std::string_view(chart.unit) == "N";
-    const bool torque = std::string_view(chart.unit) == "N mm";
+    const bool force = chart.dimension == Dimension::force;
+    const bool torque = chart.dimension == Dimension::torque;
     chart.rounding = kRounding * (force ? most_n : torque ? most_n * length_mm : length_mm);
   }
 }
 
 std::vector<Chart> charts_of(const AppState& state, const Span& time, const PanelStyle& style) {
-  const Colours colours = colours_of(style, state.settings.theme);
-  const bool pillars = state.player->info().skin.has_pillars();
+  const Colours colours = colours_of(style, state.look.settings.theme);
+  const bool pillars = state.source.player->info().skin.has_pillars();
   std::vector<Chart> charts;
-  add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours, pillars);
+  add_total(charts, state.source.curves->total(time.from, time.to, kMostShownPoints), colours,
+            pillars);
   add_marks(charts, state, time);
   add_selection(charts, state, time, colours, pillars);
-  set_rounding(charts, state.player->info());
+  set_rounding(charts, state.source.player->info());
+  for (Chart& chart : charts) chart.unit = state.look.settings.units.of(chart.dimension);
   return charts;
 }
 
-std::vector<Vec2> places_of(const Curve& curve) {
+std::vector<Vec2> places_of(const Chart& chart, const Curve& curve) {
   std::vector<Vec2> places;
   places.reserve(curve.points.size());
-  for (const CurvePoint& point : curve.points) places.push_back({point.time_s, curve.value(point)});
+  for (const CurvePoint& point : curve.points)
+    places.push_back({point.time_s, chart.value(curve, point)});
   return places;
 }
 
 Span value_span(const Chart& chart) {
   std::vector<double> values;
   for (const Curve& curve : chart.curves) {
-    for (const CurvePoint& point : curve.points) values.push_back(curve.value(point));
+    for (const CurvePoint& point : curve.points) values.push_back(chart.value(curve, point));
   }
-  return round_span(values, chart.rounding);
+  return round_span(values, chart.unit.factor * chart.rounding);
 }
 
 /// The point nearest in time; null without points.
@@ -197,9 +208,9 @@ std::vector<Span> gaps_of(const Points& points, double now_s) {
 }
 
 /// Draws a curve, interrupted by the gaps.
-void draw_pieces(ImDrawList& list, const PlotArea& area, const Curve& curve,
+void draw_pieces(ImDrawList& list, const PlotArea& area, const Chart& chart, const Curve& curve,
                  std::span<const Span> gaps, double width) {
-  const std::vector<Vec2> places = places_of(curve);
+  const std::vector<Vec2> places = places_of(chart, curve);
   auto begin = places.begin();
   for (const Span& gap : gaps) {
     const auto end = std::ranges::upper_bound(begin, places.end(), gap.from, {}, &Vec2::x);
@@ -210,15 +221,16 @@ void draw_pieces(ImDrawList& list, const PlotArea& area, const Curve& curve,
 }
 
 /// Exact values of a frame.
-void show_values(const Chart& chart, double time_s) {
+void show_values(const Chart& chart, double time_s, const Units& units) {
   const CurvePoint* const at = nearest(chart.curves.front().points, time_s);
   if (at == nullptr) return;
-  std::string words = fmt::format("frame {}   {:.4f} s", at->index + 1, at->time_s);
+  std::string words =
+      fmt::format("frame {}   {}", at->index + 1, units.fixed(Dimension::time, at->time_s, 4));
   for (const Curve& curve : chart.curves) {
     const CurvePoint* const point = nearest(curve.points, time_s);
     if (point == nullptr) continue;
     words += fmt::format("\n{}{}{:.6g} {}", curve.name, curve.name.empty() ? "" : "  ",
-                         curve.value(*point), chart.unit);
+                         chart.value(curve, *point), chart.unit.name);
   }
   ImGui::SetTooltip("%s", words.c_str());
 }
@@ -228,7 +240,7 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
                 const PanelStyle& style) {
   const ImGuiIO& io = ImGui::GetIO();
   const double at_s = area.value_at({static_cast<double>(io.MousePos.x), area.box.y}).x;
-  TimeWindow& window = frame.state.time_window;
+  TimeWindow& window = frame.state.look.time_window;
   const double per_pixel = (area.x.to - area.x.from) / area.box.width;
   if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3)) {
     window.pan(frame.whole, frame.lasts_s, -per_pixel * static_cast<double>(io.MouseDelta.x));
@@ -245,17 +257,17 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
   if (point == nullptr) return;
   draw_block(*ImGui::GetWindowDrawList(),
              {area.at({point->time_s, 0}).x, area.box.y, 1, area.box.height}, style.faint);
-  show_values(chart, at_s);
+  show_values(chart, at_s, frame.state.look.settings.units);
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
     window.reset();
   } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
              !ImGui::IsMouseDragPastThreshold(ImGuiMouseButton_Left, 3)) {
-    frame.state.player->seek(point->index);
+    frame.state.source.player->seek(point->index);
   }
 }
 
 std::string chart_title(const Chart& chart) {
-  return fmt::format("{}, {}", chart.title, chart.unit);
+  return fmt::format("{}, {}", chart.title, chart.unit.name);
 }
 
 Legend chart_legend(const Chart& chart, double width, const PanelStyle& style) {
@@ -294,7 +306,7 @@ void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& fra
   const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
   draw_title(list, chart, outer, style);
   PlotTicks ticks = ticks_of(area, style);
-  if (!ticks.x.empty()) ticks.x.back().label += " s";
+  if (!ticks.x.empty()) ticks.x.back().label += " s";  // Times are in seconds everywhere.
   draw_axes(list, area, ticks, style);
   for (const Span& gap : frame.gaps) {
     const double from = area.at({std::max(gap.from, area.x.from), 0}).x;
@@ -302,9 +314,9 @@ void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& fra
     if (to > from) draw_block(list, {from, area.box.y, to - from, area.box.height}, style.grid);
   }
   for (const Curve& curve : chart.curves) {
-    draw_pieces(list, area, curve, frame.gaps, 1.6 * style.unit);
+    draw_pieces(list, area, chart, curve, frame.gaps, 1.6 * style.unit);
   }
-  const double now_s = frame.state.field->time_s;
+  const double now_s = frame.state.source.field->time_s;
   if (now_s >= area.x.from && now_s <= area.x.to) draw_head(list, area, now_s, style);
   take_mouse(chart, area, frame, style);
 }
@@ -350,8 +362,8 @@ void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const Panel
 
 /// Progress of a file's survey, while it is under way.
 void draw_progress(const AppState& state, const PanelStyle& style) {
-  if (state.survey == nullptr) return;
-  const Survey::Progress progress = state.survey->progress();
+  if (state.source.survey == nullptr) return;
+  const Survey::Progress progress = state.source.survey->progress();
   if (!progress.failure.empty()) {
     faint_text(style, progress.failure.c_str());
   } else if (progress.done < progress.frames) {
@@ -363,16 +375,16 @@ void draw_progress(const AppState& state, const PanelStyle& style) {
 }  // namespace
 
 void time_panel(AppState& state) {
-  const PanelStyle style = panel_style(state.settings.scale);
-  number_pins(state);
-  if (state.curves == nullptr || !state.field) return;
+  const PanelStyle style = panel_style(state.look.settings.scale);
+  number_pins(state.marks);
+  if (state.source.curves == nullptr || !state.source.field) return;
   draw_progress(state, style);
-  const auto [first_s, last_s] = state.curves->time_span();
-  const bool live = state.player->live() != nullptr;
+  const auto [first_s, last_s] = state.source.curves->time_span();
+  const bool live = state.source.player->live() != nullptr;
   const double lasts_s = live ? kLiveSeconds : 0;
   const double now_s = last_s + silence_s(state);
   const Span whole{first_s, std::max(now_s, first_s + TimeWindow::kLeastSeconds)};
-  const Span time = state.time_window.of(whole, lasts_s);
+  const Span time = state.look.time_window.of(whole, lasts_s);
   const std::vector<Chart> charts = charts_of(state, time, style);
   std::vector<Span> gaps;
   if (live) gaps = gaps_of(charts.front().curves.front().points, now_s);

@@ -12,23 +12,22 @@
 namespace pillarfield::viewer {
 namespace {
 
-std::string words_of(Quantity quantity, const PressureUnit& unit) {
-  const QuantityInfo info = info_of(quantity, unit);
-  if (info.unit.empty()) return info.title;
-  return fmt::format("{}, {}", info.title, info.unit);
+std::string words_of(Quantity quantity, const Units& units) {
+  return units.title(info_of(quantity).title, info_of(quantity).dimension);
 }
 
 void choose_quantity(AppState& state) {
-  const PressureUnit& unit = state.settings.pressure_unit;
+  const Units& units = state.look.settings.units;
   labelled("Quantity");
-  if (!ImGui::BeginCombo("##quantity", words_of(state.settings.quantity, unit).c_str(),
+  if (!ImGui::BeginCombo("##quantity", words_of(state.look.settings.quantity, units).c_str(),
                          ImGuiComboFlags_HeightLargest)) {
     return;
   }
   for (int i = 0; i < kQuantities; ++i) {
     const auto quantity = static_cast<Quantity>(i);
-    if (!is_available(quantity, state.player->info())) continue;
-    if (ImGui::Selectable(words_of(quantity, unit).c_str(), quantity == state.settings.quantity)) {
+    if (!is_available(quantity, state.source.player->info())) continue;
+    if (ImGui::Selectable(words_of(quantity, units).c_str(),
+                          quantity == state.look.settings.quantity)) {
       show_quantity(state, quantity);
     }
   }
@@ -42,8 +41,9 @@ bool is_fixed(Quantity quantity) {
 
 /// Low and high end in the displayed unit, side by side.
 void edit_range(AppState& state) {
-  RenderSettings& settings = state.settings;
-  const auto factor = static_cast<float>(info_of(settings.quantity, settings.pressure_unit).factor);
+  RenderSettings& settings = state.look.settings;
+  const auto factor =
+      static_cast<float>(settings.units.of(info_of(settings.quantity).dimension).factor);
   std::array<float, 2> ends{settings.range.low * factor, settings.range.high * factor};
   const float width = ends[1] - ends[0];
   labelled("Range");
@@ -52,19 +52,19 @@ void edit_range(AppState& state) {
     const bool low_moved = ends[0] != settings.range.low * factor;
     const bool symmetric = info_of(settings.quantity).scale == Scale::diverging;
     const float high = symmetric && low_moved ? -ends[0] : ends[1];
-    state.fit_each_field = false;
+    state.look.fit_each_field = false;
     set_range(state, {ends[0] / factor, high / factor});
   }
 }
 
 void choose_range(AppState& state) {
-  if (is_fixed(state.settings.quantity)) return;
+  if (is_fixed(state.look.settings.quantity)) return;
   edit_range(state);
   labelled("");
   const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
   if (ImGui::Button("Fit", ImVec2(half, 0))) fit_range(state);
   ImGui::SameLine();
-  ImGui::Checkbox("each frame", &state.fit_each_field);
+  ImGui::Checkbox("each frame", &state.look.fit_each_field);
 }
 
 /// A colour map as a strip over the last item.
@@ -132,25 +132,22 @@ class LayerBoxes {
 
 void choose_layers(const Command& command) {
   AppState& state = command.state;
-  RenderSettings& settings = state.settings;
-  const bool pillars = state.player->info().skin.has_pillars();
+  RenderSettings& settings = state.look.settings;
+  const bool pillars = state.source.player->info().skin.has_pillars();
   LayerBoxes boxes;
   if (pillars) boxes.add("arrows", settings.arrows, "the forces (A)");
   bool contacts = settings.contacts;
   if (boxes.add("contacts", contacts, "extent, force, centre of pressure (K)")) {
     show_contacts(state, contacts);
   }
-  bool trails = state.show_trails;
-  if (boxes.add("trails", trails, "centres of pressure of the last two seconds, dotted (J)")) {
-    show_trails(state, trails);
-  }
   boxes.add("relief", settings.relief, "in 3-D, the normal force raises the skin (B)");
   if (pillars) {
     boxes.add("hatch", settings.hatch, "ambiguous pillars (X)");
     boxes.add("sectors", settings.sectors, "uncertainty of ambiguous shear, at large zoom (U)");
   }
-  bool truth = state.beside_is_truth;
-  if ((state.has_truth || truth) && boxes.add("truth", truth, "the true forces beside (W)")) {
+  bool truth = state.source.beside_is_truth;
+  if ((state.source.open_truth || truth) &&
+      boxes.add("truth", truth, "the true forces beside (W)")) {
     command.pending.truth = true;
   }
   bool light = settings.theme == Theme::light;
@@ -162,30 +159,31 @@ void choose_layers(const Command& command) {
 void choose_view(const Command& command) {
   constexpr std::array<const char*, 2> kViews{"Top", "3-D"};
   labelled("View");
-  int chosen = shows_orbit(command.state.settings) ? 1 : 0;
+  int chosen = shows_orbit(command.state.look.settings) ? 1 : 0;
   if (toggle_group("view", kViews, chosen)) show_orbit(command.state, command.place, chosen == 1);
 }
 
 void choose_surface(const Command& command) {
   constexpr std::array<const char*, 3> kSurfaces{"Plane", "Cylinder", "Sphere"};
-  Surface surface = command.state.settings.surface;
-  int chosen = static_cast<int>(surface.kind);
+  Surface surface = command.state.look.settings.surface;
+  int chosen = static_cast<int>(surface.shape);
   labelled("Surface");
   const double width = command.place.skin().width_mm;
   if (toggle_group("surface", kSurfaces, chosen)) {
-    surface.kind = static_cast<SurfaceKind>(chosen);
+    surface.shape = static_cast<SurfaceShape>(chosen);
     if (surface.radius_mm == 0) surface.radius_mm = 0.5 * width;
     set_surface(command.state, command.place, surface);
   }
-  if (surface.kind == SurfaceKind::plane) return;
+  if (surface.shape == SurfaceShape::plane) return;
   labelled("Radius");
-  auto radius = static_cast<float>(surface.radius_mm);
+  const auto [unit, factor] = command.state.look.settings.units.of(Dimension::length);
+  auto radius = static_cast<float>(surface.radius_mm * factor);
   // The smallest radius lets the sheet close around the cylinder.
-  const auto least = static_cast<float>(0.17 * width);
-  const auto most = static_cast<float>(20 * width);
-  if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most, "%.1f mm",
-                       ImGuiSliderFlags_AlwaysClamp)) {
-    surface.radius_mm = static_cast<double>(radius);
+  const auto least = static_cast<float>(0.17 * width * factor);
+  const auto most = static_cast<float>(20 * width * factor);
+  if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most,
+                       with_unit("%.1f", unit).c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+    surface.radius_mm = static_cast<double>(radius) / factor;
     set_surface(command.state, command.place, surface);
   }
 }
@@ -196,14 +194,10 @@ void view_panel(const Command& command) {
   AppState& state = command.state;
   choose_quantity(state);
   choose_range(state);
-  if (state.settings.quantity == Quantity::peak) {
-    labelled("");
-    if (ImGui::Button("Hold from now on", ImVec2(-1, 0))) hold_peak(state);
-  }
-  choose_map(state.settings);
+  choose_map(state.look.settings);
   choose_layers(command);
   choose_view(command);
-  if (shows_orbit(state.settings)) choose_surface(command);
+  if (shows_orbit(state.look.settings)) choose_surface(command);
 }
 
 void write_panel(const Command& command) {
@@ -213,7 +207,7 @@ void write_panel(const Command& command) {
     if (ImGui::Button(words, ImVec2(width, 0))) request = true;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
   };
-  if (command.state.writing) {
+  if (command.state.window.writing) {
     if (ImGui::Button("Stop writing", ImVec2(-1, 0))) command.pending.stop = true;
     return;
   }

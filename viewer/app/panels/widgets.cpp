@@ -200,9 +200,7 @@ void line(const PanelStyle& style, const ShownValue& shown) {
   go_to(std::max(value_end - width_of(shown.value), label_end));
   ImGui::TextUnformatted(shown.value.c_str());
   go_to(value_end + kGap * style.unit);
-  const bool bare = shown.range.empty();
-  const bool close = shown.unit == "°";
-  faint(style, bare ? shown.unit : shown.range + (close ? "" : " ") + shown.unit);
+  faint(style, shown.range.empty() ? shown.unit : with_unit(shown.range, shown.unit));
 }
 
 }  // namespace
@@ -220,8 +218,7 @@ void readouts(const PanelStyle& style, std::span<const ShownValue> values, doubl
   ImGui::BeginGroup();
   const double right = static_cast<double>(ImGui::GetCursorPosX()) + width;
   for (const ShownValue& shown : values) {
-    const bool close = shown.unit == "°";
-    const std::string value = shown.value + (close ? "" : " ") + shown.unit;
+    const std::string value = with_unit(shown.value, shown.unit);
     faint(style, shown.label);
     ImGui::SameLine();
     ImGui::SetCursorPosX(static_cast<float>(right - width_of(value)));

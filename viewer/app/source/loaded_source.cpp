@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,9 +19,7 @@ namespace {
 RenderSettings live_settings(const Options& options, const SourceInfo& source, double scale) {
   constexpr float kFirstRangeN = 1;
   RenderSettings settings = chosen_settings(options, source, scale);
-  settings.range =
-      options.range ? in_unit_of(*options.range, options.look.quantity, options.look.pressure_unit)
-                    : fitting_range(options.look.quantity, kFirstRangeN);
+  if (!options.range) settings.range = fitting_range(settings.quantity, kFirstRangeN);
   settings.full_force_n = settings.full_shear_n = static_cast<double>(kFirstRangeN) / 2;
   return settings;
 }
@@ -28,7 +27,7 @@ RenderSettings live_settings(const Options& options, const SourceInfo& source, d
 LoadedSource load_sensor(const Options& options, const std::string& name, double scale,
                          const LoadProgress& tell) {
   LoadedSource loaded;
-  loaded.name = name;
+  loaded.source.name = name;
   std::string waiting = fmt::format("waiting for frames from {}", printable(name));
   tell(waiting);
   const auto stop = [&] {
@@ -50,9 +49,9 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
   if (solves_here && !note.empty()) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", printable(name), note);
   }
-  loaded.curves = std::move(opened.curves);
+  loaded.source.curves = std::move(opened.curves);
   loaded.settings = live_settings(options, opened.player->info(), scale);
-  loaded.player = std::move(opened.player);
+  loaded.source.player = std::move(opened.player);
   return loaded;
 }
 
@@ -61,14 +60,15 @@ LoadedSource load_file(const Options& options, const std::filesystem::path& path
   auto producer = open_producer(path, producer_options(options, tell), [&](double share) {
     tell(fmt::format("simulating {:.0f} %", std::floor(100 * share)));
   });
-  LoadedSource loaded;
-  loaded.name = path.string();
   tell("looking at the forces");
+  LoadedSource loaded;
   loaded.settings = default_settings(options, *producer, scale);
-  loaded.open_truth = producer->open_truth;
-  loaded.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
-  loaded.survey = std::make_unique<Survey>(producer->open_again, loaded.curves);
-  loaded.player = play_file(std::move(producer));
+  ShownSource& source = loaded.source;
+  source.name = path.string();
+  source.open_truth = producer->open_truth;
+  source.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
+  source.survey = std::make_unique<Survey>(producer->open_again, source.curves);
+  source.player = play_file(std::move(producer));
   return loaded;
 }
 
@@ -79,6 +79,11 @@ LoadedSource load_one(const Options& options, const std::filesystem::path& sourc
 }
 
 }  // namespace
+
+bool ShownSource::is_in_step(std::uint64_t index) const {
+  if (beside == nullptr || beside->live() != nullptr) return true;
+  return beside_field && beside_field->index == std::min(index, beside->info().frames - 1);
+}
 
 ProducerOptions producer_options(const Options& options, LoadProgress tell) {
   ProducerOptions wanted;
@@ -97,9 +102,9 @@ ProducerOptions producer_options(const Options& options, LoadProgress tell) {
 
 LoadedSource load_source(const Options& options, double scale, const LoadProgress& tell) {
   LoadedSource loaded = load_one(options, options.source, scale, tell);
-  if (options.truth) show_truth(loaded);
+  if (options.truth) show_truth(loaded.source);
   if (options.beside.empty()) return loaded;
-  loaded.beside = std::move(load_one(options, options.beside, scale, tell).player);
+  loaded.source.beside = std::move(load_one(options, options.beside, scale, tell).source.player);
   return loaded;
 }
 
@@ -110,7 +115,7 @@ std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_tr
               "show a scene, or a recording of 'pillarfield simulate'");
 }
 
-void show_truth(LoadedSource& source) {
+void show_truth(ShownSource& source) {
   source.beside = play_file(opened_truth(source.open_truth, source.player->info().name));
   source.beside_is_truth = true;
 }

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "viewer/options.h"
@@ -10,15 +11,25 @@
 
 namespace pillarfield::viewer {
 
-/// A source ready to play, with its initial settings; the view is not set.
-struct LoadedSource {
-  std::string name;  ///< as given: a path, or a live source
-  std::shared_ptr<Curves> curves;
+/// The source on display, and a second one beside.
+struct ShownSource {
+  std::string name;                  ///< as given: a path, or a live source
+  std::shared_ptr<Curves> curves;    ///< of the first source
   std::unique_ptr<Survey> survey;    ///< fills `curves`; null for a sensor
   FieldProducer::Opener open_truth;  ///< empty where the truth is not known
-  std::unique_ptr<Player> player;    ///< null: nothing is open
-  std::unique_ptr<Player> beside;    ///< shown at the right; may be null
+  std::unique_ptr<Player> player;    ///< null: no source is open
+  std::unique_ptr<Player> beside;    ///< a second source or the truth, at the right; null: none
   bool beside_is_truth = false;
+  std::optional<ShownField> field;         ///< on display
+  std::optional<ShownField> beside_field;  ///< of the second source
+
+  /// True where the second source shows this frame, or its last; without one, and for a sensor.
+  [[nodiscard]] bool is_in_step(std::uint64_t index) const;
+};
+
+/// A source ready to play, with its initial settings; the view is not set.
+struct LoadedSource {
+  ShownSource source;
   RenderSettings settings;
 };
 
@@ -37,7 +48,7 @@ using LoadProgress = std::function<void(const std::string& words)>;
                                                           const std::string& name);
 
 /// Opens the truth of a source beside it.
-void show_truth(LoadedSource& source);
+void show_truth(ShownSource& source);
 
 /// Warnings of a source, as lines for standard error.
 [[nodiscard]] std::string warning_lines(const SourceInfo& info);

@@ -10,7 +10,7 @@ namespace pillarfield::viewer {
 
 /// A picture of docs/pictures/gallery, which the program holds as PNG.
 struct EmbeddedPicture {
-  std::string_view scene;  ///< its file in scenes/, without extension
+  std::string_view scene;  ///< name of its file, without extension
   std::span<const unsigned char> png;
 };
 

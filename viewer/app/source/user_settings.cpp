@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
-#include <iterator>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -93,10 +91,16 @@ void UserSettings::save() const noexcept {
 
 namespace {
 
-bool is_for_calibration(const std::filesystem::path& scene) {
-  std::ifstream file(scene);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  return text.find("pillarfield calibrate") != std::string::npos;
+std::vector<std::filesystem::path> scenes_in(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> scenes;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".toml") {
+      scenes.push_back(std::filesystem::weakly_canonical(entry.path(), error));
+    }
+  }
+  std::ranges::sort(scenes);
+  return scenes;
 }
 
 }  // namespace
@@ -108,20 +112,10 @@ ScenesAtHand scenes_at_hand() {
   for (const auto& folder :
        {std::filesystem::path("scenes"), program / "../share/pillarfield/scenes",
         program / "../../../scenes"}) {
-    std::vector<std::filesystem::path> scenes;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      if (entry.path().extension() == ".toml") {
-        scenes.push_back(std::filesystem::weakly_canonical(entry.path(), error));
-      }
-    }
-    if (scenes.empty()) continue;
-    std::ranges::sort(scenes, {}, [](const std::filesystem::path& scene) {
-      return std::pair(scene.stem() != "demo", scene);
-    });
-    // Not of std::ranges: clang++ 14 refuses its subrange.
-    const auto calibrating =
-        std::stable_partition(scenes.begin(), scenes.end(), std::not_fn(is_for_calibration));
-    return {{scenes.begin(), calibrating}, {calibrating, scenes.end()}};
+    std::vector<std::filesystem::path> touches = scenes_in(folder);
+    if (touches.empty()) continue;
+    for (auto& scene : scenes_in(folder / "touch")) touches.push_back(std::move(scene));
+    return {std::move(touches), scenes_in(folder / "calibration")};
   }
   return {};
 }

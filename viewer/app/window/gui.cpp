@@ -24,7 +24,7 @@ constexpr double kShareOfRow = 0.12;  ///< of the window's height
 constexpr int kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
 bool has_curves(const AppState& state) {
-  return state.player->live() != nullptr || state.player->info().frames > 1;
+  return state.source.player->live() != nullptr || state.source.player->info().frames > 1;
 }
 
 /// A panel of the column.
@@ -39,19 +39,19 @@ bool always(const AppState& /*state*/) { return true; }
 
 template <bool pillars>
 bool has_pins(const AppState& state) {
-  return !state.pins.empty() && state.player->info().skin.has_pillars() == pillars;
+  return !state.marks.pins.empty() && state.source.player->info().skin.has_pillars() == pillars;
 }
 
 constexpr std::array kPanels{
-    Panel{"Sensor", [](const AppState& state) { return state.player->live() != nullptr; },
+    Panel{"Sensor", [](const AppState& state) { return state.source.player->live() != nullptr; },
           sensor_panel},
     Panel{"View", always, view_panel},
-    Panel{"Selection", [](const AppState& state) { return state.selection.has_value(); },
+    Panel{"Selection", [](const AppState& state) { return state.marks.selection.has_value(); },
           [](const Command& command) { selection_panel(command.state); }},
-    Panel{"Boxes", [](const AppState& state) { return !state.boxes.empty(); },
+    Panel{"Boxes", [](const AppState& state) { return !state.marks.boxes.empty(); },
           [](const Command& command) { boxes_panel(command.state); },
-          [](const AppState& state) { return state.names_box; }},
-    Panel{"Contacts", [](const AppState& state) { return state.settings.contacts; },
+          [](const AppState& state) { return state.marks.names_box; }},
+    Panel{"Contacts", [](const AppState& state) { return state.look.settings.contacts; },
           [](const Command& command) { contacts_panel(command.state, command.place); }},
     Panel{"Under the cursor", always, [](const Command& command) { hover_panel(command.state); }},
     Panel{"Pillar", has_pins<true>, [](const Command& command) { pillar_panel(command.state); }},
@@ -77,7 +77,7 @@ void begin_part(const char* name, const Viewport& box, Theme theme, int flags = 
 
 void draw_column(const Command& command, const Viewport& box) {
   if (box.width < 1) return;
-  begin_part("right", box, command.state.settings.theme);
+  begin_part("right", box, command.state.look.settings.theme);
   draw_panels(command);
   ImGui::End();
 }
@@ -88,14 +88,14 @@ void draw_row(const Command& command, const Viewport& box) {
   AppState& state = command.state;
   const float padding = ImGui::GetStyle().WindowPadding.x;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(padding, 0.4f * padding));
-  begin_part("bottom", box, state.settings.theme, kStill);
+  begin_part("bottom", box, state.look.settings.theme, kStill);
   ImGui::PopStyleVar();
   const float side = ImGui::GetFontSize();
-  const bool open = !state.folds_curves;
+  const bool open = !state.window.folds_curves;
   ImGui::BeginChild("fold", ImVec2(open ? 1.6f * side : 0, 0), false, kStill);
   ImGui::SetCursorPosX(-0.5f * side);
   ImGui::SetNextItemOpen(open);
-  state.folds_curves = !section(open ? "##fold" : "Over time");
+  state.window.folds_curves = !section(open ? "##fold" : "Over time");
   ImGui::EndChild();
   if (open) {
     ImGui::SameLine();
@@ -109,12 +109,12 @@ void draw_row(const Command& command, const Viewport& box) {
 }  // namespace
 
 Sides sides_of(const AppState& state) {
-  if (!state.show_panels || state.player == nullptr) return {};
+  if (!state.window.show_panels || state.source.player == nullptr) return {};
   if (!has_curves(state)) return {.column = true};
-  if (state.folds_curves) return {.column = true, .row_pixels = kFoldedRow};
+  if (state.window.folds_curves) return {.column = true, .row_pixels = kFoldedRow};
   return {.column = true,
           .row_share = kShareOfRow,
-          .row_pixels = state.boxes.empty() ? 0 : kLineOfNames};
+          .row_pixels = state.marks.boxes.empty() ? 0 : kLineOfNames};
 }
 
 Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Sides& sides) {
@@ -154,10 +154,10 @@ void draw_panels(const Command& command) {
 
 void draw_gui(const Command& command, const Screen& screen, const std::string& gpu) {
   AppState& state = command.state;
-  const Theme theme = state.settings.theme;
+  const Theme theme = state.look.settings.theme;
   const float padding = ImGui::GetStyle().WindowPadding.x;
   draw_marks(state, command.place);
-  if (state.beside != nullptr) draw_marks(state, beside_place(state, command.place));
+  if (state.source.beside != nullptr) draw_marks(state, beside_place(state, command.place));
   draw_silence(state, command.place.area);
   draw_column(command, screen.column);
   draw_row(command, screen.row);
@@ -178,9 +178,9 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 
-  if (!state.show_help) return;
+  if (!state.window.show_help) return;
   const Viewport window{0, 0, screen.status.width, screen.status.y};
-  state.help_place = help_overlay(window, state.player->info());
+  state.window.help_place = help_overlay(window, state.source.player->info());
 }
 
 }  // namespace pillarfield::viewer

@@ -1,0 +1,139 @@
+#include "device/slot_memory.h"
+
+#include <memory>
+
+#include "skin/quads.h"
+
+namespace pillarfield {
+namespace {
+
+class SharedMemory final : public SlotMemory {
+ public:
+  SharedMemory(const cl::Context& context, const ResultLayout& layout)
+      : SlotMemory(layout),
+        context_(context),
+        bytes_(layout.all_bytes()),
+        memory_(allocate_large_pages(bytes_)) {
+    pages_ = memory_.get();
+    hold_flags();
+    results_ = {context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_};
+  }
+
+  DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
+    release(queue);
+    const std::size_t bytes =
+        ((frame.rows - 1) * frame.row_stride + frame.cols) * size_of(frame.type);
+    // OpenCL requires a non-const pointer even to read-only host memory.
+    void* const memory = const_cast<void*>(frame.data);
+    return {cl::Buffer(context_, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, memory),
+            frame.row_stride};
+  }
+
+  void download(const cl::CommandQueue& queue) override {
+    queue.enqueueMapBuffer(results_, CL_FALSE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes_);
+    mapped_ = true;
+  }
+
+  void clear_flags(const cl::CommandQueue& queue) override {
+    const bool was_mapped = mapped_;
+    release(queue);
+    SlotMemory::clear_flags(queue);
+    if (was_mapped) download(queue);
+    queue.finish();
+  }
+
+  void release(const cl::CommandQueue& queue) override {
+    if (mapped_) queue.enqueueUnmapMemObject(results_, pages_);
+    mapped_ = false;
+  }
+
+ private:
+  cl::Context context_;
+  std::size_t bytes_;
+  LargePages memory_;
+  bool mapped_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const ResultLayout& layout) {
+  return std::make_unique<SharedMemory>(context, layout);
+}
+
+namespace {
+
+/// Pinned host memory: the driver copies from and to it directly.
+class PinnedMemory {
+ public:
+  PinnedMemory(const cl::Context& context, const cl::CommandQueue& queue, std::size_t bytes)
+      : queue_(queue),
+        buffer_(context, CL_MEM_ALLOC_HOST_PTR, bytes),
+        mapped_(queue.enqueueMapBuffer(buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes)),
+        bytes_(bytes) {}
+  ~PinnedMemory() {
+    try {
+      queue_.enqueueUnmapMemObject(buffer_, mapped_);
+      queue_.finish();
+    } catch (const cl::Error&) {
+      // The device and its memory are gone.
+    }
+  }
+  PinnedMemory(const PinnedMemory&) = delete;
+  PinnedMemory& operator=(const PinnedMemory&) = delete;
+
+  [[nodiscard]] std::byte* data() const { return static_cast<std::byte*>(mapped_); }
+
+  /// Its first page boundary.
+  [[nodiscard]] std::byte* first_page() const {
+    void* place = mapped_;
+    std::size_t space = bytes_;
+    return static_cast<std::byte*>(std::align(kPageSize, 1, place, space));
+  }
+
+ private:
+  cl::CommandQueue queue_;
+  cl::Buffer buffer_;
+  void* mapped_;
+  std::size_t bytes_;
+};
+
+class StagedMemory final : public SlotMemory {
+ public:
+  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan,
+               const ResultLayout& layout)
+      : SlotMemory(layout),
+        frame_bytes_(padded_sensels(plan.skin) * size_of(plan.sensel_type)),
+        frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
+        frame_on_host_(context, queue, frame_bytes_),
+        // Drivers may map at any alignment: one page more, to begin on a boundary.
+        results_on_host_(context, queue, layout.bytes + kPageSize) {
+    pages_ = results_on_host_.first_page();
+    results_ = {context, CL_MEM_READ_WRITE, layout.all_bytes()};
+    clear_flags(queue);
+  }
+
+  DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
+    copy_readings(frame, frame_on_host_.data());
+    queue.enqueueWriteBuffer(frame_, CL_FALSE, 0, frame_bytes_, frame_on_host_.data());
+    return {frame_, frame.cols};
+  }
+
+  void download(const cl::CommandQueue& queue) override {
+    queue.enqueueReadBuffer(results_, CL_FALSE, 0, layout_.bytes, pages_);
+  }
+
+ private:
+  std::size_t frame_bytes_;
+  cl::Buffer frame_;
+  PinnedMemory frame_on_host_;
+  PinnedMemory results_on_host_;
+};
+
+}  // namespace
+
+std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
+                                          const SolverPlan& plan, const ResultLayout& layout) {
+  return std::make_unique<StagedMemory>(context, queue, plan, layout);
+}
+
+}  // namespace pillarfield

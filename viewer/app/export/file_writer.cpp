@@ -1,0 +1,170 @@
+#include "viewer/app/export/file_writer.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// The first of NAME_DETAIL, NAME_DETAIL_2, ... for which the file `looked_for` does not exist.
+template <class LookedFor>
+std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
+                                 const char* ending, const LookedFor& looked_for) {
+  std::string stem = std::filesystem::path(source.name).stem().string();
+  if (source.frames == 0) {  // Live, no path: "udp:127.0.0.1:9870".
+    stem = source.name;
+    for (char& letter : stem) {
+      if (std::string_view(":./ ").find(letter) != std::string_view::npos) letter = '_';
+    }
+  }
+  if (!detail.empty()) stem += "_" + detail;
+  std::filesystem::path path = stem + ending;
+  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
+       ++number) {
+    path = fmt::format("{}_{}{}", stem, number, ending);
+  }
+  return path;
+}
+
+}  // namespace
+
+/// The frames that are being written.
+struct FileWriter::Frames {
+  std::filesystem::path path;
+  std::uint64_t count = 0;
+  std::uint64_t next = 0;
+  std::unique_ptr<VideoWriter> video = {};  ///< null: pictures
+};
+
+FileWriter::FileWriter(AppState& state) : state_(&state) {}
+FileWriter::~FileWriter() = default;
+
+void FileWriter::serve(const PendingActions& asked, const FieldPlace& place, const Read& read) {
+  const ShownLook& look = state_->look;
+  const ShownField& field = *state_->source.field;
+  Notice& notice = state_->window.notice;
+  try {
+    if (asked.picture) {
+      const auto path = new_file(info_of(look.settings.quantity).name, ".png", OutputKind::png);
+      write_png(path, read(), Replace::nothing);
+      notice = "wrote " + path.string();
+    }
+    if (asked.table) {
+      const auto path =
+          new_file(fmt::format("frame_{}", field.index + 1), ".csv", OutputKind::forces);
+      write_csv(path, field, visible_pillars(place, look.settings), Replace::nothing);
+      notice = "wrote " + path.string();
+    }
+    if (asked.sequence || asked.video) begin_frames(asked.video, read);
+    if (asked.record) toggle_recording();
+  } catch (const Error& error) {
+    notice.fail(error.what());
+  }
+  if (!asked.stop || frames_ == nullptr) return;
+  stop();
+  notice = "stopped writing";
+}
+
+void FileWriter::stop() {
+  frames_.reset();
+  state_->window.writing = false;
+}
+
+/// A new name, "demo_normal.png" for the source demo.h5, else "demo_normal_2.png" and so on.
+std::filesystem::path FileWriter::new_file(const std::string& detail, const char* ending,
+                                           OutputKind kind) const {
+  auto path = first_free(state_->source.player->info(), detail, ending,
+                         [](const auto& name) { return name; });
+  check_outputs({state_->source.name}, {{path, kind}}, Replace::nothing);
+  return path;
+}
+
+void FileWriter::begin_frames(bool video, const Read& read) {
+  if (frames_ != nullptr) return;
+  Player& player = *state_->source.player;
+  const SourceInfo& source = player.info();
+  if (player.live() != nullptr) {
+    throw Error(source.name, "a sensor has no last frame to write", "record it");
+  }
+  const std::string quantity = info_of(state_->look.settings.quantity).name;
+  auto frames = std::make_unique<Frames>(Frames{{}, player.state().frames});
+  if (video) {
+    frames->path = new_file(quantity, ".mp4", OutputKind::video);
+    const Pixels size = read();
+    frames->video =
+        std::make_unique<VideoWriter>(frames->path, size.width, size.height,
+                                      source.rate_hz * player.state().speed, Replace::nothing);
+  } else {
+    const auto first = [&](const auto& path) { return numbered(path, 1, source.frames); };
+    frames->path = first_free(source, quantity, ".png", first);
+    check_outputs({state_->source.name}, {{first(frames->path), OutputKind::png}},
+                  Replace::nothing);
+  }
+  frames_ = std::move(frames);
+  state_->window.writing = true;
+  player.pause();
+  player.seek(0);
+}
+
+void FileWriter::toggle_recording() {
+  const SourceInfo& source = state_->source.player->info();
+  LiveControl* const live = state_->source.player->live();
+  if (live == nullptr) {
+    throw Error(source.name, "only a sensor can be recorded", "open a live source");
+  }
+  if (!live->status().recording.empty()) return live->stop_recording();
+  const auto path = first_free(source, "recording", ".h5", [](const auto& name) { return name; });
+  live->record(path);
+  state_->window.notice = "recording " + path.string();
+}
+
+bool FileWriter::go_on(const Read& read) {
+  if (frames_ == nullptr || !wants_picture()) return false;
+  try {
+    add(read());
+  } catch (const Error& error) {
+    state_->window.notice.fail(error.what());
+    stop();
+  }
+  return true;
+}
+
+/// True if the fields on display are those to write.
+bool FileWriter::wants_picture() const {
+  const ShownSource& source = state_->source;
+  const std::uint64_t next = frames_->next;
+  if (const PlayerState player = source.player->state(); player.playing || player.frame != next) {
+    source.player->pause();  // The user played on or went elsewhere.
+    source.player->seek(next);
+  }
+  return source.field && source.field->index == next && source.is_in_step(next);
+}
+
+void FileWriter::add(const Pixels& pixels) {
+  Frames& frames = *frames_;
+  Notice& notice = state_->window.notice;
+  const auto name = [&](std::uint64_t frame) {
+    return numbered(frames.path, frame, frames.count).string();
+  };
+  if (frames.video != nullptr) {
+    frames.video->add(pixels);
+  } else {
+    write_png(name(frames.next + 1), pixels, Replace::nothing);
+  }
+  if (++frames.next < frames.count) {
+    notice = fmt::format("writing {} of {} (Esc stops)", frames.next, frames.count);
+    return state_->source.player->seek(frames.next);
+  }
+  if (frames.video != nullptr) frames.video->finish();
+  notice =
+      fmt::format("wrote {} frames: {}", frames.count,
+                  frames.video != nullptr ? frames.path.string()
+                                          : fmt::format("{} to {}", name(1), name(frames.count)));
+  stop();
+}
+
+}  // namespace pillarfield::viewer

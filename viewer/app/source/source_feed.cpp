@@ -1,0 +1,230 @@
+#include "viewer/app/source/source_feed.h"
+
+#include <chrono>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "viewer/app/input/actions.h"
+#include "viewer/app/input/marks.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+double feed_now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Loading::Loading(Options options, double scale, std::function<void()> wake)
+    : options_(std::move(options)),
+      wake_(std::move(wake)),
+      thread_([this, scale] { run(scale); }) {}
+
+Loading::~Loading() {
+  stopping_ = true;
+  thread_.join();
+}
+
+std::string Loading::message() const {
+  const std::scoped_lock lock(mutex_);
+  return message_;
+}
+
+std::optional<LoadedSource> Loading::take() {
+  const std::scoped_lock lock(mutex_);
+  if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
+  return std::exchange(loaded_, std::nullopt);
+}
+
+void Loading::run(double scale) {
+  try {
+    LoadedSource loaded =
+        load_source(options_, scale, [this](const std::string& words) { tell(words); });
+    const std::scoped_lock lock(mutex_);
+    loaded_ = std::move(loaded);
+  } catch (...) {
+    const std::scoped_lock lock(mutex_);
+    failed_ = std::current_exception();
+  }
+  wake_();
+}
+
+void Loading::tell(const std::string& words) {
+  if (stopping_) throw Error(options_.source.string(), "interrupted", "open it again");
+  {
+    const std::scoped_lock lock(mutex_);
+    if (message_ == words) return;
+    message_ = words;
+  }
+  wake_();
+}
+
+void LoadFollower::take_field(AppState& state) {
+  if (!follows_) return;
+  const Skin& skin = state.source.player->info().skin;
+  RenderSettings& settings = state.look.settings;
+  if (quantity_ == settings.quantity && range_ != settings.range) follows_ = false;
+  const ShownField& field = *state.source.field;
+  const auto load = load_.add(field.time_s, largest(Quantity::normal, field, skin));
+  if (load && follows_ && !state.look.fit_each_field) {
+    const float most = 1.2F * *load;
+    const Range range = fitting_range(Quantity::normal, most);
+    settings.full_force_n = settings.full_shear_n = static_cast<double>(*load) / 2;
+    settings.relief_full_n = static_cast<double>(range.high);
+    if (settings.quantity == Quantity::normal) set_range(state, range);
+    if (settings.quantity == Quantity::pressure) {
+      set_range(state, fitting_range(Quantity::pressure, most * kpa_per_newton(skin)));
+    }
+  }
+  quantity_ = settings.quantity;
+  range_ = settings.range;
+}
+
+void SourceFeed::tell() {
+  news_ = true;
+  wake_();
+}
+
+void SourceFeed::open(const Options& options, double scale) {
+  state_->window.notice.clear();
+  loading_ = std::make_unique<Loading>(options, scale, [this] { tell(); });
+}
+
+std::optional<LoadedSource> SourceFeed::take_loaded() {
+  if (loading_ == nullptr) return std::nullopt;
+  try {
+    auto loaded = loading_->take();
+    if (loaded) loading_.reset();
+    return loaded;
+  } catch (const Error&) {
+    loading_.reset();
+    throw;
+  }
+}
+
+void SourceFeed::begin(const Options& options) {
+  ShownSource& source = state_->source;
+  load_follower_ = LoadFollower(source.player->live() != nullptr && !options.range);
+  source.player->on_new_field([this] {
+    produced_s_ = feed_now_s();
+    wake_();
+  });
+  if (source.survey != nullptr) source.survey->on_progress([this] { tell(); });
+  if (options.first_frame != 0) source.player->seek(options.first_frame);
+  // After seek(): contacts are tracked from the first shown frame on.
+  source.player->set_contacts(state_->look.settings.contacts);
+  begin_beside();
+  if (!options.paused) source.player->play();
+}
+
+void SourceFeed::begin_beside() {
+  Player* const beside = state_->source.beside.get();
+  if (beside == nullptr) return;
+  beside->set_contacts(state_->look.settings.contacts);
+  beside->on_new_field([this] { tell(); });
+}
+
+void SourceFeed::end() {
+  ShownSource& source = state_->source;
+  if (source.player != nullptr) source.player->on_new_field({});
+  if (source.beside != nullptr) source.beside->on_new_field({});
+  if (source.survey != nullptr) source.survey->on_progress({});
+  held_.reset();
+  source.field.reset();
+  source.beside_field.reset();
+  source = {};
+  measured_.clear();
+}
+
+void SourceFeed::toggle_truth() {
+  ShownSource& source = state_->source;
+  if (source.beside == nullptr) {
+    show_truth(source);
+    source.beside->seek(source.field->index);
+    return begin_beside();
+  }
+  source.beside->on_new_field({});
+  source.beside_field.reset();
+  source.beside.reset();
+  source.beside_is_truth = false;
+}
+
+bool SourceFeed::take_fields(bool selecting) {
+  attend_survey(selecting);
+  const bool message = attend_sensor();
+  return take_field() || message;
+}
+
+/// True for a new field of either source.
+bool SourceFeed::take_field() {
+  ShownSource& source = state_->source;
+  bool failed = false;
+  if (!held_) {
+    taken_s_ = produced_s_;
+    try {
+      held_ = source.player->take();
+    } catch (const Error& error) {  // A sensor leaves its picture; a file ends the program.
+      if (source.player->live() == nullptr) throw;
+      state_->window.notice.fail(error.what());
+      failed = true;
+    }
+    if (held_ && source.beside != nullptr) source.beside->seek(held_->index);
+  }
+  const bool beside = take_beside();
+  if (!held_ || !source.is_in_step(held_->index)) return beside || failed;
+  viewer::take_field(*state_, *std::exchange(held_, std::nullopt));
+  load_follower_.take_field(*state_);
+  return field_is_new_ = true;
+}
+
+bool SourceFeed::take_beside() {
+  ShownSource& source = state_->source;
+  if (source.beside == nullptr) return false;
+  auto field = source.beside->take();
+  if (!field) return false;
+  source.beside_field = std::move(*field);
+  return beside_is_new_ = true;
+}
+
+std::optional<double> SourceFeed::latency_ms() const {
+  if (!field_is_new_) return std::nullopt;
+  // on_new_field() may not have been called yet.
+  const auto& arrived = state_->source.field->arrived;
+  const double since_s = arrived ? std::chrono::duration<double>(*arrived).count() : taken_s_;
+  return since_s > 0 ? std::optional(1e3 * (feed_now_s() - since_s)) : std::nullopt;
+}
+
+void SourceFeed::attend_survey(bool selecting) {
+  const Marks& marks = state_->marks;
+  if (marks.selection && selecting) return;
+  std::vector<PillarRect> rects;
+  for (const Pin& pin : marks.pins) rects.push_back(rect_of(pin));
+  for (const NamedBox& box : marks.boxes) rects.push_back(box.rect);
+  if (marks.selection) rects.push_back(marks.selection->rect);
+  Survey* const survey = state_->source.survey.get();
+  if (rects != measured_) {
+    state_->source.curves->set_rects(rects);
+    if (survey != nullptr) survey->look_again();
+    measured_ = std::move(rects);
+  }
+  if (survey == nullptr) return;
+  const PlayerState player = state_->source.player->state();
+  survey->set_busy(player.playing);
+  survey->set_follow(player.follows);
+}
+
+/// True for a message, and while a sensor is silent.
+bool SourceFeed::attend_sensor() {
+  LiveControl* const live = state_->source.player->live();
+  if (live == nullptr) return false;
+  const LiveStatus status = live->status();
+  const bool silent = status.health.since_frame_s > kSilentSeconds && !status.ended;
+  if (std::exchange(live_messages_, status.messages) == status.messages || status.messages == 0) {
+    return silent;
+  }
+  state_->window.notice = status.message;
+  return true;
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "viewer/app/app_state.h"
+#include "viewer/app/load_range.h"
+#include "viewer/app/source/loaded_source.h"
+
+namespace pillarfield::viewer {
+
+/// Opens a source in a thread of its own, so that the window shows how far it is.
+class Loading {
+ public:
+  /// `wake` is called from the thread for each message and at the end.
+  Loading(Options options, double scale, std::function<void()> wake);
+  ~Loading();  ///< stops, and waits for the thread
+  Loading(const Loading&) = delete;
+  Loading& operator=(const Loading&) = delete;
+
+  [[nodiscard]] const Options& options() const { return options_; }
+  [[nodiscard]] std::string message() const;
+
+  /// The source once it is ready, then nothing. Throws what ended the thread.
+  [[nodiscard]] std::optional<LoadedSource> take();
+
+ private:
+  void run(double scale);
+  void tell(const std::string& words);
+
+  Options options_;
+  std::function<void()> wake_;
+  std::atomic<bool> stopping_ = false;
+  mutable std::mutex mutex_;  ///< guards the next three members
+  std::string message_;
+  std::optional<LoadedSource> loaded_;
+  std::exception_ptr failed_;
+  std::thread thread_;  ///< last: uses the other members
+};
+
+/// Lets the ranges of a sensor follow its load until the user sets one.
+class LoadFollower {
+ public:
+  explicit LoadFollower(bool follows = false) : follows_(follows) {}
+
+  /// Takes the field on display.
+  void take_field(AppState& state);
+
+ private:
+  bool follows_;
+  LoadRange load_;
+  std::optional<Quantity> quantity_;  ///< shown when the range was last as it followed
+  Range range_;
+};
+
+/// Opens sources in the background, and brings their newest fields into the state.
+class SourceFeed {
+ public:
+  /// `wake` ends the window's wait; it is called in any thread.
+  SourceFeed(AppState& state, void (*wake)()) : state_(&state), wake_(wake) {}
+
+  /// Begins to open the source of the options.
+  void open(const Options& options, double scale);
+  void give_up() { loading_.reset(); }
+  /// The source that is being opened; null: none.
+  [[nodiscard]] const Loading* loading() const { return loading_.get(); }
+  /// The source, once it is open. Throws Error where that fails.
+  [[nodiscard]] std::optional<LoadedSource> take_loaded();
+
+  /// Begins with the source of the state: listens to it, and plays it as the options say.
+  void begin(const Options& options);
+  /// Ends with it; releases the memory of its fields before their players.
+  void end();
+
+  /// Shows the truth beside, or takes away what is beside. Throws Error without a truth.
+  void toggle_truth();
+
+  /// True if a thread has progressed.
+  [[nodiscard]] bool take_news() { return news_.exchange(false); }
+  /// Takes what is new: fields, both sources in step, and messages of a sensor; passes the marks to
+  /// the survey, a selection once it is made. True if there was something.
+  [[nodiscard]] bool take_fields(bool selecting);
+
+  // News since drawn().
+  [[nodiscard]] bool has_field() const { return field_is_new_; }
+  [[nodiscard]] bool has_beside() const { return beside_is_new_; }
+  /// Time since the new field arrived at a sensor, else since it was solved; none without.
+  [[nodiscard]] std::optional<double> latency_ms() const;
+  void drawn() { field_is_new_ = beside_is_new_ = false; }
+
+ private:
+  void tell();
+  void begin_beside();
+  void attend_survey(bool selecting);
+  bool attend_sensor();
+  bool take_field();
+  bool take_beside();
+
+  AppState* state_;
+  void (*wake_)();
+  std::atomic<bool> news_ = false;      ///< a thread has progressed
+  std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
+  double taken_s_ = 0;                  ///< that of the field on display
+  std::optional<ShownField> held_;      ///< until the second source has its frame
+  bool field_is_new_ = false;
+  bool beside_is_new_ = false;
+  std::vector<PillarRect> measured_;  ///< rectangles that have curves
+  std::uint64_t live_messages_ = 0;
+  LoadFollower load_follower_;
+  std::unique_ptr<Loading> loading_;  ///< last: its thread uses other members
+};
+
+}  // namespace pillarfield::viewer
