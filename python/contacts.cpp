@@ -85,7 +85,8 @@ void add_quantities(Class& bound, Get get) {
   bound.def_property_readonly(
       "peak_pressure_kpa", [get](const Self& self) { return get(self).peak_pressure_kpa(); },
       "pressure on the most loaded element, kPa");
-  add("friction", &Q::friction, "friction coefficient, or None");
+  add("friction", &Q::friction,
+      "friction coefficient, or its lower bound if friction_source is 'at_least', or None");
   add("friction_deviation", &Q::friction_deviation, "its standard deviation, or None");
   add("slipping_share", &Q::slipping_share, "slipping fraction of the normal force, 0..1, or None");
   add("slip_margin", &Q::slip_margin,
@@ -121,7 +122,7 @@ void add_quantities(Class& bound, Get get) {
       "slip_within_1_s", [](const F& f) { return f.probability[2]; }, "within 1 s, or None");
   bound.def_property_readonly(
       "friction_source", [get](const Self& self) { return name_of(get(self).friction_source); },
-      "'prior', 'given', 'observed' or 'carried_over'");
+      "'prior', 'given', 'observed', 'carried_over' or 'at_least'");
   bound.def_property_readonly(
       "slip", [get](const Self& self) { return name_of(get(self).slip); },
       "'unknown', 'sticking', 'partial' or 'sliding'");

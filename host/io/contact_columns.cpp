@@ -13,7 +13,12 @@ namespace pillarfield {
 namespace {
 
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
-constexpr int kWords = 4;  // in each list
+template <class Word>
+constexpr auto kLastWord = Word{};
+template <>
+constexpr auto kLastWord<FrictionSource> = FrictionSource::at_least;
+template <>
+constexpr auto kLastWord<SlipState> = SlipState::sliding;
 
 /// Clamps to the counts that a double holds exactly.
 std::uint64_t as_count(double value) {
@@ -36,7 +41,7 @@ std::optional<double> as_number(double value) {
 template <class Word>
 Word as_word(double value) {
   const std::uint64_t place = as_count(value);
-  return static_cast<Word>(place < kWords ? place : 0);
+  return static_cast<Word>(place <= static_cast<std::uint64_t>(kLastWord<Word>) ? place : 0);
 }
 
 template <class Word>
@@ -258,8 +263,11 @@ std::string text_of(const ContactColumn<Row>& column, const Row& row, const char
 
 template <class Row>
 std::string words_of(const ContactColumn<Row>& column) {
-  std::string words = column.word(0);
-  for (int place = 1; place < kWords; ++place) words += std::string(", ") + column.word(place);
+  const std::string first = column.word(0);  // a place without a word has the first
+  std::string words = first;
+  for (int place = 1; column.word(place) != first; ++place) {
+    words += std::string(", ") + column.word(place);
+  }
   return words;
 }
 

@@ -46,7 +46,8 @@ static_assert(static_cast<int>(SlipState::sticking) == PILLARFIELD_STICKING &&
               static_cast<int>(SlipState::sliding) == PILLARFIELD_SLIDING);
 static_assert(static_cast<int>(FrictionSource::given) == PILLARFIELD_FRICTION_GIVEN &&
               static_cast<int>(FrictionSource::observed) == PILLARFIELD_FRICTION_OBSERVED &&
-              static_cast<int>(FrictionSource::carried_over) == PILLARFIELD_FRICTION_CARRIED_OVER);
+              static_cast<int>(FrictionSource::carried_over) == PILLARFIELD_FRICTION_CARRIED_OVER &&
+              static_cast<int>(FrictionSource::at_least) == PILLARFIELD_FRICTION_AT_LEAST);
 
 std::optional<double> if_known(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
@@ -102,7 +103,7 @@ TrackedContact contact_from(const PillarfieldContact& of, double time_s, SkinLay
   for (const auto& [ring, found] : kPlaces) to.*found = {of.*ring.first, of.*ring.second};
   for (const auto& [ring, found] : kIfKnown) to.*found = if_known(of.*ring);
   to.mean_pressure_kpa = to.area_mm2 > 0 ? 1000 * to.normal_n / to.area_mm2 : 0;
-  to.friction_source = state_from(of.friction_source, FrictionSource::carried_over);
+  to.friction_source = state_from(of.friction_source, FrictionSource::at_least);
   to.slip = state_from(of.slip, SlipState::sliding);
   if (!if_known(of.slip_within[0])) return tracked;
   SlipForecast& forecast = to.slip_forecast.emplace();

@@ -210,7 +210,9 @@ std::string format_ambiguous(const ContactQuantities& contact) {
 }
 
 std::string format_friction(const ContactQuantities& contact) {
-  return contact.friction ? fmt::format("{:.2f}", *contact.friction) : "–";
+  if (!contact.friction) return "–";
+  const bool bound = contact.friction_source == FrictionSource::at_least;
+  return fmt::format("{}{:.2f}", bound ? "≥ " : "", *contact.friction);
 }
 
 std::string format_slip(const ContactQuantities& contact) {
@@ -232,7 +234,7 @@ std::vector<ContactColumn> shear_columns() {
            [](const ContactQuantities& contact) {
              return three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n));
            }},
-          {"µ", "friction", "00.00", format_friction},
+          {"µ", "friction", "≥ 0.00", format_friction},
           {"slip", "sticking, partial or sliding", "sticking", format_slip},
           {"slips in", "seconds until the whole contact slides at the present rates", "00.0 s",
            format_time_to_slip},
