@@ -40,7 +40,7 @@ calibration: Calibration, or the path of its file
 scene: Scene, or the path of its file; its constants and options replace those of skin
 layout: 'pillars' or 'sensels'; replaces that of skin and calibration
 pitch_mm: distance between sensels; replaces that of the skin
-estimator: 'direct', 'paper' or 'contact'
+estimator: 'contact', 'direct' or 'paper'; None: 'contact', without pillars 'direct'
 outputs: of 'angles' and 'uncertainty', beside the forces, and 'pressure', which files of them then hold
 friction_prior: (median, spread of the logarithm) of the friction
 unrelated_frames: consecutive frames are unrelated; nothing is carried over
@@ -211,7 +211,7 @@ py::tuple plan_state(const SolverPlan& plan) {
   calibration.planes = plan.calibration;
   std::vector<std::optional<double>> numbers;
   for_each_number([&](const PlanNumber& number) { numbers.push_back(number.get(plan)); });
-  return py::make_tuple(kVersion, plan.skin, name_of(plan.sensel_type), name_of(plan.estimator),
+  return py::make_tuple(kVersion, plan.skin, name_of(plan.sensel_type), name_of(estimator_of(plan)),
                         calibration, numbers);
 }
 
@@ -231,7 +231,7 @@ SolverPlan plan_from(const py::tuple& state) {
 
 std::string plan_text(const SolverPlan& plan) {
   return fmt::format("<Plan {} x {} {}, estimator '{}'{}{}>", plan.skin.rows, plan.skin.cols,
-                     name_of(plan.sensel_type), name_of(plan.estimator),
+                     name_of(plan.sensel_type), name_of(estimator_of(plan)),
                      plan.angles ? ", angles" : "", plan.uncertainty ? ", uncertainty" : "");
 }
 
@@ -248,7 +248,7 @@ void bind_plan(py::module_& module) {
           "'uint8', 'uint16' or 'float32'")
       .def_readonly("frame_interval_s", &SolverPlan::frame_interval_s, "s")
       .def_property_readonly(
-          "estimator", [](const SolverPlan& plan) { return name_of(plan.estimator); },
+          "estimator", [](const SolverPlan& plan) { return name_of(estimator_of(plan)); },
           "'direct', 'paper' or 'contact'")
       .def_property_readonly(
           "stages", [](const SolverPlan& plan) { return kernel_stages(plan); },

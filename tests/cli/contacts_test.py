@@ -92,13 +92,13 @@ class Contacts(CommandTest):
             self.assertIsNone(given)
             self.assertIn("observed", {source for _, source in found})
             self.assertLessEqual({source for _, source in found},
-                                 {"prior", "observed", "carried_over"})
+                                 {"prior", "observed", "carried_over", "at_least"})
             for friction, source in found:
                 self.assertEqual(friction == "", source == "prior")
 
     def test_friction_options_apply_to_contacts_of_direct_forces(self):
         def first(*known):
-            self.solve("--contacts", self.csv, *known)
+            self.solve("--estimator", "direct", "--contacts", self.csv, *known)
             return [(row["friction"], row["friction_source"], row["friction_deviation"])
                     for row in self.rows() if row["id"] == "1" and row["row"] == "contact"]
 

@@ -106,7 +106,7 @@ Recording record(const DriverOptions& options) {
   info = {.rows = plan.skin.pillar_rows(),
           .cols = plan.skin.pillar_cols(),
           .element_pitch_mm = plan.skin.pillar_pitch_mm(),
-          .estimator = name_of(plan.estimator),
+          .estimator = name_of(estimator_of(plan)),
           .device = "host",
           .source = "a scene",
           .uncertainty = plan.uncertainty,

@@ -84,11 +84,6 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   plan.calibration = simulator->calibration();
   set_solver(plan, scene);
   plan = shown_plan(std::move(plan));
-  if (carries_prior(plan.estimator, plan.friction)) {
-    info.notes.emplace_back(
-        "Played frames carry friction over from the frame before; a frame that is jumped to is "
-        "solved alone.");
-  }
   // Before the simulation, so that errors of the device come at once.
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);

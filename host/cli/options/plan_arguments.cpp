@@ -42,8 +42,9 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
   PlanSettings& settings = plan.settings;
   Group solver(command, "Solver");
   solver.choice("--estimator", settings.estimator, kEstimators,
-                "direct: each pillar from its own readings; paper: the paper's equations; contact: "
-                "ambiguous pillars from the friction of their contact [direct]");
+                "contact: ambiguous pillars from the friction of their contact, in earlier frames "
+                "too; direct: each pillar from its own readings; paper: the paper's equations "
+                "[contact; without pillars direct]");
   std::vector<std::string> outputs = {"forces"};
   for (const PlanOutput& output : kPlanOutputs) outputs.emplace_back(output.name);
   command
