@@ -439,7 +439,7 @@ TEST(CheckOutputs, AnInputIsNeverWrittenByWhateverName) {
   fs::create_symlink(".", directory / "here");
   for (const char* input : {"in.h5", "soft.h5", "hard.h5", "new.h5.part"}) {
     const bool is_part = std::string_view(input) == "new.h5.part";
-    for (const std::string output : {"in.h5", "soft.h5", "hard.h5", "here/../here/in.h5"}) {
+    for (const std::string output : {"in.h5", "soft.h5", "hard.h5", "here/in.h5"}) {
       const PlannedOutput planned = {directory / (is_part ? "new.h5" : output), OutputKind::forces};
       EXPECT_TRUE(has_all(
           error_of([&] { check_outputs({directory / input}, {planned}, Replace::anything); }),

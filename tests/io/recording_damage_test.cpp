@@ -20,7 +20,9 @@ using namespace io_test;
 void replace(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& extent,
              const std::vector<hsize_t>& chunk = {}) {
   H5Ldelete(file, name, H5P_DEFAULT);
-  const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr);
+  const std::vector<hsize_t> most(extent.size(), H5S_UNLIMITED);
+  const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(),
+                                       chunk.empty() ? nullptr : most.data());
   const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
   if (!chunk.empty()) H5Pset_chunk(layout, static_cast<int>(chunk.size()), chunk.data());
   const hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
