@@ -80,23 +80,6 @@ py::list history_of(const SkinCalibration& self) {
   return steps;
 }
 
-py::list effects_of(const SkinCalibration& self) {
-  const SensorEffects& effects = self.planes.effects;
-  py::list names;
-  const auto add = [&](const char* name, bool is_set) {
-    if (is_set) names.append(name);
-  };
-  add("curve", !effects.curve.empty());
-  add("shear_coefficient", effects.shear_coefficient.has_value());
-  add("sensel_leak", effects.sensel_leak.has_value());
-  add("pillar_leak", effects.pillar_leak.has_value());
-  add("wires", effects.wires.has_value());
-  add("memory", effects.memory.has_value());
-  add("arm", effects.arm_mm.has_value());
-  add("residual", effects.residual.has_value());
-  return names;
-}
-
 std::string calibration_text(const SkinCalibration& self) {
   std::string planes;
   const auto add = [&](const char* name, bool is_set) {
@@ -150,8 +133,9 @@ void bind_calibration(py::module_& module) {
             return self.layout ? std::optional<std::string>(name_of(*self.layout)) : std::nullopt;
           },
           "'pillars', 'sensels', or None")
-      .def_property_readonly("effects", &effects_of,
-                             "names of the corrections that all sensels share")
+      .def_property_readonly(
+          "effects", [](const SkinCalibration& self) { return names_of(self.planes.effects); },
+          "names of the corrections that all sensels share")
       .def_property_readonly("history", &history_of, "one line a step, oldest first")
       .def("__repr__", &calibration_text);
 }

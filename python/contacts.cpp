@@ -2,15 +2,16 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "io/contact_columns.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
@@ -35,96 +36,42 @@ reach_mm: how far a contact may move between frames, 0..1000
 
 Raises Error for a value out of range.)";
 
-using Pair = std::pair<double, double>;
+/// A quantity as an int, a float or a str; None where it is unset or does not exist.
+py::object value_of(const QuantityColumn& column, const ContactQuantities& quantities) {
+  if (column.of_pillars && !quantities.has_shear) return py::none();
+  const double value = column.get(quantities);
+  if (column.kind == ColumnKind::word) return py::str(column.word(value));
+  if (column.kind != ColumnKind::number) return py::int_(static_cast<std::uint64_t>(value));
+  if (std::isnan(value)) return py::none();
+  return py::float_(value);
+}
 
-/// Adds the members of ContactQuantities to a class; `get` returns them for an object of it.
+std::string help_of(const QuantityColumn& column) {
+  return fmt::format("{}{}{}{}", column.help, *column.unit != '\0' ? ", " : "", column.unit,
+                     column.of_pillars || column.optional ? ", or None" : "");
+}
+
+/// Adds the quantities of a contact to a class, and a pair "NAME_mm" for each "NAME_x_mm" and
+/// "NAME_y_mm"; `get` returns them for an object of it.
 template <class Class, class Get>
 void add_quantities(Class& bound, Get get) {
   using Self = typename Class::type;
-  const auto add = [&](const char* name, auto member, const char* text) {
+  const QuantityColumns columns = quantity_columns();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const QuantityColumn& column = columns[i];
     bound.def_property_readonly(
-        name, [get, member](const Self& self) { return get(self).*member; }, text);
-  };
-  const auto add_of_pillars = [&](const char* name, auto member, const char* text) {
+        column.name, [get, &column](const Self& self) { return value_of(column, get(self)); },
+        help_of(column).c_str());
+    constexpr std::string_view kX = "_x_mm";
+    const std::string_view name = column.name;
+    if (!name.ends_with(kX)) continue;
     bound.def_property_readonly(
-        name,
-        [get, member](const Self& self) {
-          const ContactQuantities& quantities = get(self);
-          return quantities.has_shear ? std::optional(quantities.*member) : std::nullopt;
+        (std::string(name.substr(0, name.size() - kX.size())) + "_mm").c_str(),
+        [get, pair = columns.subspan(i, 2)](const Self& self) {
+          return py::make_tuple(value_of(pair[0], get(self)), value_of(pair[1], get(self)));
         },
-        text);
-  };
-  const auto add_place = [&](const char* name, PatchPlace ContactQuantities::*member,
-                             const char* text) {
-    bound.def_property_readonly(
-        name,
-        [get, member](const Self& self) {
-          const PatchPlace& place = get(self).*member;
-          return Pair(place.x_mm, place.y_mm);
-        },
-        text);
-  };
-  using Q = ContactQuantities;
-  add("pillars", &Q::pillars, "number of pillars, or of sensels without pillars");
-  add_of_pillars("ambiguous", &Q::ambiguous,
-                 "of these, ambiguous by their readings alone; None without pillars");
-  add_of_pillars("resolved", &Q::resolved,
-                 "of the ambiguous, resolved by friction; None without pillars");
-  add_of_pillars("shear_x_n", &Q::shear_x_n, "force to the right, N; None without pillars");
-  add_of_pillars("shear_y_n", &Q::shear_y_n, "force up, N; None without pillars");
-  add("normal_n", &Q::normal_n, "pressing force, N");
-  add_place("centre_of_pressure_mm", &Q::centre_of_pressure,
-            "(x, y) from the centre of the skin, mm");
-  add_place("centre_mm", &Q::centre, "(x, y) of the mean pillar, mm");
-  add_of_pillars("torque_nmm", &Q::torque_nmm,
-                 "about the outward normal, counter-clockwise, N mm; None without pillars");
-  add("area_mm2", &Q::area_mm2, "mm²");
-  add("peak_n", &Q::peak_n, "largest normal force of a pillar, N");
-  add_place("peak_mm", &Q::peak, "(x, y) of that pillar, mm");
-  add("mean_pressure_kpa", &Q::mean_pressure_kpa, "kPa");
-  bound.def_property_readonly(
-      "peak_pressure_kpa", [get](const Self& self) { return get(self).peak_pressure_kpa(); },
-      "pressure on the most loaded element, kPa");
-  add("friction", &Q::friction, "friction coefficient, or None");
-  add("friction_deviation", &Q::friction_deviation, "its standard deviation, or None");
-  add("slipping_share", &Q::slipping_share, "slipping fraction of the normal force, 0..1, or None");
-  add("slip_margin", &Q::slip_margin,
-      "1 - |shear| / (friction normal), the reserve before it slides, or None");
-  const auto add_forecast = [&](const char* name, auto value, const char* text) {
-    bound.def_property_readonly(
-        name,
-        [get, value](const Self& self) {
-          const auto& forecast = get(self).slip_forecast;
-          return forecast ? std::optional<double>(value(*forecast)) : std::nullopt;
-        },
-        text);
-  };
-  using F = SlipForecast;
-  const auto add_time = [&](const char* name, std::optional<double> F::*time, const char* text) {
-    bound.def_property_readonly(
-        name,
-        [get, time](const Self& self) {
-          const auto& forecast = get(self).slip_forecast;
-          return forecast ? *forecast.*time : std::nullopt;
-        },
-        text);
-  };
-  add_time("time_to_slip_s", &F::time_s, "until it slides at the present rates, s, or None");
-  add_time("time_to_slip_low_s", &F::low_s, "least of its 95 % interval, s, or None if never");
-  add_time("time_to_slip_high_s", &F::high_s, "largest, s, or None if never");
-  add_forecast(
-      "slip_within_0_1_s", [](const F& f) { return f.probability[0]; },
-      "probability that it slides within 0.1 s, or None");
-  add_forecast(
-      "slip_within_0_3_s", [](const F& f) { return f.probability[1]; }, "within 0.3 s, or None");
-  add_forecast(
-      "slip_within_1_s", [](const F& f) { return f.probability[2]; }, "within 1 s, or None");
-  bound.def_property_readonly(
-      "friction_source", [get](const Self& self) { return name_of(get(self).friction_source); },
-      "'prior', 'given', 'observed' or 'carried_over'");
-  bound.def_property_readonly(
-      "slip", [get](const Self& self) { return name_of(get(self).slip); },
-      "'unknown', 'sticking', 'partial' or 'sliding'");
+        fmt::format("{}: (x, y), mm", column.help).c_str());
+  }
   bound.def_property_readonly(
       "wrench",
       [get](const Self& self) -> py::object {

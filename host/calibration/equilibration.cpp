@@ -10,7 +10,6 @@
 #include "base/quantile.h"
 #include "calibration/finding_list.h"
 #include "calibration/held_out.h"
-#include "calibration/leak_sum.h"
 #include "calibration/response_fit.h"
 #include "calibration/steps.h"
 #include "pillarfield/error.h"
@@ -126,10 +125,10 @@ class ResponseSummary {
     return responded > 0 ? std::sqrt(misfit / responded) : 0;
   }
 
-  /// `leaks` multiply the load, but not the dead zone, which comes before them.
-  [[nodiscard]] double median_dead_zone(double k, double leaks) const {
+  /// `sum`, of the sensels, multiplies the load, but not the dead zone, which comes before.
+  [[nodiscard]] double median_dead_zone(double k, double sum) const {
     std::vector<double> values;
-    for_good([&](const Response& r) { values.push_back(k * r.dead_zone_n / leaks); });
+    for_good([&](const Response& r) { values.push_back(k * r.dead_zone_n / sum); });
     return median(values);
   }
 
@@ -249,7 +248,7 @@ void fill_planes(const std::vector<Response>& responses, double k, bool several,
     planes.gain[i] = static_cast<float>(k * response.newtons_per_count - response.dead_zone_gain);
     if (!several) continue;
     planes.dead_zone[i] =
-        static_cast<float>(k * response.dead_zone_n / sensel_leak_sum(planes.effects, skin, i));
+        static_cast<float>(k * response.dead_zone_n / sensel_sum(planes.effects, skin, i));
   }
   planes.mask = found.mask_plane();
 }
@@ -281,7 +280,7 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   result.shear = shear_of(responses, skin, found);
   result.gain_spread = summary.gain_spread(k);
   result.nonlinearity = result.levels > 2 ? summary.nonlinearity() : 0;
-  result.dead_zone_counts = summary.median_dead_zone(k, sensel_leak_sum(before.planes.effects));
+  result.dead_zone_counts = summary.median_dead_zone(k, sensel_sum(before.planes.effects));
   result.calibration = before;
   SkinCalibration& after = result.calibration;
   fill_planes(responses, k, result.levels > 1, skin, found, after.planes);

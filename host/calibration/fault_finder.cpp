@@ -38,9 +38,7 @@ SolverPlan plan_of_sensels(SolverPlan plan) {
   Skin& skin = plan.skin;
   Calibration& planes = plan.calibration;
   for (auto* const plane : {&planes.bend_x, &planes.bend_y, &planes.bend_xy}) plane->clear();
-  planes.effects.shear_coefficient.reset();
-  planes.effects.pillar_leak.reset();
-  planes.effects.arm_mm.reset();
+  planes.effects = without_pillars(std::move(planes.effects));
   if (planes.mask.empty()) planes.mask.assign(skin.sensels(), kGood);
   for (std::size_t i = 0; skin.has_pillars() && i < planes.mask.size(); ++i) {
     const bool is_under_one =

@@ -11,7 +11,6 @@
 #include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/leak_fit.h"
-#include "calibration/leak_sum.h"
 #include "calibration/linear_readings.h"
 #include "calibration/normal_equations.h"
 #include "calibration/steps.h"
@@ -353,15 +352,15 @@ void rescale_for_leaks(SkinCalibration& calibration, const Skin& skin,
   const SensorEffects before = effects;
   effects.sensel_leak = sensel;
   effects.pillar_leak = pillar;
-  const double inner = full_leak_sum(effects) / full_leak_sum(before);
+  const double inner = linear_sum(effects) / linear_sum(before);
   if (calibration.counts_per_newton) *calibration.counts_per_newton /= inner;
-  const double inner_zone = sensel_leak_sum(effects) / sensel_leak_sum(before);
+  const double inner_zone = sensel_sum(effects) / sensel_sum(before);
   for (float& zone : calibration.planes.dead_zone) zone /= static_cast<float>(inner_zone);
   if (effects.memory) {
     for (Play& play : effects.memory->plays) play.width_counts /= inner_zone;
   }
   for (std::size_t i = 0; i < calibration.planes.gain.size(); ++i) {
-    const double own = leak_sum(effects, skin, i) / leak_sum(before, skin, i);
+    const double own = linear_sum(effects, skin, i) / linear_sum(before, skin, i);
     calibration.planes.gain[i] *= static_cast<float>(own / inner);
   }
 }

@@ -8,8 +8,8 @@
 namespace pillarfield {
 
 /// Readings after tare, gain and response curve or power law, [rows, cols], counts: what sensels
-/// read whose leaks, memory and dead zone are not corrected. NaN for missing, masked and saturated
-/// sensels.
+/// read whose neighbours, memory and dead zone are not corrected. NaN for missing, masked and
+/// saturated sensels.
 [[nodiscard]] std::vector<float> linear_readings(const SkinCalibration& calibration,
                                                  const Skin& skin, const FrameView& frame);
 

@@ -8,7 +8,6 @@
 
 #include "base/number_text.h"
 #include "base/quantile.h"
-#include "calibration/leak_sum.h"
 #include "calibration/linear_readings.h"
 #include "calibration/memory_fit.h"
 #include "calibration/steps.h"
@@ -108,10 +107,10 @@ double longest_recording(const std::vector<Sample>& samples) {
 /// The reading after gain of a load that the calibration finds without its memory.
 double reading_before(const SkinCalibration& calibration, double load) {
   const SensorEffects& effects = calibration.planes.effects;
-  const double leaking = sensel_leak_sum(effects) * load;
+  const double linear = sensel_sum(effects) * load;
   const auto& law = calibration.power_law;
-  return law ? straightened({1 / law->exponent, law->reference_counts}, leaking)
-             : reading_at(effects.curve, leaking);
+  return law ? straightened({1 / law->exponent, law->reference_counts}, linear)
+             : reading_at(effects.curve, linear);
 }
 
 /// The pieces of c up to a load, with the slopes that the calibration has there.
@@ -130,19 +129,19 @@ std::vector<CurveStretch> pieces_up_to(const SkinCalibration& calibration, doubl
 /// The curve of the calibration followed by c, straight on the first of its pieces.
 ResponseCurve followed_by(const SkinCalibration& calibration, const MemoryFit& fit,
                           const std::vector<CurveStretch>& pieces) {
-  const double leaks = sensel_leak_sum(calibration.planes.effects);
+  const double sum = sensel_sum(calibration.planes.effects);
   std::vector<double> knots;
   knots.reserve(pieces.size() + calibration.planes.effects.curve.loads.size());
   for (const CurveStretch& piece : pieces) knots.push_back(piece.end);
   for (const double load : calibration.planes.effects.curve.loads) {
-    if (load / leaks > pieces.front().end) knots.push_back(load / leaks);
+    if (load / sum > pieces.front().end) knots.push_back(load / sum);
   }
   std::ranges::sort(knots);
   ResponseCurve curve;
   constexpr double kLeastGap = 1.02;  // Close knots would repeat the steps of a fit.
   double last = 0;
   for (const double knot : knots) {
-    const double load = leaks * value_at(fit, pieces, knot);
+    const double load = sum * value_at(fit, pieces, knot);
     if (!(knot > kLeastGap * last && load > (curve.loads.empty() ? 0 : curve.loads.back()))) {
       continue;
     }
@@ -224,8 +223,8 @@ void MemoryFinder::add(const FrameView& frame, double time_s, double pressure_kp
   const double force_n = 1e-3 * pressure_kpa * area_mm2;
   const SensorEffects& effects = calibration_.planes.effects;
   samples_.push_back({begins_ ? 0 : time_s - time_s_,
-                      *calibration_.counts_per_newton * force_n * pillar_leak_sum(effects),
-                      sum / static_cast<double>(count) / sensel_leak_sum(effects)});
+                      *calibration_.counts_per_newton * force_n * pillar_sum(effects),
+                      sum / static_cast<double>(count) / sensel_sum(effects)});
   time_s_ = time_s;
   begins_ = false;
 }
@@ -262,10 +261,10 @@ MemoryResult MemoryFinder::result() const {
                  result.hysteresis + result.creep_per_decade > kLeastMemory;
   result.calibration = calibration_;
   result.calibration.planes.effects.memory.reset();
-  const SensorEffects& leaks = calibration_.planes.effects;
   if (!result.found) return result;
-  if (result.curved && (leaks.sensel_leak || leaks.pillar_leak)) {
-    throw Error("memory", "it changes the response curve with which the leaks were found",
+  if (result.curved && have_neighbours(calibration_.planes.effects)) {
+    throw Error("memory",
+                "it changes the response curve with which the effects of neighbours were found",
                 "calibrate the memory before the leak, and what follows it, anew");
   }
   store(fit, pieces, result.residual_after, range, result.calibration);

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "calibration/golden_section.h"
-#include "calibration/leak_sum.h"
 #include "calibration/normal_equations.h"
 #include "skin/pillar_sensels.h"
 
@@ -199,7 +198,7 @@ double ResponseFit::force_n(const UniformPress& press, std::size_t sensel) const
   const Skin& skin = press.frames.skin();
   const double area_mm2 = skin.element_pitch_mm().area_mm2();
   return press.pressure_kpa * area_mm2 * kNewtonsPerKpaMm2 *
-         leak_sum(planes_.effects, skin, sensel);
+         linear_sum(planes_.effects, skin, sensel);
 }
 
 std::optional<double> ResponseFit::response(const UniformPress& press, std::size_t sensel) const {
@@ -247,11 +246,10 @@ Response ResponseFit::operator()(std::size_t sensel) const {
 Response ResponseFit::ratio(const Sums& sums, std::size_t sensel) const {
   const double mean_response = sums.y / sums.w;
   const double dead_zone = planes_.dead_zone.empty() ? 0 : planes_.dead_zone[sensel];
-  return {
-      .kind = Response::Kind::good,
-      .newtons_per_count = sums.n / sums.w / mean_response,
-      .dead_zone_gain = sensel_leak_sum(planes_.effects, presses_.front().frames.skin(), sensel) *
-                        dead_zone / mean_response};
+  return {.kind = Response::Kind::good,
+          .newtons_per_count = sums.n / sums.w / mean_response,
+          .dead_zone_gain = sensel_sum(planes_.effects, presses_.front().frames.skin(), sensel) *
+                            dead_zone / mean_response};
 }
 
 /// Several pressures: least squares of y = s (n − n0) under n0 >= 0, or n0 = 0 for multiples of the
@@ -291,7 +289,7 @@ bool all_responses(const ResponseFit& fit, std::size_t sensel, std::vector<doubl
 /// Sums over the sensels that respond to every press.
 struct RespondingSensels {
   std::vector<double> responses;  ///< one for each press
-  double leaks = 0;
+  double linear = 0;
   std::size_t count = 0;
 };
 
@@ -307,7 +305,7 @@ std::optional<RespondingSensels> responding_sensels(const ResponseFit& fit,
     ++good;
     if (!all_responses(fit, i, responses)) return;
     ++sums.count;
-    sums.leaks += leak_sum(fit.planes().effects, skin, i);
+    sums.linear += linear_sum(fit.planes().effects, skin, i);
     for (std::size_t p = 0; p < responses.size(); ++p) sums.responses[p] += responses[p];
   });
   return 2 * sums.count > good ? std::optional(sums) : std::nullopt;
@@ -333,7 +331,7 @@ std::optional<LevelReadings> level_readings(const ResponseFit& fit,
     const double area_mm2 = skin.element_pitch_mm().area_mm2();
     const auto count = static_cast<double>(responding->count);
     at.readings.push_back(sum / frames / count);
-    at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * responding->leaks / count);
+    at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * responding->linear / count);
   }
   const bool increase = std::ranges::is_sorted(at.readings, std::less_equal<>());
   return increase ? std::optional(at) : std::nullopt;

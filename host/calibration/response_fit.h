@@ -36,7 +36,7 @@ struct Response {
   Kind kind = Kind::unresponsive;
   double newtons_per_count = 0;
   double dead_zone_gain = 0;  ///< dead zone over response; one pressure
-  double dead_zone_n = 0;     ///< dead zone as a force with leaks; several pressures
+  double dead_zone_n = 0;     ///< dead zone as a force; several pressures
   double misfit = 0;          ///< weighted sum of squared residuals
   double responded = 0;       ///< weighted sum of squared responses
 };
@@ -54,7 +54,7 @@ class ResponseFit {
   /// The different pressures, kPa, increasing.
   [[nodiscard]] const std::vector<double>& levels() const { return levels_; }
 
-  /// Force on the pillar of a sensel, with what leaks to the sensel from others, N.
+  /// Force on the pillar of a sensel, times linear_sum(), N.
   [[nodiscard]] double force_n(const UniformPress& press, std::size_t sensel) const;
 
   /// Mean reading − tare under a press; unset if the sensel does not respond or is saturated.
@@ -89,7 +89,7 @@ class ResponseFit {
 
 /// The mean readings of the sensels that respond to all presses, at each level.
 struct LevelReadings {
-  std::vector<double> forces_n;  ///< on a pillar, with leaks
+  std::vector<double> forces_n;  ///< on a pillar, times linear_sum()
   std::vector<double> readings;
 };
 

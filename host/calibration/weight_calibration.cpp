@@ -9,7 +9,6 @@
 
 #include "base/number_text.h"
 #include "base/quantile.h"
-#include "calibration/leak_sum.h"
 #include "calibration/steps.h"
 #include "calibration/weight_fit.h"
 #include "calibration/weight_selection.h"
@@ -315,7 +314,7 @@ WeightResult WeightFinder::result() const {
   }
   set_threshold(after, calibration_.threshold_factor.value_or(4));
   after.counts_per_newton =
-      counts_per_newton(fit, *after.threshold_counts) / sensel_leak_sum(after.planes.effects);
+      counts_per_newton(fit, *after.threshold_counts) / sensel_sum(after.planes.effects);
   const WeightDeviations deviations = deviations_of(fit, kWeightSamples);
   summarise_gains(fit, deviations.gains, result);
   result.total_deviation = deviations.total;

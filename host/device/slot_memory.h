@@ -32,7 +32,8 @@ class SlotMemory : public ResultMemory {
     queue.finish();
   }
 
-  /// Returns the memory to the device, before both end: PoCL leaks a buffer that is still mapped.
+  /// Returns the memory to the device, before both end: PoCL never frees a buffer that is still
+  /// mapped.
   virtual void release(const cl::CommandQueue& queue) { static_cast<void>(queue); }
 
   /// Results and idle flags, which the kernel writes; the flags are zero at first.

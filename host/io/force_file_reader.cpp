@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/contact_columns.h"
+#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"

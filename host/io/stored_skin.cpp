@@ -83,8 +83,11 @@ void write_effects(const hdf5::File& file, const char* place, const SensorEffect
 SensorEffects read_effects(const hdf5::File& file, const char* place) {
   if (!hdf5::exists(file, place)) return {};
   const hdf5::Handle group = hdf5::open_object(file, place);
-  return effects_of([&](const char* name) { return hdf5::read_numbers(file, group.get(), name); },
-                    fmt::format("{}: {}", file.path.string(), place));
+  return effects_of(
+      [&](const EffectParameter& asked) {
+        return hdf5::read_numbers(file, group.get(), asked.name);
+      },
+      fmt::format("{}: {}", file.path.string(), place));
 }
 
 void write_pitch(const hdf5::File& file, hid_t object, const char* name, const Pitch& pitch) {

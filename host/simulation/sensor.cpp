@@ -7,7 +7,6 @@
 
 #include "base/random.h"
 #include "base/wide.h"
-#include "simulation/effects/known_effects.h"
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/sensel_leak.h"
 #include "simulation/effects/wire_network.h"
@@ -88,7 +87,7 @@ Calibration draw_calibration(const Scene& scene) {
     calibration.bend_y = pattern(random::Stream::bend_y);
     calibration.bend_xy = pattern(random::Stream::bend_xy);
   }
-  calibration.effects = known_effects(model, scene.skin);
+  calibration.effects = model.effects;
   return calibration;
 }
 
@@ -195,7 +194,7 @@ void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
   if (power_law_) {
     for (double& value : signal) value = value > 0 ? straightened(*power_law_, value) : value;
   }
-  if (const ResponseCurve& curve = model_.response_curve; !curve.empty()) {
+  if (const ResponseCurve& curve = model_.effects.curve; !curve.empty()) {
     for (double& value : signal) value = reading_at(curve, value);
   }
   if (!calibration_.gain.empty()) {

@@ -14,11 +14,12 @@ namespace pillarfield {
 /// The sensels of a scene: the stages from the model's V to the raw reading, in this order, each
 /// only if the scene lists it (docs/scenes.md):
 ///
-///     dead zone, leak between sensels, memory (MemoryHistory), response curve or power law,
+///     dead zone, neighbours, memory (MemoryHistory), response curve or power law,
 ///     sensitivity, tare, wires (an offset: wires, tare), drift, noise, full scale and rounding,
 ///     dead.
 ///
-/// Leak, memory and wires need whole frames: load() then read_frame(), with memory in between.
+/// Neighbours, memory and wires need whole frames: load() then read_frame(), with memory in
+/// between.
 class Sensor {
  public:
   /// Draws the per-sensel planes. The scene must pass check().
@@ -30,7 +31,7 @@ class Sensor {
   /// True if a reading depends on other sensels or frames, so that read_row() does not apply.
   [[nodiscard]] bool needs_frames() const { return needs_frames_; }
 
-  /// Dead zone and leak of a frame: overwrites the model's V, counts.
+  /// Dead zone and neighbours of a frame: overwrites the model's V, counts.
   void load(std::span<double> frame_signal) const;
 
   /// Writes a frame of raw readings from the result of load(), which is overwritten.

@@ -236,7 +236,7 @@ void read_pillars(std::uint32_t row, const Scene& scene, const PillarModel& pill
 
 struct Simulator::State {
   explicit State(Scene given)
-      : scene(checked(std::move(given))), pillars(scene.sensor), sensor(scene) {
+      : scene(checked(std::move(given))), pillars(scene.sensor.effects), sensor(scene) {
     if (MemoryHistory::is_needed(scene.sensor)) memory = std::make_unique<MemoryHistory>(scene);
     if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load))
       sweep_truth = direction_sweep_forces(*sweep);
@@ -272,7 +272,7 @@ struct Simulator::State {
     return load;
   }
 
-  /// V of all sensels after dead zone and leak.
+  /// V of all sensels after Sensor::load().
   [[nodiscard]] std::vector<double> loaded_sensels(std::uint64_t index, ForceField& truth) const {
     const Skin& skin = scene.skin;
     FrameLoad frame_load = load(index, truth);

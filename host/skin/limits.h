@@ -7,9 +7,7 @@ namespace pillarfield {
 
 // Ranges of numbers that scenes, files, plans and the command line share.
 
-// Numbers of SensorEffects.
-inline constexpr Range kSenselLeak = {-kMostSenselLeak, kMostSenselLeak};
-inline constexpr Range kPillarLeak = {-kMostPillarLeak / 4, kMostPillarLeak / 4};
+// Numbers of SensorEffects whose keys in scenes differ from their parameters.
 inline constexpr Range kShearCoefficient = {0.1, 10};
 inline constexpr Range kPillarArmMm = {1e-3, 1e3};
 inline constexpr Range kTileSensels = {2, 1024};  ///< rows or columns that share wires

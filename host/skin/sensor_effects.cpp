@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pillarfield/error.h"
+#include "skin/effect_parameters.h"
 #include "skin/limits.h"
 
 namespace pillarfield {
@@ -13,16 +14,11 @@ namespace {
 
 constexpr std::size_t kLeastKnots = 2;
 constexpr std::size_t kMostKnots = 64;
-constexpr double kMaxPerCount = 0.1;
 
 void require(std::string_view where, std::string_view name, double value, double low, double high) {
   if (value >= low && value <= high) return;
   throw Error(where, fmt::format("{} is {:.6g}", name, value),
               fmt::format("it must lie in [{}, {}]", low, high));
-}
-
-void require(std::string_view where, std::string_view name, double value, const Range& range) {
-  require(where, name, value, range.low, range.high);
 }
 
 void check_knots(const std::vector<double>& knots, const char* name, std::string_view where) {
@@ -60,14 +56,9 @@ void check(const SenselMemory& memory, std::string_view where) {
   double slope = 1;
   for (const Play& play : memory.plays) {
     require(where, "a play's width", play.width_counts, width, kCurveCounts.high);
-    require(where, "a play's weight", play.weight, -1, 1);
     slope += play.weight;
     require(where, "the slope of the loading curve beyond a play", slope, 1e-3, 1e3);
     width = play.width_counts;
-  }
-  for (const Creep& creep : memory.creep) {
-    require(where, "a creep time", creep.time_s, 1e-6, 1e9);
-    require(where, "a creep weight", creep.weight, -0.5, 0.5);
   }
 }
 
@@ -154,33 +145,59 @@ std::size_t piece_of(const std::vector<double>& knots, double value) {
 
 void check(const SensorEffects& effects, std::string_view where) {
   check(effects.curve, where);
-  if (effects.shear_coefficient) {
-    require(where, "the shear coefficient x", effects.shear_coefficient->x, kShearCoefficient);
-    require(where, "the shear coefficient y", effects.shear_coefficient->y, kShearCoefficient);
-  }
-  if (effects.sensel_leak) {
-    require(where, "the leak inside a pillar", effects.sensel_leak->inside, kSenselLeak);
-    require(where, "the leak across pillars", effects.sensel_leak->across, kSenselLeak);
-  }
   if (effects.pillar_leak) {
     const auto& [edge, corner] = *effects.pillar_leak;
     require(where,
             fmt::format("the leak between pillars, 4 (|edge {}| + |corner {}|),", edge, corner),
             4 * (std::abs(edge) + std::abs(corner)), 0, kMostPillarLeak);
   }
-  if (const auto& wires = effects.wires) {
-    require(where, "tile_rows", wires->tile_rows, kTileSensels);
-    require(where, "tile_cols", wires->tile_cols, kTileSensels);
-    require(where, "row_per_count", wires->row_per_count, 0, kMaxPerCount);
-    require(where, "column_per_count", wires->column_per_count, 0, kMaxPerCount);
-    require(where, "idle_per_count", wires->idle_per_count, 0, kMaxPerCount);
+  for (const EffectParameter& parameter : parameters_of(effects)) {
+    for (const double value : parameter.values) {
+      if (parameter.range.contains(value)) continue;
+      throw Error(where, fmt::format("{} is {:.6g}", parameter.name, value),
+                  fmt::format("it must be {}", parameter.range.text()));
+    }
   }
   if (effects.memory) check(*effects.memory, where);
-  if (effects.arm_mm) require(where, "the arm of a pillar", *effects.arm_mm, kPillarArmMm);
-  if (effects.residual) {
-    require(where, "the relative residual", effects.residual->relative, 0, 1);
-    require(where, "the residual offset", effects.residual->offset_counts, 0, kCurveCounts.high);
-  }
+}
+
+SensorEffects without_pillars(SensorEffects effects) {
+  effects.shear_coefficient.reset();
+  effects.pillar_leak.reset();
+  effects.arm_mm.reset();
+  return effects;
+}
+
+bool have_neighbours(const SensorEffects& effects) {
+  return effects.sensel_leak || effects.pillar_leak;
+}
+
+double sensel_sum(const SensorEffects& effects, int missing) {
+  const SenselLeak leak = effects.sensel_leak.value_or(SenselLeak{});
+  return 1 + 2 * leak.inside + (2 - missing) * leak.across;
+}
+
+double sensel_sum(const SensorEffects& effects, const Skin& skin, std::size_t sensel) {
+  const std::size_t row = sensel / skin.cols;
+  const std::size_t col = sensel % skin.cols;
+  const std::size_t solved_rows = skin.has_pillars() ? 2 * skin.pillar_rows() : skin.rows;
+  const std::size_t solved_cols = skin.has_pillars() ? 2 * skin.pillar_cols() : skin.cols;
+  const int at_row_edge = row == 0 || row + 1 == solved_rows ? 1 : 0;
+  const int at_col_edge = col == 0 || col + 1 == solved_cols ? 1 : 0;
+  return sensel_sum(effects, at_row_edge + at_col_edge);
+}
+
+double pillar_sum(const SensorEffects& effects) {
+  const PillarLeak leak = effects.pillar_leak.value_or(PillarLeak{});
+  return 1 + 4 * leak.edge + 4 * leak.corner;
+}
+
+double linear_sum(const SensorEffects& effects) {
+  return sensel_sum(effects) * pillar_sum(effects);
+}
+
+double linear_sum(const SensorEffects& effects, const Skin& skin, std::size_t sensel) {
+  return sensel_sum(effects, skin, sensel) * pillar_sum(effects);
 }
 
 double load_at(const ResponseCurve& curve, double reading) {

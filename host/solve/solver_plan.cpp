@@ -82,9 +82,7 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
              friction.spread != unknown.spread,
          "a friction coefficient");
   refuse(plan.angles, "magnitude and angles of shear force");
-  refuse(effects.shear_coefficient.has_value(), "a shear coefficient");
-  refuse(effects.pillar_leak.has_value(), "a leak between pillars");
-  refuse(effects.arm_mm.has_value(), "an arm of pillars");
+  refuse(names_of(effects) != names_of(without_pillars(effects)), "an effect of pillars");
 }
 
 constexpr int kMaxBaselineInterval = 1024;

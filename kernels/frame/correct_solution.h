@@ -1,5 +1,5 @@
 /* Corrects a solved pillar by those around it: what correct_forces.cl and, as C++, the host do for
- * the stages PF_PILLAR_LEAK and PF_LEAN. */
+ * its stages. */
 #ifdef PF_LEAN
 /* Flags a pillar of three or four usable sensels as ambiguous if its force alone, to within two
  * deviations of the correction, `margin_x` and `margin_y`, does not load exactly these (E7). */

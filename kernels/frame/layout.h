@@ -17,6 +17,6 @@ typedef struct {
   ulong ring;         /* to the rings of neighbours.h */
   ulong wires;        /* to the vectors of find_wires.cl */
   ulong frame;        /* number of the frame, from 1 on */
-  ulong forces;       /* to the planes of forces with the leak between pillars */
+  ulong forces;       /* to the planes of forces that correct_forces.cl reads */
   ulong ratios;       /* to the rows of find_shear_ratios */
 } Layout;

@@ -25,31 +25,13 @@
 #define PF_NUMBER(name) stages.name
 #endif
 #define PF_VALUE(type, name) PF_CONSTANT(type, PF_NUMBER(name))
+#ifdef PF_WHOLE
 #define PF_SATURATION
 #define PF_PARITY_TEST
-#ifndef PF_WHOLE
-#define PF_RANGE
-#define PF_MASK
-#define PF_WIRES
+#else
+#include "kernels/define_stages.h" /* made from stage_table.h */
 #define PF_AFTER_TARE PF_NAMED(wires_after_tare)
 #define PF_WIRES_ACT(after_tare) (PF_NAMED(wires) && PF_AFTER_TARE == (after_tare))
-#define PF_BEND
-#define PF_TARE
-#define PF_GAIN
-#define PF_SENSELS
-#define PF_POWER_LAW
-#define PF_CURVE
-#define PF_LEAK
-#define PF_MEMORY
-#define PF_DEAD_ZONE
-#define PF_PAPER
-#define PF_SHEAR_COEFFICIENT
-#define PF_RESIDUAL
-#define PF_ANGLES
-#define PF_UNCERTAINTY
-#define PF_PILLAR_LEAK
-#define PF_LEAN
-#define PF_BASELINE
 #endif
 
 /* The stages that a plan names, and their constants. */

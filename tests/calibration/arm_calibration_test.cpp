@@ -20,7 +20,7 @@ using core_test::PressedSkin;
 
 PressedSkin leaning_skin(const std::optional<double>& arm_mm, double noise_counts = 0.5) {
   SensorModel sensor;
-  sensor.pillar_arm_mm = arm_mm;
+  sensor.effects.arm_mm = arm_mm;
   sensor.noise_counts = noise_counts;
   PressedSkin skin(40, 40, sensor);
   skin.scene().skin.counts_per_newton = 160;
@@ -88,7 +88,7 @@ TEST(CalibrateArm, ReplacesAnEarlierArmAndKeepsTheRest) {
 /// Shear of a coefficient other than 1 is solved before it is compared with the lean.
 TEST(CalibrateArm, FollowsTheShearCoefficient) {
   PressedSkin skin = leaning_skin(0.5);
-  skin.scene().sensor.shear_coefficient = {0.8, 0.8};
+  skin.scene().sensor.effects.shear_coefficient = {0.8, 0.8};
   SkinCalibration before = leaning_tare(skin);
   before.planes.effects.shear_coefficient = {0.8, 0.8};
   const FrameStatistics presses[] = {balls(skin, 6, 60)};

@@ -264,7 +264,7 @@ ResponseCurve saturating_curve() {
 TEST(Equilibration, FindsNoDeadZoneInAResponseThatSaturates) {
   for (const auto& [dead_zone, accuracy] : {std::pair(0.0, 0.1), std::pair(5.0, 0.6)}) {
     PressedSkin skin = curved_skin(dead_zone, 1);
-    skin.scene().sensor.response_curve = saturating_curve();
+    skin.scene().sensor.effects.curve = saturating_curve();
     const EquilibrationResult result = equilibrate_at_loads(skin, {}, {14, 28, 56, 100, 160, 240});
     EXPECT_EQ(result.model, ResponseModel::curve);
     EXPECT_NEAR(result.dead_zone_counts * 320 / *result.calibration.counts_per_newton, dead_zone,

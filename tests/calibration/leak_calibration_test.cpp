@@ -29,10 +29,8 @@ PressedSkin leaking_skin(const SenselLeak& sensel, const PillarLeak& pillar,
   sensor.tare_counts = 12;
   sensor.gain_spread = 0.05;
   sensor.noise_counts = 0.5;
-  sensor.leak_inside = sensel.inside;
-  sensor.leak_across = sensel.across;
-  sensor.pillar_leak_edge = pillar.edge;
-  sensor.pillar_leak_corner = pillar.corner;
+  sensor.effects.sensel_leak = sensel;
+  sensor.effects.pillar_leak = pillar;
   sensor.dead_zone_counts = dead_zone_counts;
   return {20, 20, sensor};
 }

@@ -26,10 +26,9 @@ PressedSkin wired_skin(double row_ohm, double column_ohm, double noise_counts = 
   sensor.gain_spread = 0.05;
   sensor.noise_counts = noise_counts;
   if (row_ohm + column_ohm > 0) {
-    sensor.wires.emplace();
-    sensor.wires->row_ohm = row_ohm;
-    sensor.wires->column_ohm = column_ohm;
-    sensor.wires->tares = tares;
+    const double count_siemens = 1 / (1e4 * 255);
+    const double row = row_ohm * count_siemens;
+    sensor.effects.wires = {64, 64, row, column_ohm * count_siemens, row, tares};
   }
   return {16, 16, sensor};
 }

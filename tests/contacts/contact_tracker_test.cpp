@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/status.h"
 #include "tests/base/message.h"
 
@@ -271,27 +273,11 @@ ForceField many_contacts(int step) {
 }
 
 void expect_same_bits(const ContactQuantities& actual, const ContactQuantities& expected) {
-  const auto numbers = [](const ContactQuantities& of) {
-    return std::vector<double>{of.shear_x_n,
-                               of.shear_y_n,
-                               of.normal_n,
-                               of.centre.x_mm,
-                               of.centre.y_mm,
-                               of.centre_of_pressure.x_mm,
-                               of.centre_of_pressure.y_mm,
-                               of.torque_nmm,
-                               of.peak_n,
-                               of.peak.x_mm,
-                               of.peak.y_mm,
-                               of.friction.value_or(-1),
-                               of.slipping_share.value_or(-1),
-                               of.slip_margin.value_or(-1)};
-  };
-  EXPECT_EQ(numbers(actual), numbers(expected));
-  EXPECT_EQ(actual.pillars, expected.pillars);
-  EXPECT_EQ(actual.ambiguous, expected.ambiguous);
-  EXPECT_EQ(actual.friction_source, expected.friction_source);
-  EXPECT_EQ(actual.slip, expected.slip);
+  for (const QuantityColumn& column : quantity_columns(true)) {
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(column.get(actual)),
+              std::bit_cast<std::uint64_t>(column.get(expected)))
+        << column.name;
+  }
 }
 
 TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {

@@ -14,7 +14,6 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
-#include "simulation/effects/known_effects.h"
 
 namespace pillarfield {
 
@@ -72,7 +71,7 @@ inline Indenter punch() {
 
 inline SolverPlan plan_of(const Scene& scene, Estimator estimator) {
   SolverPlan plan;
-  plan.calibration.effects = known_effects(scene.sensor, scene.skin);
+  plan.calibration.effects = scene.sensor.effects;
   if (const double gains = scene.sensor.gain_spread; gains > 0) {
     plan.calibration.effects.residual = {gains, 0};  // Nothing calibrates them.
   }

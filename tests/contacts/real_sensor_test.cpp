@@ -30,11 +30,11 @@ struct Sensor {
 
 Scene with(const Sensor& sensor, Indenter (*indenter)()) {
   Scene scene = dragged(indenter(), kFriction);
-  scene.sensor.shear_coefficient = sensor.shear_coefficient;
-  scene.sensor.pillar_leak_edge = sensor.leak_edge;
-  scene.sensor.pillar_leak_corner = sensor.leak_corner;
+  scene.sensor.effects.shear_coefficient = sensor.shear_coefficient;
+  if (sensor.leak_edge != 0)
+    scene.sensor.effects.pillar_leak = {sensor.leak_edge, sensor.leak_corner};
   scene.sensor.gain_spread = sensor.gain_spread;
-  scene.sensor.pillar_arm_mm = sensor.arm_mm;
+  scene.sensor.effects.arm_mm = sensor.arm_mm;
   return scene;
 }
 
@@ -95,7 +95,7 @@ TEST(RealSensor, LeaningPillarsAreNoWorseThanByDirect) {
     Errors direct;
     Errors contact;
     const auto add = [&](Scene scene) {
-      scene.sensor.pillar_arm_mm = 0.224;
+      scene.sensor.effects.arm_mm = 0.224;
       const Simulator simulator(scene);
       contact += contact_errors(simulator);
       direct += direct_errors(simulator);

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
-#include "io/contact_columns.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "tests/io/sample_files.h"
 
@@ -13,29 +14,16 @@ namespace pillarfield::io_test {
 inline ContactQuantities sample_quantities(std::uint64_t place) {
   ContactQuantities quantities;
   std::uint64_t next = 0;
-  const auto value = [&] { return static_cast<double>(number_at(place, next++)) * 1e-19 - 0.7; };
-  quantities.pillars = number_at(place, 100) >> 20;
-  quantities.ambiguous = number_at(place, 101) >> 30;
-  quantities.resolved = number_at(place, 102) >> 40;
-  quantities.shear_x_n = value();
-  quantities.shear_y_n = value();
-  quantities.normal_n = value();
-  quantities.centre_of_pressure = {value(), value()};
-  quantities.centre = {value(), value()};
-  quantities.torque_nmm = value();
-  quantities.area_mm2 = value();
-  quantities.peak_n = value();
-  quantities.peak = {value(), value()};
-  quantities.mean_pressure_kpa = value();
-  quantities.slip = static_cast<SlipState>(place % 4);
-  if (place % 2 == 0) return quantities;
-  quantities.friction = value();
-  quantities.friction_deviation = value();
-  quantities.friction_source = static_cast<FrictionSource>(place % 3 + 1);
-  quantities.slipping_share = value();
-  quantities.slip_margin = value();
-  quantities.slip_forecast = {value(), value(), value(), {value(), value(), value()}};
-  quantities.wrench = {{value(), value(), value()}, {value(), value(), value()}};
+  for (const QuantityColumn& column : quantity_columns(true)) {
+    const std::uint64_t number = number_at(place, next++);
+    if (column.kind == ColumnKind::word) {
+      column.set(quantities, static_cast<double>(place % 4));
+    } else if (column.kind == ColumnKind::count) {
+      column.set(quantities, static_cast<double>(number >> 20));
+    } else if (place % 2 == 1 || !std::isnan(column.get({}))) {
+      column.set(quantities, static_cast<double>(number) * 1e-19 - 0.7);
+    }
+  }
   return quantities;
 }
 

@@ -54,7 +54,7 @@ ClosedFormContact pressed(ContactShape shape, double radius_mm, double x_mm, dou
 TEST(ShearCoefficientOfAScene, IsThatOfTheReadingsAndTheirStatus) {
   Scene scene = bare_scene(31, 24);
   scene.load = DirectionSweep{24, 31, 90, {0.3}};
-  scene.sensor.shear_coefficient = {0.7, 1.6};
+  scene.sensor.effects.shear_coefficient = {0.7, 1.6};
   const EffectFrame frame(scene);
   const Scene plain = [&] {
     Scene s = scene;
@@ -84,8 +84,7 @@ TEST(PillarLeakOfAScene, GivesTheNeighboursTheirFractions) {
   tip.motion = ContactMotion::slide;
   tip.friction = 0.5;
   scene.load = std::vector{tip};
-  scene.sensor.pillar_leak_edge = 0.04;
-  scene.sensor.pillar_leak_corner = 0.015;
+  scene.sensor.effects.pillar_leak = {0.04, 0.015};
   const EffectFrame frame(scene);
   const double fractions[] = {1, 0.04, 0.015};
   for (std::uint32_t row = 0; row < 5; ++row) {
@@ -194,7 +193,7 @@ TEST(PillarArm, ReadsAPressureGradientAsShearTowardsTheHigherPressure) {
   ball.path.front().load_n = 40000;
   scene.load = std::vector{ball};
   const EffectFrame centred(scene);
-  scene.sensor.pillar_arm_mm = 0.25;
+  scene.sensor.effects.arm_mm = 0.25;
   const EffectFrame tilted(scene);
   EXPECT_EQ(centred.truth.shear_x, tilted.truth.shear_x);
   const double p0 = 3 * 40000 / (2 * std::numbers::pi * 200 * 200);

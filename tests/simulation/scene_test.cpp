@@ -117,7 +117,7 @@ load_n = 0.5
   ASSERT_TRUE(scene.skin.power_law);
   EXPECT_EQ(scene.skin.power_law->exponent, 1.25);
   EXPECT_EQ(scene.skin.power_law->reference_counts, 90);
-  EXPECT_EQ(scene.sensor.shear_coefficient->y, 0.9);
+  EXPECT_EQ(scene.sensor.effects.shear_coefficient->y, 0.9);
   EXPECT_EQ(scene.sensor.hysteresis_range_counts, 150);
   EXPECT_EQ(scene.sensor.hysteresis, 0.06);
   EXPECT_EQ(scene.sensor.creep_per_decade, 0.04);
@@ -141,7 +141,7 @@ load_n = 0.5
   EXPECT_EQ(parse_scene("[skin]\npillars = [2, 2]\n[sensor]\nresponse_curve = [[9, 8], [20, 30]]\n"
                         "shear_coefficient = [0.8, 1.2]",
                         "s")
-                .sensor.response_curve.loads,
+                .sensor.effects.curve.loads,
             (std::vector<double>{8, 30}));
   EXPECT_EQ(scene.rate_hz, 250);
   EXPECT_EQ(scene.frames, 12U);

@@ -27,16 +27,16 @@ Scene sensels(std::uint32_t rows, std::uint32_t cols) {
 TEST(ResponseCurveOfAScene, IsUndoneByItsInverse) {
   Scene scene = sensels(2, 200);
   scene.sensor.dead_zone_counts = 3;
-  scene.sensor.response_curve = {{10, 60, 150}, {14, 50, 190}};
+  scene.sensor.effects.curve = {{10, 60, 150}, {14, 50, 190}};
   const Sensor sensor(scene);
-  EXPECT_EQ(sensor.calibration().effects.curve.loads, scene.sensor.response_curve.loads);
+  EXPECT_EQ(sensor.calibration().effects.curve.loads, scene.sensor.effects.curve.loads);
   std::vector<double> v(200);
   std::iota(v.begin(), v.end(), 1.0);
   FrameBuffer raw(SenselType::f32, 2, 200);
   sensor.read_row(0, 0, v, raw);
   for (std::size_t i = 0; i < 200; ++i) {
     const double load = std::max(0.0, static_cast<double>(i) + 1 - 3);
-    EXPECT_NEAR(load_at(scene.sensor.response_curve, raw.readings<float>()[i]), load, 1e-4);
+    EXPECT_NEAR(load_at(scene.sensor.effects.curve, raw.readings<float>()[i]), load, 1e-4);
   }
   EXPECT_NEAR(raw.readings<float>()[16], 10, 1e-5);
 }
@@ -229,7 +229,8 @@ TEST(WireNetwork, OfASceneReadsThroughItsOhmsAndMayLieBeforeTheTare) {
   scene.skin.counts_per_newton = 100;
   scene.skin.full_scale_counts = 200;
   scene.load = DirectionSweep{1, 1, 0, {0.5}};
-  scene.sensor.wires = Wires{2, 2, 30, 0, 1e4, TareOrigin::offset};
+  const double row = 30 / (1e4 * 200);
+  scene.sensor.effects.wires = {2, 2, row, 0, row, TareOrigin::offset};
   FrameBuffer raw(SenselType::f32, 2, 2);
   ForceField truth(1, 1);
   for (const float tare : {0.0F, 60.0F}) {
@@ -239,7 +240,6 @@ TEST(WireNetwork, OfASceneReadsThroughItsOhmsAndMayLieBeforeTheTare) {
     for (const float reading : raw.readings<float>()) {
       EXPECT_NEAR(reading, tare + 50 / 1.0015, 1e-4);
     }
-    EXPECT_NEAR(simulator.calibration().effects.wires->row_per_count, 30 / (1e4 * 200), 1e-12);
   }
 }
 
@@ -250,18 +250,17 @@ TEST(SensorEffectsOfAScene, FollowTheOrderOfTheSignal) {
   scene.rate_hz = 10;
   scene.load = DirectionSweep{4, 3, 60, {0.2}, {{0, 0.5}, {0.1, 1}}};
   SensorModel& model = scene.sensor;
-  model.pillar_leak_edge = 0.05;
-  model.pillar_leak_corner = 0.02;
-  model.shear_coefficient = {0.8, 1.2};
+  model.effects.pillar_leak = {0.05, 0.02};
+  model.effects.shear_coefficient = {0.8, 1.2};
   model.dead_zone_counts = 4;
-  model.leak_inside = 0.1;
-  model.leak_across = 0.06;
+  model.effects.sensel_leak = {0.1, 0.06};
   model.hysteresis = 0.1;
   model.creep_per_decade = 0.1;
-  model.response_curve = {{20, 70}, {15, 90}};
+  model.effects.curve = {{20, 70}, {15, 90}};
   model.gain_spread = 0.2;
   model.tare_counts = 6;
-  model.wires = Wires{4, 4, 100, 80, 1e4};
+  const double count_siemens = 1 / (1e4 * 255);
+  model.effects.wires = {4, 4, 100 * count_siemens, 80 * count_siemens, 100 * count_siemens};
   scene.bending = Bending{50, {{0, 0.02, 0, 0}}};
   const Simulator simulator(scene);
   const Calibration& calibration = simulator.calibration();
@@ -290,7 +289,7 @@ TEST(SensorEffectsOfAScene, FollowTheOrderOfTheSignal) {
     leak_between_sensels({0.1, 0.06}, 6, 8, v);
     memory.apply(frame, v, {});
     for (std::size_t sensel = 0; sensel < 48; ++sensel) {
-      v[sensel] = reading_at(model.response_curve, v[sensel]) / calibration.gain[sensel] + 6 +
+      v[sensel] = reading_at(model.effects.curve, v[sensel]) / calibration.gain[sensel] + 6 +
                   0.02 * calibration.bend_x[sensel];
     }
     read_through_wires(*calibration.effects.wires, 6, 8, v);

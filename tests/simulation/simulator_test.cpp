@@ -130,7 +130,7 @@ TEST(Simulator, ThreadsAndSplitsMakeTheSameFrames) {
   Scene with_memory = noisy_scene(4);
   with_memory.sensor.hysteresis = 0.1;
   with_memory.sensor.creep_per_decade = 0.05;
-  with_memory.sensor.leak_inside = 0.03;
+  with_memory.sensor.effects.sensel_leak = {0.03, 0};
   expect_same_frames(with_memory, 11);
   Scene pressed = noisy_scene(4);
   pressed.load = std::vector<ClosedFormContact>();

@@ -42,12 +42,12 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "direction_sweep, contact, indenter, sensor, surface, time, solver"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",
-       "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: pillar_leak_edge, "
-       "pillar_leak_corner, leak_inside, leak_across, hysteresis, creep_per_decade, "
+       "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: leak_inside, "
+       "leak_across, pillar_leak_edge, pillar_leak_corner, hysteresis, creep_per_decade, "
        "dead_zone_counts, gain_spread, tare_counts, tare_spread_counts, drift_counts_per_s, "
-       "noise_counts, dead_share, pillar_arm_mm, shear_coefficient, hysteresis_range_counts, "
-       "response_curve, wires, adc_bits, full_scale_counts, power_law_exponent, "
-       "power_law_reference_counts"},
+       "noise_counts, dead_share, pillar_arm_mm, shear_coefficient, "
+       "hysteresis_range_counts, response_curve, adc_bits, full_scale_counts, wires, "
+       "power_law_exponent, power_law_reference_counts"},
       {"[sensor]\nnoise_counts = -1",
        "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
       {"[sensor]\nnoise_counts = \"low\"",
@@ -68,7 +68,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[sensor]\nwires = { row_ohm = 30 }",
        "s.toml:3: key 'sensel_ohm' in [wires] is missing; allowed: resistance at full scale"},
       {"[sensor]\nwires = { sensel_ohm = 1, row_ohm = 30 }",
-       "s.toml: row_per_count is 0.117647; it must lie in [0, 0.1]"},
+       "s.toml: wire_row_per_count is 0.117647; it must be a number in [0, 0.1]"},
       {"[surface]\nshape = \"cylinder\"\nradius_mm = 3",
        "s.toml: the skin covers more than a whole cylinder of radius 3 mm; give a radius of at "
        "least "

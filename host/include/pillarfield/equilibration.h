@@ -57,11 +57,11 @@ inline constexpr std::uint32_t kLeastPressFrames = 5;
 
 /// Fits the gain of each sensel (mean 1), the counts per newton and, with at least two pressures,
 /// the dead zones, from raw − tare = g·f(max(0, V − z)) with V = k · pressure · area of a pillar
-/// and f linear or the inverse of a response curve that all sensels share. Known leaks of `before`
-/// count. Masks sensels that respond not at all or unlike the others. Replaces the response curve
-/// and the residual error; a curve replaces the power law. `before` must have a tare; everything
-/// else of it is kept. Formulas and limits: docs/calibration.md. Throws Error if the pressure is
-/// not uniform, too low or too high.
+/// and f linear or the inverse of a response curve that all sensels share. Known effects of
+/// neighbours of `before` count. Masks sensels that respond not at all or unlike the others.
+/// Replaces the response curve and the residual error; a curve replaces the power law. `before`
+/// must have a tare; everything else of it is kept. Formulas and limits: docs/calibration.md.
+/// Throws Error if the pressure is not uniform, too low or too high.
 [[nodiscard]] EquilibrationResult equilibrate(const SkinCalibration& before,
                                               std::span<const UniformPress> presses,
                                               const EquilibrationOptions& options);

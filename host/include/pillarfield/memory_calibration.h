@@ -45,8 +45,8 @@ class MemoryFinder {
   /// The mean reading and the load of a frame.
   struct Sample {
     double interval_s;   ///< since the frame before; 0 in the first one of a recording
-    double load_counts;  ///< k · pressure · area of a pillar · pillar_leak_sum()
-    double reading;      ///< after tare, gain, curve and the leak between sensels
+    double load_counts;  ///< k · pressure · area of a pillar · pillar_sum()
+    double reading;      ///< after tare, gain, curve and neighbours
   };
 
  private:

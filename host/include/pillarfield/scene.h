@@ -17,34 +17,16 @@
 
 namespace pillarfield {
 
-/// Wires of a scanned array, as in WireCrosstalk: each row in turn is driven, all other rows and
-/// all columns are held at 0 V, and the current of each column is the reading.
-struct Wires {
-  std::uint32_t tile_rows = 64;  ///< sensels, 2..1024
-  std::uint32_t tile_cols = 64;
-  double row_ohm = 0;       ///< resistance of a row
-  double column_ohm = 0;    ///< of a column
-  double sensel_ohm = 1e4;  ///< resistance of a sensel that reads full scale
-  TareOrigin tares = TareOrigin::conductance;
-};
-
-/// Deviations of a sensor from the model, absent by default, in the order of the signal: pillars
-/// (leak, arm, shear coefficient), dead zone, leak of sensels, memory, response curve or the skin's
-/// power law, sensitivity, tare, wires, drift, noise, converter, dead sensels.
+/// Deviations of a sensor from the model, absent by default, in the order of the signal: effects of
+/// pillars, dead zone, neighbours, hysteresis and creep, response curve or the skin's power
+/// law, sensitivity, tare, wires, drift, noise, converter, dead sensels.
 struct SensorModel {
-  double pillar_leak_edge = 0;  ///< PillarLeak
-  double pillar_leak_corner = 0;
-  std::optional<double> pillar_arm_mm;  ///< SensorEffects::arm_mm
-  std::optional<ShearCoefficient> shear_coefficient;
-  double leak_inside = 0;  ///< SenselLeak
-  double leak_across = 0;
+  SensorEffects effects;  ///< without memory and residual
   /// Largest width of the loop of a cycle from zero to hysteresis_range_counts and back, as a
   /// fraction of that range
   double hysteresis = 0;
   std::optional<double> hysteresis_range_counts;  ///< unset: full scale, or 255
-  double creep_per_decade = 0;  ///< rise of a reading in ten times the time, as a fraction
-  ResponseCurve response_curve;
-  std::optional<Wires> wires;
+  double creep_per_decade = 0;    ///< rise of a reading in ten times the time, as a fraction
   double dead_zone_counts = 0;    ///< load below which a sensel reads zero
   double gain_spread = 0;         ///< relative standard deviation of sensitivity, < 0.3
   double tare_counts = 0;         ///< mean reading of an unloaded sensel

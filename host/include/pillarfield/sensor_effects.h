@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -103,11 +105,33 @@ struct SensorEffects {
   std::optional<double> arm_mm;
   std::optional<ResidualError> residual;
 
-  [[nodiscard]] bool empty() const {
-    return curve.empty() && !shear_coefficient && !sensel_leak && !pillar_leak && !wires &&
-           !memory && !arm_mm && !residual;
-  }
+  [[nodiscard]] bool empty() const;
 };
+
+/// The names of the effects that are set: "curve", "sensel_leak".
+[[nodiscard]] std::vector<std::string> names_of(const SensorEffects& effects);
+
+/// The effects of a skin without pillars: those of pillars are left out.
+[[nodiscard]] SensorEffects without_pillars(SensorEffects effects);
+
+/// True if a reading depends on the load of neighbours.
+[[nodiscard]] bool have_neighbours(const SensorEffects& effects);
+
+// The effects between neighbours are linear. Under a uniform load each is a factor:
+
+/// Factor of V of a sensel, if `missing` of its two neighbours under other pillars
+/// lie beyond the edge. Dead zones lie before the effects between sensels.
+[[nodiscard]] double sensel_sum(const SensorEffects& effects, int missing = 0);
+/// That of the sensel with this index.
+[[nodiscard]] double sensel_sum(const SensorEffects& effects, const Skin& skin, std::size_t sensel);
+
+/// Factor of the force on a pillar with eight neighbours; before dead zones.
+[[nodiscard]] double pillar_sum(const SensorEffects& effects);
+
+/// Both, of a sensel in the middle of the skin.
+[[nodiscard]] double linear_sum(const SensorEffects& effects);
+/// Both, of the sensel with this index. All pillars count as having eight neighbours.
+[[nodiscard]] double linear_sum(const SensorEffects& effects, const Skin& skin, std::size_t sensel);
 
 /// True if tares are an offset behind the wires, and so do not load them.
 [[nodiscard]] constexpr bool has_offset_tares(const SensorEffects& effects) {

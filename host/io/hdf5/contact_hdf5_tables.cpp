@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/contact_columns.h"
+#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/stored_frames.h"

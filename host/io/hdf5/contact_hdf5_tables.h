@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/contact_columns.h"
+#include "pillarfield/contact_columns.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
 #include "pillarfield/contact_tracker.h"

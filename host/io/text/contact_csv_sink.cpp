@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "io/contact_columns.h"
+#include "pillarfield/contact_columns.h"
 #include "io/force_sink.h"
 #include "io/output/text_part.h"
 

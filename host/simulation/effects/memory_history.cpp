@@ -7,7 +7,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
-#include "simulation/effects/known_effects.h"
+#include "simulation/scene/scene_limits.h"
 
 namespace pillarfield {
 namespace {

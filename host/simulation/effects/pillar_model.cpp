@@ -16,10 +16,10 @@ Force force_at(const ForceField& forces, std::int64_t row, std::int64_t col) {
 
 }  // namespace
 
-PillarModel::PillarModel(const SensorModel& sensor)
-    : leak_{sensor.pillar_leak_edge, sensor.pillar_leak_corner},
-      per_arm_(sensor.pillar_arm_mm ? 1 / *sensor.pillar_arm_mm : 0),
-      coefficient_(sensor.shear_coefficient.value_or(ShearCoefficient{})) {
+PillarModel::PillarModel(const SensorEffects& effects)
+    : leak_(effects.pillar_leak.value_or(PillarLeak{})),
+      per_arm_(effects.arm_mm ? 1 / *effects.arm_mm : 0),
+      coefficient_(effects.shear_coefficient.value_or(ShearCoefficient{})) {
   is_ideal_ = leak_.edge == 0 && leak_.corner == 0 && per_arm_ == 0 && coefficient_.x == 1 &&
               coefficient_.y == 1;
 }

@@ -17,7 +17,7 @@ namespace pillarfield {
 /// V of the four sensels is that of an ideal pillar under s: V = k (normal ± s_x/√2 ± s_y/√2).
 class PillarModel {
  public:
-  explicit PillarModel(const SensorModel& sensor);
+  explicit PillarModel(const SensorEffects& effects);
 
   /// True if each pillar passes on the force on it.
   [[nodiscard]] bool is_ideal() const { return is_ideal_; }

@@ -7,7 +7,6 @@
 
 #include "pillarfield/error.h"
 #include "simulation/closed_form/direction_sweep.h"
-#include "simulation/effects/known_effects.h"
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/pillar_model.h"
 #include "simulation/indenter/indenter_path.h"
@@ -47,19 +46,18 @@ void check_effects(const SensorModel& sensor, const Skin& skin, const std::strin
     check_range(where, "hysteresis_range_counts", *sensor.hysteresis_range_counts,
                 kHysteresisRangeCounts);
   }
-  if (sensor.wires) {
-    for (const auto& [key, member, range] : kWireQuantities) {
-      check_range(where, key, (*sensor.wires).*member, range);
-    }
-  }
   if (MemoryHistory::is_needed(sensor) && skin.sensels() > kMaxMemorySensels) {
     throw Error(where, fmt::format("the skin has {} sensels", skin.sensels()),
                 fmt::format("with hysteresis or creep it may have {}", kMaxMemorySensels));
   }
-  if (!sensor.response_curve.empty() && skin.power_law) {
+  if (!sensor.effects.curve.empty() && skin.power_law) {
     throw Error(where, "the sensor has a response curve and a power law", "leave one of them out");
   }
-  check(known_effects(sensor, skin), where);
+  if (sensor.effects.memory || sensor.effects.residual) {
+    throw Error(where, "the sensor has a memory or a residual",
+                "give hysteresis and creep_per_decade");
+  }
+  check(sensor.effects, where);
 }
 
 void check_bending(const Bending& bending, const std::string& where) {
@@ -90,9 +88,9 @@ void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string
 /// Throws Error if a scene without pillars has an effect of pillars, or a sweep of their forces.
 void check_layout(const Scene& scene, const std::string& where) {
   if (scene.skin.has_pillars()) return;
-  if (!PillarModel(scene.sensor).is_ideal()) {
+  if (!PillarModel(scene.sensor.effects).is_ideal()) {
     throw Error(where, "the skin has no pillars, but its sensor an effect of pillars",
-                "leave leak between pillars, arm and shear coefficients out");
+                "leave it out");
   }
   if (std::holds_alternative<DirectionSweep>(scene.load)) {
     throw Error(where, "a direction sweep needs pillars", "give contacts or indenters");

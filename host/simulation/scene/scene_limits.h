@@ -27,11 +27,7 @@ inline constexpr std::array<Quantity<Skin>, 2> kSkinQuantities = {{
 inline constexpr Range kPitchMm = {1e-3, 1e3};
 inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
 
-inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{
-    {"pillar_leak_edge", &SensorModel::pillar_leak_edge, kPillarLeak},
-    {"pillar_leak_corner", &SensorModel::pillar_leak_corner, kPillarLeak},
-    {"leak_inside", &SensorModel::leak_inside, kSenselLeak},
-    {"leak_across", &SensorModel::leak_across, kSenselLeak},
+inline constexpr std::array<Quantity<SensorModel>, 9> kSensorQuantities = {{
     {"hysteresis", &SensorModel::hysteresis, {0, 0.3}},
     {"creep_per_decade", &SensorModel::creep_per_decade, {0, 0.3}},
     {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},
@@ -44,11 +40,8 @@ inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{
 }};
 inline constexpr int kMaxAdcBits = 16;
 inline constexpr Range kHysteresisRangeCounts = {1e-3, 1e9};
-inline constexpr std::array<Quantity<Wires>, 3> kWireQuantities = {{
-    {"row_ohm", &Wires::row_ohm, {0, 1e9}},
-    {"column_ohm", &Wires::column_ohm, {0, 1e9}},
-    {"sensel_ohm", &Wires::sensel_ohm, {1e-3, 1e12}},
-}};
+inline constexpr Range kWireOhm = {0, 1e9};
+inline constexpr Range kSenselOhm = {1e-3, 1e12};
 inline constexpr Range kBendSpread = {0, 1e6};
 inline constexpr Range kCurvaturePerMm = {-1, 1};
 inline constexpr Range kSurfaceRadiusMm = {-1e6, 1e6};
@@ -216,6 +209,11 @@ inline constexpr std::array<Named<Estimator>, 3> kEstimators = {{
 
 /// Largest value of the analogue-to-digital converter, 2^bits − 1; unset without one.
 [[nodiscard]] std::optional<double> full_scale_of(const SensorModel& sensor);
+
+/// Counts of a reading at full scale; 255 for a sensor without one.
+[[nodiscard]] inline double full_scale_or_255(const Skin& skin) {
+  return skin.full_scale_counts.value_or(255);
+}
 
 /// Throws Error, naming `where`, if a value of `scene` is out of range.
 void check(const Scene& scene, const char* where);

@@ -14,6 +14,7 @@
 #include "simulation/scene/scene_limits.h"
 #include "simulation/scene/surface_section.h"
 #include "simulation/scene/toml_section.h"
+#include "skin/effect_parameters.h"
 
 namespace pillarfield {
 namespace {
@@ -87,11 +88,16 @@ std::optional<ShearCoefficient> read_shear_coefficient(TomlSection& section) {
   return both ? std::optional(ShearCoefficient{*both, *both}) : std::nullopt;
 }
 
-std::optional<Wires> read_wires(TomlSection section) {
+std::optional<WireCrosstalk> read_wires(TomlSection section, const Skin& skin) {
   if (!section.is_present()) return std::nullopt;
-  Wires wires;
-  read_quantities(section, kWireQuantities, wires);
-  if (!section.has("sensel_ohm")) section.fail_missing("sensel_ohm", "resistance at full scale");
+  WireCrosstalk wires;
+  const double row_ohm = section.number("row_ohm", kWireOhm).value_or(0);
+  const double column_ohm = section.number("column_ohm", kWireOhm).value_or(0);
+  const auto sensel_ohm = section.number("sensel_ohm", kSenselOhm);
+  if (!sensel_ohm) section.fail_missing("sensel_ohm", "resistance at full scale");
+  const double count_siemens = 1 / (*sensel_ohm * full_scale_or_255(skin));
+  wires.row_per_count = wires.idle_per_count = row_ohm * count_siemens;
+  wires.column_per_count = column_ohm * count_siemens;
   wires.tares = read_name(section, "tares", kTareOrigins).value_or(wires.tares);
   if (const auto tile = section.numbers("tile", 2, kTileSensels)) {
     wires.tile_rows = static_cast<std::uint32_t>((*tile)[0]);
@@ -104,18 +110,33 @@ std::optional<Wires> read_wires(TomlSection section) {
   return wires;
 }
 
+/// Reads the effects whose keys are their parameters; zero is no effect.
+SensorEffects read_effects(TomlSection& section) {
+  constexpr std::string_view kWithKeys[] = {"curve", "shear_coefficient", "wires", "memory",
+                                            "arm",   "residual"};
+  const auto find = [&](const EffectParameter& asked) -> std::optional<std::vector<double>> {
+    if (std::ranges::count(kWithKeys, asked.effect) > 0) return std::nullopt;
+    const double value = section.number(asked.name, asked.range).value_or(0);
+    if (value == 0) return std::nullopt;
+    return std::vector<double>{value};
+  };
+  return effects_of(find, "[sensor]", false);
+}
+
 void read_sensor(TomlSection section, Scene& scene) {
+  SensorEffects& effects = scene.sensor.effects;
+  effects = read_effects(section);
   read_quantities(section, kSensorQuantities, scene.sensor);
-  scene.sensor.pillar_arm_mm = section.number("pillar_arm_mm", kPillarArmMm);
-  scene.sensor.shear_coefficient = read_shear_coefficient(section);
+  effects.arm_mm = section.number("pillar_arm_mm", kPillarArmMm);
+  effects.shear_coefficient = read_shear_coefficient(section);
   scene.sensor.hysteresis_range_counts =
       section.number("hysteresis_range_counts", kHysteresisRangeCounts);
-  scene.sensor.response_curve = read_response_curve(section);
-  scene.sensor.wires = read_wires(section.table("wires"));
+  effects.curve = read_response_curve(section);
   if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
     scene.sensor.adc_bits = static_cast<int>(*bits);
   }
   scene.skin.full_scale_counts = read_full_scale(section, scene.sensor);
+  effects.wires = read_wires(section.table("wires"), scene.skin);
   scene.skin.power_law = read_power_law(section);
   section.finish();
   check_full_scale(section, scene.skin);

@@ -1,45 +1,87 @@
 #include "streams/ring/ring_contact.h"
 
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
-#include <utility>
+#include <vector>
+
+#include "pillarfield/contact_columns.h"
 
 namespace pillarfield {
 namespace {
 
 using Ring = PillarfieldContact;
-using Found = ContactQuantities;
 
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Members of a ring's contact, and those that they hold.
-constexpr std::pair<std::uint64_t Ring::*, std::uint64_t Found::*> kCounts[] = {
-    {&Ring::pillars, &Found::pillars},
-    {&Ring::ambiguous, &Found::ambiguous},
-    {&Ring::resolved, &Found::resolved}};
-constexpr std::pair<double Ring::*, double Found::*> kNumbers[] = {
-    {&Ring::normal_n, &Found::normal_n},
-    {&Ring::area_mm2, &Found::area_mm2},
-    {&Ring::peak_n, &Found::peak_n}};
-constexpr std::pair<double Ring::*, double Found::*> kOfPillars[] = {
-    {&Ring::shear_x_n, &Found::shear_x_n},
-    {&Ring::shear_y_n, &Found::shear_y_n},
-    {&Ring::torque_nmm, &Found::torque_nmm}};
-constexpr std::pair<std::pair<double Ring::*, double Ring::*>, PatchPlace Found::*> kPlaces[] = {
-    {{&Ring::centre_x_mm, &Ring::centre_y_mm}, &Found::centre_of_pressure},
-    {{&Ring::middle_x_mm, &Ring::middle_y_mm}, &Found::centre},
-    {{&Ring::peak_x_mm, &Ring::peak_y_mm}, &Found::peak}};
-constexpr std::pair<double Ring::*, std::optional<double> Found::*> kIfKnown[] = {
-    {&Ring::friction, &Found::friction},
-    {&Ring::friction_deviation, &Found::friction_deviation},
-    {&Ring::slip_margin, &Found::slip_margin},
-    {&Ring::slipping_share, &Found::slipping_share}};
-constexpr std::pair<double Ring::*, std::optional<double> SlipForecast::*> kTimes[] = {
-    {&Ring::time_to_slip_s, &SlipForecast::time_s},
-    {&Ring::time_to_slip_low_s, &SlipForecast::low_s},
-    {&Ring::time_to_slip_high_s, &SlipForecast::high_s}};
+/// A quantity in a ring's contact: a count as uint64, a word as uint32, a number as double.
+struct RingColumn {
+  const QuantityColumn& column;
+  std::size_t offset;
+};
+
+/// All quantities but mean and peak pressure, which follow from others, and the wrench.
+const std::vector<RingColumn>& ring_columns() {
+  static const std::vector<RingColumn> columns = {
+      {quantity_column("pillars"), offsetof(Ring, pillars)},
+      {quantity_column("ambiguous"), offsetof(Ring, ambiguous)},
+      {quantity_column("resolved"), offsetof(Ring, resolved)},
+      {quantity_column("shear_x_n"), offsetof(Ring, shear_x_n)},
+      {quantity_column("shear_y_n"), offsetof(Ring, shear_y_n)},
+      {quantity_column("normal_n"), offsetof(Ring, normal_n)},
+      {quantity_column("centre_of_pressure_x_mm"), offsetof(Ring, centre_x_mm)},
+      {quantity_column("centre_of_pressure_y_mm"), offsetof(Ring, centre_y_mm)},
+      {quantity_column("centre_x_mm"), offsetof(Ring, middle_x_mm)},
+      {quantity_column("centre_y_mm"), offsetof(Ring, middle_y_mm)},
+      {quantity_column("torque_nmm"), offsetof(Ring, torque_nmm)},
+      {quantity_column("area_mm2"), offsetof(Ring, area_mm2)},
+      {quantity_column("peak_n"), offsetof(Ring, peak_n)},
+      {quantity_column("peak_x_mm"), offsetof(Ring, peak_x_mm)},
+      {quantity_column("peak_y_mm"), offsetof(Ring, peak_y_mm)},
+      {quantity_column("friction"), offsetof(Ring, friction)},
+      {quantity_column("friction_deviation"), offsetof(Ring, friction_deviation)},
+      {quantity_column("friction_source"), offsetof(Ring, friction_source)},
+      {quantity_column("slip"), offsetof(Ring, slip)},
+      {quantity_column("slipping_share"), offsetof(Ring, slipping_share)},
+      {quantity_column("slip_margin"), offsetof(Ring, slip_margin)},
+      {quantity_column("time_to_slip_s"), offsetof(Ring, time_to_slip_s)},
+      {quantity_column("time_to_slip_low_s"), offsetof(Ring, time_to_slip_low_s)},
+      {quantity_column("time_to_slip_high_s"), offsetof(Ring, time_to_slip_high_s)},
+      {quantity_column("slip_within_0_1_s"), offsetof(Ring, slip_within[0])},
+      {quantity_column("slip_within_0_3_s"), offsetof(Ring, slip_within[1])},
+      {quantity_column("slip_within_1_s"), offsetof(Ring, slip_within[2])}};
+  return columns;
+}
+
+template <class Value>
+void put_at(std::byte* place, double value) {
+  const auto stored = static_cast<Value>(value);
+  std::memcpy(place, &stored, sizeof stored);
+}
+template <class Value>
+double get_at(const std::byte* place) {
+  Value stored;
+  std::memcpy(&stored, place, sizeof stored);
+  return static_cast<double>(stored);
+}
+
+void put(Ring& to, const RingColumn& at, double value) {
+  std::byte* const place = reinterpret_cast<std::byte*>(&to) + at.offset;
+  if (at.column.kind == ColumnKind::number) return put_at<double>(place, value);
+  if (at.column.kind == ColumnKind::word) return put_at<std::uint32_t>(place, value);
+  put_at<std::uint64_t>(place, value);
+}
+
+/// NaN for a number that is not known.
+double get(const Ring& from, const RingColumn& at) {
+  const std::byte* const place = reinterpret_cast<const std::byte*>(&from) + at.offset;
+  if (at.column.kind == ColumnKind::word) return get_at<std::uint32_t>(place);
+  if (at.column.kind != ColumnKind::number) return get_at<std::uint64_t>(place);
+  const double value = get_at<double>(place);
+  return std::isfinite(value) ? value : kNotKnown;
+}
 
 static_assert(static_cast<int>(SlipState::sticking) == PILLARFIELD_STICKING &&
               static_cast<int>(SlipState::partial) == PILLARFIELD_PARTIAL_SLIP &&
@@ -48,35 +90,19 @@ static_assert(static_cast<int>(FrictionSource::given) == PILLARFIELD_FRICTION_GI
               static_cast<int>(FrictionSource::observed) == PILLARFIELD_FRICTION_OBSERVED &&
               static_cast<int>(FrictionSource::carried_over) == PILLARFIELD_FRICTION_CARRIED_OVER);
 
-std::optional<double> if_known(double value) {
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-template <class State>
-State state_from(std::uint32_t value, State last) {
-  return value <= static_cast<std::uint32_t>(last) ? static_cast<State>(value) : State{};
-}
-
 }  // namespace
 
 PillarfieldContact ring_contact(const ContactQuantities& of) {
   PillarfieldContact to = {};
-  for (const auto& [ring, found] : kCounts) to.*ring = of.*found;
-  for (const auto& [ring, found] : kNumbers) to.*ring = of.*found;
-  for (const auto& [ring, found] : kOfPillars) to.*ring = of.has_shear ? of.*found : kNotKnown;
-  for (const auto& [ring, found] : kPlaces) {
-    to.*ring.first = (of.*found).x_mm;
-    to.*ring.second = (of.*found).y_mm;
+  for (const RingColumn& each : ring_columns()) {
+    const bool exists = of.has_shear || !each.column.of_pillars;
+    const bool is_number = each.column.kind == ColumnKind::number;
+    put(to, each, exists || !is_number ? each.column.get(of) : kNotKnown);
   }
-  for (const auto& [ring, found] : kIfKnown) to.*ring = (of.*found).value_or(kNotKnown);
-  to.slip = static_cast<std::uint32_t>(of.slip);
-  to.friction_source = static_cast<std::uint32_t>(of.friction_source);
-  const auto& forecast = of.slip_forecast;
-  for (const auto& [ring, found] : kTimes) {
-    to.*ring = forecast ? (*forecast.*found).value_or(kNever) : kNotKnown;
+  if (!of.slip_forecast) return to;
+  for (double* const time : {&to.time_to_slip_s, &to.time_to_slip_low_s, &to.time_to_slip_high_s}) {
+    if (std::isnan(*time)) *time = kNever;
   }
-  std::ranges::fill(to.slip_within, kNotKnown);
-  if (forecast) std::ranges::copy(forecast->probability, to.slip_within);
   return to;
 }
 
@@ -96,18 +122,10 @@ TrackedContact contact_from(const PillarfieldContact& of, double time_s, SkinLay
   tracked.age_s = time_s - of.first_time_s;
   ContactQuantities& to = tracked.quantities;
   to.has_shear = layout == SkinLayout::pillars;
-  for (const auto& [ring, found] : kCounts) to.*found = of.*ring;
-  for (const auto& [ring, found] : kNumbers) to.*found = of.*ring;
-  for (const auto& [ring, found] : kOfPillars) to.*found = to.has_shear ? of.*ring : 0;
-  for (const auto& [ring, found] : kPlaces) to.*found = {of.*ring.first, of.*ring.second};
-  for (const auto& [ring, found] : kIfKnown) to.*found = if_known(of.*ring);
+  for (const RingColumn& each : ring_columns()) {
+    if (to.has_shear || !each.column.of_pillars) each.column.set(to, get(of, each));
+  }
   to.mean_pressure_kpa = to.area_mm2 > 0 ? 1000 * to.normal_n / to.area_mm2 : 0;
-  to.friction_source = state_from(of.friction_source, FrictionSource::carried_over);
-  to.slip = state_from(of.slip, SlipState::sliding);
-  if (!if_known(of.slip_within[0])) return tracked;
-  SlipForecast& forecast = to.slip_forecast.emplace();
-  for (const auto& [ring, found] : kTimes) forecast.*found = if_known(of.*ring);
-  std::ranges::copy(of.slip_within, forecast.probability.begin());
   return tracked;
 }
 

@@ -41,7 +41,7 @@ class ClientProtocol {
 struct ServerProtocol {
   std::vector<std::string> names;                           ///< subprotocols
   std::function<std::unique_ptr<ClientProtocol>()> create;  ///< for a new client
-  std::string_view page = {};                               ///< HTML at "/"; empty: none
+  std::string page = {};                                    ///< HTML at "/"; empty: none
 };
 
 }  // namespace pillarfield

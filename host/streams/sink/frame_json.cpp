@@ -1,45 +1,42 @@
 #include "streams/sink/frame_json.h"
 
 #include <chrono>
+#include <cmath>
 #include <iterator>
-#include <optional>
 
 #include "base/number_text.h"
+#include "pillarfield/contact_columns.h"
 
 namespace pillarfield {
 namespace {
 
-void append_known(fmt::memory_buffer& json, const char* name, const std::optional<double>& value) {
-  if (value) fmt::format_to(std::back_inserter(json), R"(,"{}":{})", name, json_number(*value));
-}
-
-/// The members of a contact or of the total.
+/// The members of a contact or of the total, as far as they are known. A path "force.normal" is a
+/// member of an object, whose members follow each other.
 void append_quantities(fmt::memory_buffer& json, const ContactQuantities& contact) {
   const auto out = std::back_inserter(json);
-  if (contact.has_shear) {
-    fmt::format_to(out, R"("force":{{"shear_x":{},"shear_y":{},"normal":{}}},"torque_nmm":{},)",
-                   json_number(contact.shear_x_n), json_number(contact.shear_y_n),
-                   json_number(contact.normal_n), json_number(contact.torque_nmm));
-  } else {
-    fmt::format_to(out, R"("force":{{"normal":{}}},"peak_pressure_kpa":{},)",
-                   json_number(contact.normal_n), json_number(contact.peak_pressure_kpa()));
+  const SkinLayout layout = contact.has_shear ? SkinLayout::pillars : SkinLayout::sensels;
+  std::string_view open;
+  const char* separator = "";
+  for (const QuantityColumn& column : quantity_columns(false, layout)) {
+    std::string_view path = column.live.path;
+    const double value = column.get(contact);
+    if (path.empty() || std::isnan(value)) continue;
+    const std::string_view object = path.substr(0, path.find('.') + 1);
+    path.remove_prefix(object.size());
+    if (object != open) {
+      if (!open.empty()) json.push_back('}');
+      if (!object.empty()) {
+        fmt::format_to(out, R"({}"{}":{{)", separator, object.substr(0, object.size() - 1));
+        separator = "";
+      }
+      open = object;
+    }
+    fmt::format_to(
+        out, R"({}"{}":{})", separator, path,
+        column.kind == ColumnKind::number ? json_number(value) : fmt::format("{:.0f}", value));
+    separator = ",";
   }
-  fmt::format_to(out, R"("{}":{},"centre_mm":{{"x":{},"y":{}}})",
-                 contact.has_shear ? "pillars" : "sensels", contact.pillars,
-                 json_number(contact.centre_of_pressure.x_mm),
-                 json_number(contact.centre_of_pressure.y_mm));
-  append_known(json, "friction", contact.friction);
-  append_known(json, "friction_deviation", contact.friction_deviation);
-  append_known(json, "slip_margin", contact.slip_margin);
-  append_known(json, "slipping_share", contact.slipping_share);
-  if (!contact.slip_forecast) return;
-  const SlipForecast& forecast = *contact.slip_forecast;
-  append_known(json, "time_to_slip_s", forecast.time_s);
-  append_known(json, "time_to_slip_low_s", forecast.low_s);
-  append_known(json, "time_to_slip_high_s", forecast.high_s);
-  const auto& [soon, next, later] = forecast.probability;
-  fmt::format_to(out, R"(,"slip_within_0_1_s":{},"slip_within_0_3_s":{},"slip_within_1_s":{})",
-                 json_number(soon), json_number(next), json_number(later));
+  if (!open.empty()) json.push_back('}');
 }
 
 }  // namespace

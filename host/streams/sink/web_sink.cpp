@@ -1,10 +1,14 @@
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 #include <utility>
 
+#include "pillarfield/contact_columns.h"
 #include "streams/live_sink.h"
 #include "streams/message/health_json.h"
 #include "streams/sink/address.h"
@@ -46,10 +50,25 @@ class PageClient final : public ClientProtocol {
   TopicSet wanted_ = 1UL << kHealthTopic;
 };
 
-ServerProtocol page_protocol() {
+/// The page with the columns of its tables: head, path in the JSON of a contact, decimals.
+std::string page_of(SkinLayout layout) {
+  constexpr std::string_view kPlace = "/* columns */";
+  std::string columns;
+  for (const QuantityColumn& column : live_columns(layout)) {
+    const std::string_view unit = column.unit;
+    if (*column.live.path == '\0') continue;
+    columns +=
+        fmt::format(R"(["{}{}{}","{}",{}],)", column.live.head, unit.empty() ? "" : " ", unit,
+                    column.live.path, unit.empty() || unit == "N" || unit == "s" ? 2 : 1);
+  }
+  std::string page(page_html());
+  return page.replace(page.find(kPlace), kPlace.size(), columns);
+}
+
+ServerProtocol page_protocol(SkinLayout layout) {
   return {.names = {"pillarfield.page.v2"},
           .create = [] { return std::make_unique<PageClient>(); },
-          .page = page_html()};
+          .page = page_of(layout)};
 }
 
 /// The beginning of a picture; planes and status of `rows` x `cols` elements follow, then JSON.
@@ -118,8 +137,9 @@ std::unique_ptr<LiveSink> create_web_sink(const std::string& target, const LiveS
                                        ? std::string_view(target).substr(kWebPrefix.size())
                                        : "8766";
   const SocketAddress place = address_of(address, target, 0);
-  auto server = std::make_unique<WebSocketServer>(
-      place, target, page_protocol(), ServerLimits{.allowed_origins = info.allowed_origins});
+  auto server =
+      std::make_unique<WebSocketServer>(place, target, page_protocol(info.forces.layout),
+                                        ServerLimits{.allowed_origins = info.allowed_origins});
   const std::string name = "http://" + place_to_open(place, server->port()) + "/";
   return std::make_unique<QueuedSink>(name, std::make_unique<WebConsumer>(std::move(server), info));
 }

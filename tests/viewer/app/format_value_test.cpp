@@ -167,57 +167,26 @@ ContactQuantities a_contact() {
   return contact;
 }
 
-TEST(FormatContact, FollowTheHeads) {
+TEST(FormatQuantity, HasThreeDigitsAndNoWordThatClaimsNothing) {
   ContactQuantities contact = a_contact();
-  using Words = std::vector<std::string>;
-  const auto format_contact = [](const char* name, const ContactQuantities& of) {
-    return viewer::format_contact(name, of, SkinLayout::pillars, kPressureUnits.front());
+  const auto [kpa, psi, mmhg] = kPressureUnits;
+  const auto text = [&](const char* name, const PressureUnit& unit = kPressureUnits.front()) {
+    return format_quantity(quantity_column(name), contact, unit);
   };
-  EXPECT_EQ(format_contact("7", contact),
-            (Words{"7", "50.1", "5.00", "–", "–", "–", "0 %", "157", "285", "320", "0.457"}));
-  contact.ambiguous = 50;
+  EXPECT_EQ(text("normal_n"), "50.1");
+  EXPECT_EQ(text("shear_x_n"), "−3.00");
+  EXPECT_EQ(text("mean_pressure_kpa"), "157");
+  EXPECT_EQ(text("mean_pressure_kpa", psi), "22.7");
+  EXPECT_EQ(text("friction"), "–");
+  EXPECT_EQ(text("slip"), "–");
+  EXPECT_EQ(text("time_to_slip_s"), "–");
   contact.friction = 0.6;
   contact.slip = SlipState::partial;
-  EXPECT_EQ(format_contact("7", contact)[3], "0.60");
-  EXPECT_EQ(format_contact("7", contact)[4], "partial");
-  EXPECT_EQ(format_contact("7", contact)[6], "25 %");
-  contact.resolved = 45;
-  EXPECT_EQ(format_contact("all", contact)[6], "25 % / 90 %");
-  EXPECT_EQ(format_contact("all", {})[6], "–");
-}
-
-TEST(FormatContact, TellsWhenItSlips) {
-  ContactQuantities contact = a_contact();
-  const auto slips_in = [&] {
-    return format_contact("7", contact, SkinLayout::pillars, kPressureUnits.front())[5];
-  };
-  EXPECT_EQ(format_slip_details(contact), "");
-  contact.friction_deviation = 0.04;
-  EXPECT_EQ(format_slip_details(contact), "standard deviation of µ  0.04");
   contact.slip_forecast = {0.423, 0.31, std::nullopt, {0.004, 0.2, 0.97}};
-  EXPECT_EQ(slips_in(), "0.42 s");
-  EXPECT_EQ(
-      format_slip_details(contact),
-      "standard deviation of µ  0.04\nslips in 0.31 s … never (95 %)\nslips within 0.1 s  0 %\n"
-      "slips within 0.3 s  20 %\nslips within 1 s  97 %");
-  contact.slip_forecast->time_s = 12.6;
-  EXPECT_EQ(slips_in(), "13 s");
-  contact.slip_forecast->time_s = 1e9;
-  EXPECT_EQ(slips_in(), "> 60 s");
-  contact.slip_forecast->time_s.reset();
-  contact.slip_forecast->low_s.reset();
-  EXPECT_EQ(slips_in(), "–");
-  EXPECT_NE(format_slip_details(contact).find("does not slip (95 %)"), std::string::npos);
-}
-
-TEST(FormatContact, OfSenselsHasNoShear) {
-  using Words = std::vector<std::string>;
-  const auto [kpa, psi, mmhg] = kPressureUnits;
-  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels, kpa),
-            (Words{"7", "50.1", "157", "285", "320", "0.457"}));
-  EXPECT_EQ(format_contact("7", a_contact(), SkinLayout::sensels, psi),
-            (Words{"7", "50.1", "22.7", "41.4", "320", "0.457"}));
-  EXPECT_EQ(contact_columns(SkinLayout::sensels).size(), 6U);
+  EXPECT_EQ(text("friction"), "0.600");
+  EXPECT_EQ(text("slip"), "partial");
+  EXPECT_EQ(text("time_to_slip_s"), "0.423");
+  EXPECT_EQ(text("time_to_slip_high_s"), "–");
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <span>
+#include <string>
+#include <string_view>
 
 #include "viewer/app/input/actions.h"
 #include "viewer/app/panels/format_value.h"
@@ -19,51 +20,62 @@ constexpr int kTableFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                             ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX;
 constexpr std::size_t kMostRows = 9;  ///< visible at a time
 
-float column_width(const ContactColumn& column) {
-  return static_cast<float>(std::ceil(std::max(width_of(column.head), width_of(column.widest))));
+constexpr const char* kId = "id";
+constexpr const char* kWidestId = "000";
+
+float width_of_column(const char* head, const char* widest) {
+  return static_cast<float>(std::ceil(std::max(width_of(head), width_of(widest))));
 }
 
-/// The first columns, as far as they fit; a tooltip has the others.
-std::span<const ContactColumn> fitting_columns(SkinLayout layout) {
-  const std::vector<ContactColumn>& all = contact_columns(layout);
-  const ImGuiStyle& style = ImGui::GetStyle();
-  float left = ImGui::GetContentRegionAvail().x + 2 * style.CellPadding.x;
+float width_of_column(const QuantityColumn& column) {
+  return width_of_column(column.live.head,
+                         column.kind == ColumnKind::word ? "sticking" : "\u22120.0000");
+}
+
+/// The first columns, as far as they fit beside the id; a tooltip has the others.
+QuantityColumns fitting_columns(SkinLayout layout) {
+  const QuantityColumns all = live_columns(layout);
+  const float padding = 2 * ImGui::GetStyle().CellPadding.x;
+  float left = ImGui::GetContentRegionAvail().x - width_of_column(kId, kWidestId);
   std::size_t count = 0;
-  while (count < all.size() && left >= column_width(all[count]) + 2 * style.CellPadding.x) {
-    left -= column_width(all[count++]) + 2 * style.CellPadding.x;
+  while (count < all.size() && left >= width_of_column(all[count]) + padding) {
+    left -= width_of_column(all[count++]) + padding;
   }
-  return {all.data(), std::max<std::size_t>(count, 2)};
+  return all.first(std::max<std::size_t>(count, 1));
 }
 
-void set_columns(std::span<const ContactColumn> columns) {
-  for (const ContactColumn& column : columns) {
-    ImGui::TableSetupColumn(column.head, ImGuiTableColumnFlags_WidthFixed, column_width(column));
+void set_columns(QuantityColumns columns) {
+  ImGui::TableSetupColumn(kId, ImGuiTableColumnFlags_WidthFixed, width_of_column(kId, kWidestId));
+  for (const QuantityColumn& column : columns) {
+    ImGui::TableSetupColumn(column.live.head, ImGuiTableColumnFlags_WidthFixed,
+                            width_of_column(column));
   }
+}
+
+std::string help_of(const QuantityColumn& column, const PressureUnit& unit) {
+  const std::string_view own = is_pressure(column) ? unit.name : column.unit;
+  return fmt::format("{}{}{}", column.help, own.empty() ? "" : ", ", own);
 }
 
 /// Fixed head row above the scrolled contacts.
-void write_head(std::span<const ContactColumn> columns, const PressureUnit& unit) {
+void write_head(QuantityColumns columns, const PressureUnit& unit) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ContactColumn& column : columns) {
+  ImGui::TableNextColumn();
+  ImGui::TableHeader(kId);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("constant while the contact is tracked");
+  for (const QuantityColumn& column : columns) {
     ImGui::TableNextColumn();
-    ImGui::TableHeader(column.head);
-    if (!ImGui::IsItemHovered()) continue;
-    const bool pressure = column.pressure_kpa != nullptr;
-    ImGui::SetTooltip("%s%s%s", column.help, pressure ? ", " : "",
-                      pressure ? std::string(unit.name).c_str() : "");
+    ImGui::TableHeader(column.live.head);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help_of(column, unit).c_str());
   }
 }
 
-/// All values of a row, also those that do not fit, and how sure they are.
-void show_all(const std::vector<std::string>& words, const ContactQuantities& contact,
-              SkinLayout layout) {
-  const std::vector<ContactColumn>& columns = contact_columns(layout);
+/// Shows all quantities of a contact, also those that have no column.
+void show_all(const ContactQuantities& contact, SkinLayout layout, const PressureUnit& unit) {
   std::string lines;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    lines += fmt::format("{}{}  {}", i == 0 ? "" : "\n", columns[i].head, words[i]);
-  }
-  if (const std::string details = format_slip_details(contact); !details.empty()) {
-    lines += "\n" + details;
+  for (const QuantityColumn& column : quantity_columns(contact.wrench.has_value(), layout)) {
+    lines += fmt::format("{}{}  {}", lines.empty() ? "" : "\n", name_of(column, unit),
+                         format_quantity(column, contact, unit));
   }
   ImGui::SetTooltip("%s", lines.c_str());
 }
@@ -71,17 +83,14 @@ void show_all(const std::vector<std::string>& words, const ContactQuantities& co
 /// Returns true if clicked.
 bool write_row(const std::string& name, const ContactQuantities& contact, SkinLayout layout,
                const PressureUnit& unit) {
-  bool clicked = false;
-  const auto words = format_contact(name, contact, layout, unit);
   ImGui::TableNextRow();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(ImGui::TableGetColumnCount()); ++i) {
+  ImGui::TableNextColumn();
+  const bool clicked = ImGui::Selectable(name.c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
+  if (ImGui::IsItemHovered()) show_all(contact, layout, unit);
+  const auto columns = static_cast<std::size_t>(ImGui::TableGetColumnCount()) - 1;
+  for (const QuantityColumn& column : live_columns(layout).first(columns)) {
     ImGui::TableNextColumn();
-    if (i == 0) {
-      clicked = ImGui::Selectable(words[i].c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
-      if (ImGui::IsItemHovered()) show_all(words, contact, layout);
-    } else {
-      flush_right(words[i]);
-    }
+    flush_right(format_quantity(column, contact, unit));
   }
   return clicked;
 }
@@ -109,7 +118,7 @@ std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownCon
   const float row = static_cast<float>(style.line) + 2 * ImGui::GetStyle().CellPadding.y;
   const float height = row * static_cast<float>(rows) + 2;
   const auto columns = fitting_columns(layout);
-  if (!ImGui::BeginTable("contacts", static_cast<int>(columns.size()), kTableFlags,
+  if (!ImGui::BeginTable("contacts", static_cast<int>(columns.size()) + 1, kTableFlags,
                          ImVec2(0, height))) {
     return std::nullopt;
   }

@@ -156,114 +156,11 @@ std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& ski
                         kpa * plane(values, Uncertainty::normal))};
 }
 
-namespace {
-
-std::string format_percent(std::uint64_t part, std::uint64_t all) {
-  if (all == 0) return "–";
-  return fmt::format("{:.0f} %", 100 * static_cast<double>(part) / static_cast<double>(all));
-}
-
-/// "42 %", or "42 % / 90 %" with the fraction resolved from the contact.
-std::string format_ambiguous(const ContactQuantities& contact) {
-  std::string share = format_percent(contact.ambiguous, contact.pillars);
-  if (contact.resolved == 0) return share;
-  return share + " / " + format_percent(contact.resolved, contact.ambiguous);
-}
-
-std::string format_friction(const ContactQuantities& contact) {
-  return contact.friction ? fmt::format("{:.2f}", *contact.friction) : "–";
-}
-
-std::string format_slip(const ContactQuantities& contact) {
-  return contact.slip == SlipState::unknown ? "–" : name_of(contact.slip);
-}
-
-/// "0.42 s"; "–" if it is not foretold, or will not slide.
-std::string format_time_to_slip(const ContactQuantities& contact) {
-  constexpr double kFarS = 60;
-  const auto& forecast = contact.slip_forecast;
-  if (!forecast || !forecast->time_s) return "–";
-  if (*forecast->time_s > kFarS) return fmt::format("> {:.0f} s", kFarS);
-  return fmt::format("{:.{}f} s", *forecast->time_s, *forecast->time_s < 9.95 ? 2 : 0);
-}
-
-/// Columns of pillars alone.
-std::vector<ContactColumn> shear_columns() {
-  return {{"shear", "shear force, N", "00000",
-           [](const ContactQuantities& contact) {
-             return three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n));
-           }},
-          {"µ", "friction", "00.00", format_friction},
-          {"slip", "sticking, partial or sliding", "sticking", format_slip},
-          {"slips in", "seconds until the whole contact slides at the present rates", "00.0 s",
-           format_time_to_slip},
-          {"ambiguous", "fraction of pillars / fraction of these resolved from the contact",
-           "00 % / 00 %", format_ambiguous}};
-}
-
-std::vector<ContactColumn> columns_of(SkinLayout layout) {
-  std::vector<ContactColumn> columns{
-      {"id", "constant while the contact is tracked", "000", nullptr},
-      {"normal", "normal force, N", "00000",
-       [](const ContactQuantities& contact) { return three_digits(contact.normal_n); }}};
-  if (layout == SkinLayout::pillars) {
-    for (const ContactColumn& column : shear_columns()) columns.push_back(column);
-  }
-  columns.push_back({"mean", "mean pressure", "0.0000", nullptr,
-                     [](const ContactQuantities& contact) { return contact.mean_pressure_kpa; }});
-  columns.push_back({"most", "largest pressure", "0.0000", nullptr,
-                     [](const ContactQuantities& contact) { return contact.peak_pressure_kpa(); }});
-  columns.push_back({"area", "mm²", "00000", [](const ContactQuantities& contact) {
-                       return three_digits(contact.area_mm2);
-                     }});
-  columns.push_back(
-      {"peak",
-       layout == SkinLayout::pillars ? "largest normal force of a pillar, N"
-                                     : "largest normal force of a sensel, N",
-       "0.000", [](const ContactQuantities& contact) { return three_digits(contact.peak_n); }});
-  return columns;
-}
-
-}  // namespace
-
-const std::vector<ContactColumn>& contact_columns(SkinLayout layout) {
-  static const std::vector<ContactColumn> of_pillars = columns_of(SkinLayout::pillars);
-  static const std::vector<ContactColumn> of_sensels = columns_of(SkinLayout::sensels);
-  return layout == SkinLayout::pillars ? of_pillars : of_sensels;
-}
-
-std::string format_slip_details(const ContactQuantities& contact) {
-  std::string words;
-  if (contact.friction_deviation) {
-    words = fmt::format("standard deviation of µ  {:.2f}", *contact.friction_deviation);
-  }
-  const auto& forecast = contact.slip_forecast;
-  if (!forecast) return words;
-  const auto end = [](const std::optional<double>& time_s) {
-    return time_s ? fmt::format("{:.2f} s", *time_s) : "never";
-  };
-  if (!words.empty()) words += "\n";
-  words += forecast->low_s
-               ? fmt::format("slips in {} … {} (95 %)", end(forecast->low_s), end(forecast->high_s))
-               : "does not slip (95 %)";
-  for (std::size_t i = 0; i < forecast->probability.size(); ++i) {
-    words += fmt::format("\nslips within {} s  {:.0f} %", SlipForecast::kWithinS[i],
-                         100 * forecast->probability[i]);
-  }
-  return words;
-}
-
-std::vector<std::string> format_contact(const std::string& name, const ContactQuantities& contact,
-                                        SkinLayout layout, const PressureUnit& unit) {
-  std::vector<std::string> words;
-  for (const ContactColumn& column : contact_columns(layout)) {
-    if (column.pressure_kpa != nullptr) {
-      words.push_back(three_digits(column.pressure_kpa(contact) / unit.kpa));
-    } else {
-      words.push_back(column.words == nullptr ? name : column.words(contact));
-    }
-  }
-  return words;
+std::string format_quantity(const QuantityColumn& column, const ContactQuantities& contact,
+                            const PressureUnit& unit) {
+  const double value = column.get(contact) / (is_pressure(column) ? unit.kpa : 1);
+  if (column.kind == ColumnKind::word) return value == 0 ? "–" : column.word(value);
+  return three_digits(value);
 }
 
 }  // namespace pillarfield::viewer

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pillarfield/contact_quantities.h"
-#include "pillarfield/pressure_unit.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/skin.h"
 #include "viewer/source/selection.h"
 #include "viewer/style/display.h"
@@ -56,25 +55,10 @@ struct DirectionDeviation {
 [[nodiscard]] std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,
                                                    const Units& units);
 
-/// A column of the table of contacts.
-struct ContactColumn {
-  const char* head = nullptr;    ///< "normal"
-  const char* help = nullptr;    ///< "normal force, N"
-  const char* widest = nullptr;  ///< sample text that sets the width
-  /// Null: its name, or a pressure.
-  std::string (*words)(const ContactQuantities& contact) = nullptr;
-  double (*pressure_kpa)(const ContactQuantities& contact) = nullptr;
-};
-[[nodiscard]] const std::vector<ContactColumn>& contact_columns(SkinLayout layout);
-
-/// Lines with the deviation of friction, the interval of the time to slip and probabilities, as far
-/// as they are known.
-[[nodiscard]] std::string format_slip_details(const ContactQuantities& contact);
-
-/// A row of the table: `name`, then contact_columns(), pressures in `unit`, numbers with three
-/// digits; "–" for missing values.
-[[nodiscard]] std::vector<std::string> format_contact(const std::string& name,
-                                                      const ContactQuantities& contact,
-                                                      SkinLayout layout, const PressureUnit& unit);
+/// A quantity of a contact with three digits, a pressure in `unit`; "–" for a missing value and for
+/// the first word, which claims nothing.
+[[nodiscard]] std::string format_quantity(const QuantityColumn& column,
+                                          const ContactQuantities& contact,
+                                          const PressureUnit& unit);
 
 }  // namespace pillarfield::viewer
