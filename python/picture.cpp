@@ -91,9 +91,9 @@ py::tuple paint(const py::dict& planes, const std::string& name,
       add(pixels, colour_at(quantity, field, skin, ends, theme, row, col));
     }
   }
-  const auto& info = viewer::info_of(quantity);
+  const viewer::Unit unit = viewer::Units{}.of(viewer::info_of(quantity).dimension);
   return py::make_tuple(array_of(std::move(pixels), {forces.rows(), forces.cols(), 3}),
-                        info.factor * double{ends.low}, info.factor * double{ends.high}, info.unit);
+                        unit.factor * double{ends.low}, unit.factor * double{ends.high}, unit.name);
 }
 
 /// The colour bar of a quantity, low to high, then the background: uint8 [257, 3].

@@ -16,7 +16,12 @@ namespace pillarfield {
 namespace {
 
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
-constexpr int kWords = 4;  // in each list
+template <class Word>
+constexpr auto kLastWord = Word{};
+template <>
+constexpr auto kLastWord<FrictionSource> = FrictionSource::at_least;
+template <>
+constexpr auto kLastWord<SlipState> = SlipState::sliding;
 
 /// Clamps to the counts that a double holds exactly.
 std::uint64_t as_count(double value) {
@@ -39,7 +44,7 @@ std::optional<double> as_number(double value) {
 template <class Word>
 Word as_word(double value) {
   const std::uint64_t place = as_count(value);
-  return static_cast<Word>(place < kWords ? place : 0);
+  return static_cast<Word>(place <= static_cast<std::uint64_t>(kLastWord<Word>) ? place : 0);
 }
 
 template <class Word>
@@ -202,11 +207,11 @@ constexpr QuantityColumn kQuantities[] = {
            {"", "mean", 13}),
     column("peak_pressure_kpa", "kPa", "pressure on the most loaded element", kPeakPressure,
            kOptional, {"peak_pressure_kpa", "most", 14}),
-    column("friction", "", "friction coefficient", member<&Q::friction>(), kOfPillars,
-           {"friction", "friction", 4}),
+    column("friction", "", "friction coefficient; its lower bound if friction_source is 'at_least'",
+           member<&Q::friction>(), kOfPillars, {"friction", "friction", 4}),
     column("friction_deviation", "", "standard deviation of the friction coefficient",
            member<&Q::friction_deviation>(), kOptional | kOfPillars, {"friction_deviation"}),
-    column("friction_source", "", "'prior', 'given', 'observed' or 'carried_over'",
+    column("friction_source", "", "'prior', 'given', 'observed', 'carried_over' or 'at_least'",
            member<&Q::friction_source>(), kOfPillars),
     column("slip", "", "'unknown', 'sticking', 'partial' or 'sliding'", member<&Q::slip>(),
            kOfPillars, {"", "slip", 5}),
@@ -316,8 +321,11 @@ std::string text_of(const ContactColumn<Row>& column, const Row& row, const char
 
 template <class Row>
 std::string words_of(const ContactColumn<Row>& column) {
-  std::string words = column.word(0);
-  for (int place = 1; place < kWords; ++place) words += std::string(", ") + column.word(place);
+  const std::string first = column.word(0);  // a place without a word has the first
+  std::string words = first;
+  for (int place = 1; column.word(place) != first; ++place) {
+    words += std::string(", ") + column.word(place);
+  }
   return words;
 }
 

@@ -18,7 +18,8 @@ constexpr double kSlipRatio = 0.92;
 constexpr double kNoiseOfRatio = 1.6;
 
 bool is_well_known(const ContactFriction& friction) {
-  return friction.source != FrictionSource::prior && friction.spread <= kMostSpread;
+  return friction.source != FrictionSource::prior && friction.source != FrictionSource::at_least &&
+         friction.spread <= kMostSpread;
 }
 
 SlipState state_of(double slipping) {
@@ -78,7 +79,8 @@ void set_slip(ContactQuantities& contact, const ContactFriction& friction, const
   contact.friction_source = friction.source;
   const bool well_known = is_well_known(friction);
   contact.slip = state_of(sum, well_known);
-  if (friction.source == FrictionSource::prior) return;
+  if (friction.source == FrictionSource::at_least) contact.friction = friction.least;
+  if (friction.source == FrictionSource::prior || contact.friction) return;
   contact.friction = friction.median;
   contact.friction_deviation = friction.median * friction.spread;
   if (well_known && sum.determined > 0) contact.slipping_share = sum.slipping / sum.determined;

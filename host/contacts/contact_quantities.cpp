@@ -25,9 +25,11 @@ const char* name_of(FrictionSource source) {
     case FrictionSource::observed:
       return "observed";
     case FrictionSource::carried_over:
+      return "carried_over";
+    case FrictionSource::at_least:
       break;
   }
-  return "carried_over";
+  return "at_least";
 }
 
 Moment moment_about(const PatchPlace& point, const ContactQuantities& contact) {

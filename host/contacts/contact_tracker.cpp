@@ -115,7 +115,7 @@ constexpr double kSpinMargin = 0.5;
 void set_forecast(ContactQuantities& contact, double time_s, SlipTrend& trend) {
   if (!(contact.normal_n > 0)) return;
   trend.add(time_s, std::hypot(contact.shear_x_n, contact.shear_y_n) / contact.normal_n);
-  if (!contact.friction) return;
+  if (!contact.friction_deviation) return;
   if (contact.slip != SlipState::sliding) {
     contact.slip_forecast = trend.forecast(*contact.friction, *contact.friction_deviation);
   } else if (contact.slip_margin.value_or(0) <= kSpinMargin) {

@@ -7,12 +7,17 @@
 namespace pillarfield {
 namespace {
 
-// The weight of a frame falls by e in these times, or in kMemoryFrames if that takes longer.
-constexpr double kPresentS = 0.1;
-constexpr double kLastingS = 0.5;
+// The weight of a frame falls by e in kMemoryS, or in kMemoryFrames if that takes longer.
+constexpr double kMemoryS = 0.1;
 constexpr double kMemoryFrames = 4;
 constexpr int kLeastOfTrend = 4;
-constexpr double kRateChange = 0.2;  // relative standard deviation of a rate until slip
+constexpr double kRatioNoise = 0.004;     // least standard deviation of a ratio about its trend
+constexpr double kTurnDeviations = 2.25;  // from the trend, of a frame that begins another
+constexpr double kRateChange = 0.4;       // relative standard deviation of a rate until slip
+constexpr double kSwingFall = 0.05;       // fraction of a peak by which a swing falls
+constexpr double kSwingRise = 0.03;       // fraction by which a load exceeds the swings before
+constexpr double kSwingMemoryS = 5;       // age of a swing that counts
+constexpr double kSwingGoesOn = 0.4;      // probability that a load exceeds the swings before
 constexpr double kEndsDeviations = 1.96;
 
 double normal_probability(double deviations) {
@@ -21,57 +26,56 @@ double normal_probability(double deviations) {
 
 }  // namespace
 
-/// Fades the earlier frames, from the new one on.
-void SlipTrend::Line::advance(double step_s, double change, double memory_s) {
-  const double fade = std::exp(-step_s / std::max(memory_s, kMemoryFrames * step_s));
-  products = fade * (products - step_s * ratios - change * times + step_s * change * weights);
-  time_squares = fade * (time_squares - 2 * step_s * times + step_s * step_s * weights);
-  ratio_squares = fade * (ratio_squares - 2 * change * ratios + change * change * weights);
-  times = fade * (times - step_s * weights);
-  ratios = fade * (ratios - change * weights);
-  weights *= fade;
+/// True if a frame so far from the newest one does not continue the trend.
+bool SlipTrend::turns(double step_s, double change) const {
+  if (line_.weights() < 2) return false;  // Two points are on any line.
+  const double away = change - (line_.height() + line_.slope() * step_s);
+  return away * away >
+         kTurnDeviations * kTurnDeviations * (line_.noise() + kRatioNoise * kRatioNoise);
 }
 
-/// Variance of a frame about the line.
-double SlipTrend::Line::noise() const {
-  const double slope = rate();
-  const double residual = ratio_squares - ratios * ratios / weights - slope * slope * spread();
-  return std::max(residual, 0.0) / std::max(weights - 2, 1.0);
+/// Updates the largest ratio of swings.
+void SlipTrend::remember_swing() {
+  if (ratio_ < (1 - kSwingFall) * peak_) {
+    swing_ = std::max(swing_, peak_);
+    swing_s_ = time_s_;
+    peak_ = ratio_;
+  }
+  peak_ = std::max(peak_, ratio_);
+  if (ratio_ > (1 + kSwingRise) * swing_ || time_s_ - swing_s_ > kSwingMemoryS) swing_ = 0;
 }
 
 void SlipTrend::add(double time_s, double ratio) {
+  if (frames_ > 0 && !(time_s > time_s_)) *this = {};
   const double step_s = time_s - time_s_;
-  if (frames_ > 0 && !(step_s > 0)) *this = {};
-  if (frames_ > 0) {
-    present_.advance(step_s, ratio - ratio_, kPresentS);
-    lasting_.advance(step_s, ratio - ratio_, kLastingS);
+  const double change = ratio - ratio_;
+  if (turns(step_s, change)) {
+    line_ = {};
+    line_.add(0, 0, 1);  // the frame before
   }
-  ++present_.weights;
-  ++lasting_.weights;
+  line_.add(step_s, change, std::max(kMemoryS, kMemoryFrames * step_s));
   ++frames_;
   time_s_ = time_s;
   ratio_ = ratio;
+  remember_swing();
 }
 
 std::optional<SlipForecast> SlipTrend::forecast(double friction, double deviation) const {
   if (frames_ < kLeastOfTrend) return std::nullopt;
-  // A swing or a jump has a rate that does not last.
-  const Line& line = lasting_.rate() < present_.rate() ? lasting_ : present_;
-  const double rate = line.rate();
-  const double rate_variance =
-      line.noise() / line.spread() + kRateChange * kRateChange * rate * rate;
-  const double noise = present_.noise() / present_.weights;
-  const double variance = deviation * deviation + noise;
-  const double ratio =
-      ratio_ + (present_.ratios - present_.rate() * present_.times) / present_.weights;
-  const double left = friction - ratio;
+  const double rate = line_.slope();
+  const double noise = line_.noise() + kRatioNoise * kRatioNoise;
+  const double rate_variance = noise / line_.spread() + kRateChange * kRateChange * rate * rate;
+  const double variance = deviation * deviation + noise / line_.weights();
+  const double left = friction - (ratio_ + line_.height());
+  const bool swings = swing_ > 0 && left > 0;
+  const double goes_on = swings ? kSwingGoesOn : 1;
 
-  // P(slip within t) = Phi((rate t - left) / sqrt(variance + rate_variance t^2)).
+  // P(slip within t) = Phi((rate t - left) / sqrt(variance + rate_variance t^2)), if it goes on.
   SlipForecast found;
   for (std::size_t i = 0; i < found.probability.size(); ++i) {
     const double t = SlipForecast::kWithinS[i];
     const double sigma = std::sqrt(variance + rate_variance * t * t);
-    found.probability[i] = normal_probability((rate * t - left) / sigma);
+    found.probability[i] = goes_on * normal_probability((rate * t - left) / sigma);
   }
   if (left <= 0) {
     found.time_s = 0;
@@ -85,7 +89,7 @@ std::optional<SlipForecast> SlipTrend::forecast(double friction, double deviatio
   const bool already = c <= 0 || left <= 0;  // the interval of the friction holds the ratio
   if (already) found.low_s = 0;
   if (!already && (a < 0 || rate > 0)) found.low_s = c / (rate * left + root);
-  if (a > 0 && rate > 0) found.high_s = std::max((rate * left + root) / a, 0.0);
+  if (!swings && a > 0 && rate > 0) found.high_s = std::max((rate * left + root) / a, 0.0);
   return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "contacts/fading_line.h"
 #include "pillarfield/contact_quantities.h"
 
 namespace pillarfield {
@@ -18,26 +19,16 @@ class SlipTrend {
   [[nodiscard]] std::optional<SlipForecast> forecast(double friction, double deviation) const;
 
  private:
-  /// A line by weighted least squares, from the newest frame.
-  struct Line {
-    double weights = 0;
-    double times = 0;
-    double time_squares = 0;
-    double ratios = 0;
-    double ratio_squares = 0;
-    double products = 0;
-
-    void advance(double step_s, double change, double memory_s);
-    [[nodiscard]] double spread() const { return time_squares - times * times / weights; }
-    [[nodiscard]] double rate() const { return (products - times * ratios / weights) / spread(); }
-    [[nodiscard]] double noise() const;
-  };
+  [[nodiscard]] bool turns(double step_s, double change) const;
+  void remember_swing();
 
   double time_s_ = 0;
   double ratio_ = 0;
   int frames_ = 0;
-  Line present_;
-  Line lasting_;
+  FadingLine line_;     ///< ratio over time, since it last changed its course
+  double peak_ = 0;     ///< largest ratio since it last fell
+  double swing_ = 0;    ///< largest ratio from which it fell, and which it has not exceeded since
+  double swing_s_ = 0;  ///< the time then
 };
 
 }  // namespace pillarfield

@@ -92,7 +92,7 @@ class Contacts(CommandTest):
             self.assertIsNone(given)
             self.assertIn("observed", {source for _, source in found})
             self.assertLessEqual({source for _, source in found},
-                                 {"prior", "observed", "carried_over"})
+                                 {"prior", "observed", "carried_over", "at_least"})
             for friction, source in found:
                 self.assertEqual(friction == "", source == "prior")
 

@@ -85,6 +85,46 @@ TEST(ContactEstimator, RemembersThePressureOfAContact) {
   }
 }
 
+/// Pressed, dragged to about a fifth of the load that slides, at rest there, and dragged on.
+TEST(ContactEstimator, BoundsTheFrictionBeforeTheOnsetOfSlipAndReportsItAfter) {
+  constexpr std::uint32_t kSticks = 45;  // frames
+  int bounds = 0;
+  int wrong = 0;
+  for (const auto indenter : {fingertip, ball, punch}) {
+    for (const double friction : {0.6, 1.2}) {
+      Scene scene = dragged(indenter(), friction);
+      scene.rate_hz = 30;
+      scene.frames = 90;
+      scene.indenters[0].path = {{0.0, -3, 0.5, 0, 6},
+                                 {0.2, -3, 0.5, 0, 14},
+                                 {1.0, -3 + 0.6 * friction, 0.5, 0, 14},
+                                 {1.5, -3 + 0.6 * friction, 0.5, 0, 14},
+                                 {2.8, -3 + 8 * friction, 0.5, 0, 14}};
+      const Simulator simulator(scene);
+      const SolverPlan direct = plan_of(scene, Estimator::direct);
+      ContactEstimator estimator(plan_of(scene, Estimator::contact));
+      FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
+      ForceField truth(26, 26);
+      for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
+        simulator.render(frame, raw, truth);
+        ForceField field = solve_on_host(direct, raw.view());
+        estimator.resolve(field);
+        const ContactFriction& found = estimator.friction()[0];
+        if (found.source == FrictionSource::at_least) {
+          ++bounds;
+          wrong += found.least > friction;
+        } else if (found.source != FrictionSource::prior) {
+          EXPECT_GT(frame, kSticks) << friction;
+          EXPECT_NEAR(found.median, friction, 0.1 * friction) << frame;
+        }
+      }
+      EXPECT_NE(estimator.friction()[0].source, FrictionSource::prior) << friction;
+    }
+  }
+  EXPECT_GT(bounds, 100);
+  EXPECT_LE(wrong, bounds / 20);
+}
+
 /// Forces before the contact lifted off say nothing of the next contact.
 TEST(ContactEstimator, ForgetsAContactThatLiftsOff) {
   const Simulator simulator(turned(ball(), 2.2));

@@ -262,7 +262,8 @@ ForceField many_contacts(int step) {
       }
     }
   };
-  disc(85, 85 + step, 80, step % 2 == 0 ? 0.7F : 0.0F);  // its friction is carried over
+  disc(85, 85 + step, 80,
+       step % 2 == 0 ? 0.7F : 0.0F);  // the bound of its friction is carried over
   for (int i = 0; i < 4; ++i) disc(25 + 45 * i, 220, 18, 0.3F * static_cast<float>(i));
   for (std::size_t col = 0; col < field.cols; col += 3) {
     for (std::size_t row = 180; row < field.rows; row += 4) {
@@ -285,7 +286,7 @@ TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
     for (const std::uint32_t threads : {2U, 7U, 0U}) {
       ContactTracker alone(kPillarPitchMm, {.friction = {.given = friction}, .threads = 1});
       ContactTracker shared(kPillarPitchMm, {.friction = {.given = friction}, .threads = threads});
-      bool carried_over = false;
+      bool bounded = false;
       for (int step = 0; step < 4; ++step) {
         const ForceField field = many_contacts(step);
         const FrameContacts& expected = alone.update(field.view(), step);
@@ -297,9 +298,9 @@ TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
         }
         expect_same_bits(actual.total, expected.total);
         const FrictionSource source = expected.contacts[0].quantities.friction_source;
-        carried_over = carried_over || source == FrictionSource::carried_over;
+        bounded = bounded || source == FrictionSource::at_least;
       }
-      EXPECT_EQ(carried_over, !friction);
+      EXPECT_EQ(bounded, !friction);
     }
   }
 }

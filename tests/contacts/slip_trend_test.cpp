@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace pillarfield {
 namespace {
@@ -31,7 +32,7 @@ TEST(SlipTrend, FollowsARamp) {
     EXPECT_LT(found.probability[0], 0.01);
     EXPECT_NEAR(found.probability[2], 0.5, 0.15);
     // The ends of the interval are where the probability is 2.5 and 97.5 %.
-    const double sigma = 0.2 * 0.5 * *found.low_s;
+    const double sigma = 0.4 * 0.5 * *found.low_s;
     EXPECT_NEAR((0.5 + 0.5 * *found.low_s - 1) / std::hypot(kDeviation, sigma), -1.96, 0.2);
   }
 }
@@ -45,6 +46,30 @@ TEST(SlipTrend, DoesNotAlarmInHolds) {
     EXPECT_LT(after(seconds, 50, swinging).probability[1], 0.5) << seconds;
   }
   EXPECT_FALSE(after(3, 50, [](double t) { return 0.6 - 0.1 * t; }).time_s);
+}
+
+/// The interval holds the time from the fourth frame after a rest, a fall or a swing on.
+TEST(SlipTrend, FollowsARampAfterARestAndAfterASwing) {
+  constexpr double kStartS = 2;
+  constexpr double kRate = 0.8;
+  const auto rest = [](double t) { return 0.2 + kRate * std::max(t - kStartS, 0.0); };
+  const auto fall = [](double t) { return 0.2 + kRate * std::abs(t - kStartS) / 2; };
+  const auto swing = [&](double t) {
+    return rest(t) + (t < kStartS ? 0.1 * std::sin(2 * M_PI * t) : 0.0);
+  };
+  for (const auto& ratio : std::vector<std::function<double(double)>>{rest, fall, swing}) {
+    for (int frame = 4; frame < 20; ++frame) {
+      const double t = kStartS + frame / 30.0;
+      const SlipForecast found = after(t + 1e-9, 30, ratio);
+      const double rate = (ratio(t) - ratio(t - 1e-3)) / 1e-3;
+      const double left_s = (kFriction - ratio(t)) / rate;
+      EXPECT_LT(found.low_s.value(), left_s) << frame;
+      EXPECT_GT(found.high_s.value_or(1e9), left_s) << frame;
+      if (left_s < 0.25) {
+        EXPECT_GT(found.probability[1], 0.5) << frame;
+      }
+    }
+  }
 }
 
 TEST(SlipTrend, NeedsFourFramesOfOneClock) {

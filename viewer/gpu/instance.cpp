@@ -22,14 +22,6 @@ VKAPI_ATTR VkBool32 VKAPI_CALL take_message(VkDebugUtilsMessageSeverityFlagBitsE
   return VK_FALSE;
 }
 
-vk::raii::Context load() {
-  try {
-    return {};
-  } catch (const std::exception&) {
-    throw Error("Vulkan", "its loader was not found", "install libvulkan1 and a driver");
-  }
-}
-
 void require_layer(const vk::raii::Context& context) {
   const auto layers = context.enumerateInstanceLayerProperties();
   const bool found = std::any_of(layers.begin(), layers.end(), [](const auto& layer) {
@@ -56,7 +48,8 @@ void require_extensions(const vk::raii::Context& context, std::span<const char* 
 
 }  // namespace
 
-Instance::Instance(std::span<const char* const> extensions, bool validation) : context_(load()) {
+Instance::Instance(std::span<const char* const> extensions, bool validation)
+    : context_(vkGetInstanceProcAddr) {
   if (context_.enumerateInstanceVersion() < VK_API_VERSION_1_2) {
     throw Error("Vulkan", "it is older than version 1.2", "update the graphics driver");
   }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <string>
+#include <system_error>
 
 #include "pillarfield/error.h"
 
@@ -13,6 +15,7 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr const char* kFontBeside = "../share/pillarfield/DejaVuSans.ttf";  ///< the program
 constexpr float kFontSize = 14;
 
 void check_result(VkResult result) {
@@ -38,8 +41,12 @@ constexpr std::array<ImWchar, 18> kSubstitutes{0x2212, '-', 0x2013, '-', 0x2026,
 
 void load_font(ImGuiIO& io, double scale) {
   const float size = kFontSize * static_cast<float>(scale);
-  if (std::filesystem::exists(kFont)) {
-    io.Fonts->AddFontFromFileTTF(kFont, size, nullptr, kGlyphs.data());
+  std::error_code unknown;
+  std::string font =
+      std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / kFontBeside;
+  if (!std::filesystem::exists(font)) font = kFont;
+  if (std::filesystem::exists(font)) {
+    io.Fonts->AddFontFromFileTTF(font.c_str(), size, nullptr, kGlyphs.data());
   } else {
     ImFontConfig config;
     config.SizePixels = size;

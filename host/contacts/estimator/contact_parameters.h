@@ -50,17 +50,30 @@ struct ContactParameters {
   double reported_spread = 0.2;
   /// The stated deviation over the spread: pillars are not as independent as C3 takes them.
   double stated_over_spread = 2;
-  /// Least spread of a friction that a frame shows clearly.
-  double clear_spread = 0.02;
+  /// Largest spread of a friction that a frame shows clearly; [0.05, 0.08].
+  double clear_spread = 0.06;
   /// Relative distance up to which two frictions count as equal.
   double same_friction = 0.05;
-  /// Relative distance above which the mean ratio of a contact's pillars counts as changed.
-  double other_load = 0.1;
-  /// Edge load above which a contact may be a flat face: mean normal force of the outermost pillars
-  /// over the largest.
-  double face_load = 0.6;
-  /// Largest fraction of determined pillars whose ratio exceeds a friction by `other_load`.
-  double most_above = 0.02;
+  /// Relative distance from the friction last shown at which the posterior contradicts it.
+  double other_friction = 0.1;
+  /// Fraction of the largest load ratio so far from which a frame counts as newly loaded, and the
+  /// least ratio.
+  double new_load = 0.99;
+  double least_load = 0.02;
+  /// Change of the load ratio's logarithm in which the weight of a frame falls by e; [0.15, 0.5].
+  double load_memory = 0.3;
+  /// Standard deviation of the logarithm of a frame's friction beyond scatter; [0.04, 0.05].
+  double friction_noise = 0.05;
+  /// Growth of a friction with the load, as an exponent, up to which the friction counts as
+  /// constant: of the estimate, and of its upper end, one-sided 95 %. Near 1 if the contact sticks.
+  double most_growth = 0.3;
+  double most_growth_end = 0.5;
+  /// Least load ratio of a contact that slides, over its friction, and alignment of its shear below
+  /// which it turns.
+  double sliding_load = 0.85;
+  double apart = 0.5;
+  /// The lower bound of a friction over the 5 % quantile of the cautious posterior.
+  double bound_factor = 0.9;
   /// Relative standard deviation of the friction over a contact, as known before its ratios are
   /// seen: usual, as of so many pillars, and where its estimate starts.
   double usual_scatter = 0.05;

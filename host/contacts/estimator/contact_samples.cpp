@@ -71,8 +71,10 @@ void ContactSamples::sample(const ForceFieldView& forces, std::span<const LeanSh
   pressure_.clear();
   ambiguous_.clear();
   peak_n_ = 0;
-  edge_loads_ = 0;
-  edges_ = 0;
+  shear_x_ = 0;
+  shear_y_ = 0;
+  shear_ = 0;
+  normal_ = 0;
   step_ = (box_.pillars + kMostPillars - 1) / kMostPillars;
   // Samples lie far apart: prefetch all before the first is used.
   for_each_of(runs, step_, [&](std::uint32_t row, std::uint32_t col) {
@@ -101,6 +103,7 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
     const double high = segment.high;
     ambiguous_.push_back(index);
     peak_n_ = std::max(peak_n_, high);
+    add_load(force_on_segment(force_at(forces_, index), status, model_, segment.high));
     if (!(high > least)) return;
     const double flat = segment.least_ratio_normal();
     const double ratio = segment.ratio_at(flat);
@@ -110,6 +113,7 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
          0});
   } else if (is_determined(status)) {
     peak_n_ = std::max(peak_n_, normal);
+    add_load(force_at(forces_, index));
     pressure_.push_back({box_.x_of(col), box_.y_of(row), normal * normal, 1});
     if (!(normal > least)) return;
     const double x = forces_.shear_x[index];
@@ -121,6 +125,13 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
         {ratio, deviation_of_ratio(ratio, normal, noise_n, {lean, model_.residual}, parameters),
          ceiling_of(x, y, model_)});
   }
+}
+
+void ContactSamples::add_load(const single_precision::Force& force) {
+  shear_x_ += force.shear_x;
+  shear_y_ += force.shear_y;
+  shear_ += std::sqrt(force.shear_x * force.shear_x + force.shear_y * force.shear_y);
+  normal_ += force.normal;
 }
 
 /// Normal force of a determined pillar, or upper bound of an ambiguous one, N.
@@ -141,10 +152,7 @@ void ContactSamples::add_edge(const Edge& edge, double weight) {
     most = std::max(most, most_normal(static_cast<std::uint32_t>(inner_row) * forces_.cols +
                                       static_cast<std::uint32_t>(inner_col)));
   }
-  const double load = std::min(most / peak_n_, 1.0);
-  const double rest = 1 - load;
-  edge_loads_ += load;
-  ++edges_;
+  const double rest = 1 - std::min(most / peak_n_, 1.0);
   pressure_.push_back({box_.x_of(edge.col + kEdge * edge.right),
                        box_.y_of(edge.row + kEdge * edge.down), 0, weight * rest * rest});
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -130,9 +131,13 @@ class ContactSamples {
   /// Sampled ambiguous pillars, by index in the frame.
   [[nodiscard]] const std::vector<std::uint32_t>& ambiguous() const { return ambiguous_; }
   [[nodiscard]] bool is_subsampled() const { return step_ > 1; }
-  [[nodiscard]] bool has_edges() const { return edges_ > 0; }
-  /// Mean normal force of the outermost pillars over the largest possible one; after add_edges().
-  [[nodiscard]] double edge_load() const { return edges_ > 0 ? edge_loads_ / edges_ : 0; }
+  /// Sum of shear over that of normal force of the sampled pillars, ambiguous ones with their
+  /// largest normal force; zero without.
+  [[nodiscard]] double load_ratio() const { return normal_ > 0 ? shear_ / normal_ : 0; }
+  /// The magnitude of the sum of shear over the sum of magnitudes: 1 of one direction.
+  [[nodiscard]] double alignment() const {
+    return shear_ > 0 ? std::sqrt(shear_x_ * shear_x_ + shear_y_ * shear_y_) / shear_ : 1;
+  }
 
  private:
   /// An edge of the contact, `down` or `right` (1, 0 or -1) of a pillar.
@@ -145,6 +150,7 @@ class ContactSamples {
 
   void sample_pillar(std::uint32_t row, std::uint32_t col, double noise_n,
                      const ContactParameters& parameters);
+  void add_load(const single_precision::Force& force);
   void add_edge(const Edge& edge, double weight);
   void add_ends_of_rows();
   void add_ends_of_columns();
@@ -161,8 +167,10 @@ class ContactSamples {
   ContactBox box_;
   std::uint32_t step_ = 1;  ///< pillars from one sample to the next
   double peak_n_ = 0;       ///< largest possible normal force of a sampled pillar
-  double edge_loads_ = 0;
-  double edges_ = 0;
+  double shear_x_ = 0;      ///< sums of sampled pillars, N
+  double shear_y_ = 0;
+  double shear_ = 0;
+  double normal_ = 0;
   std::vector<ObservedRatio> ratios_;
   std::vector<ObservedRatio> bounds_;
   std::vector<PressureRegression::Sample> pressure_;

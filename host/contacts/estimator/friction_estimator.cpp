@@ -17,6 +17,9 @@ static_assert(kMostPredicted <= PressureRegression::kBatch);
 /// Assumed ratio of a contact's largest normal force to the noise, if the noise is unknown.
 constexpr double kPeakOverNoise = 64;
 
+/// Probability that a friction is below its lower bound.
+constexpr double kOneInTwenty = 0.05;
+
 /// A wider prior, unless the friction is given.
 FrictionKnowledge cautious(FrictionKnowledge knowledge, const ContactParameters& parameters) {
   knowledge.spread *= parameters.cautious_spread;
@@ -92,6 +95,7 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
       parameters_(parameters),
       likelihood_(parameters),
       prior_{FrictionPosterior(knowledge), FrictionPosterior(cautious(knowledge, parameters))},
+      prior_least_(prior_.cautious.quantile(kOneInTwenty)),
       given_(knowledge.given),
       carries_over_(knowledge.memory),
       workspaces_(members) {}
@@ -104,11 +108,11 @@ void FrictionEstimator::begin(const ForceFieldView& forces, const ContactLabels&
   histories_.assign(labels.contacts(), {});
   models_.assign(labels.contacts(), {});
   friction_.assign(labels.contacts(), {});
+  movements_.assign(labels.contacts(), {});
   if (!carries_over_) return;
   if (parameters_.past_pressure) {
     past_.begin(forces.rows, forces.cols, labels.runs_by_row());
   }
-  movements_.assign(labels.contacts(), {});
   std::swap(snapshot_, earlier_snapshot_);
   snapshot_.runs.assign(labels.runs_by_row().begin(), labels.runs_by_row().end());
   snapshot_.track_ids.assign(labels.contacts(), 0);
@@ -189,7 +193,7 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
     model.frictions = nodes_of(belief.estimate);
     model.cautious = nodes_of(belief.cautious);
   }
-  friction_[contact] = reported(contact, evidence.estimate, work);
+  friction_[contact] = reported(contact, evidence.estimate, samples);
 }
 
 /// Collects the ratios of ambiguous pillars at their normal forces by regression and past.
@@ -236,60 +240,83 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   }
 }
 
-/// True if all pillars of a contact may stick and still share one ratio (section 5): its edge bears
-/// nearly as much as its middle, as under a flat face, or ratios exceed the friction.
-bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
-  if (!work.samples.has_edges()) work.samples.add_edges();
-  const std::vector<ObservedRatio>& ratios = work.samples.ratios();
-  const auto above = std::ranges::count_if(ratios, [&](const ObservedRatio& pillar) {
-    return pillar.ratio > (1 + parameters_.other_load + 2 * pillar.deviation) * friction;
-  });
-  return work.samples.edge_load() > parameters_.face_load ||
-         static_cast<double>(above) > parameters_.most_above * static_cast<double>(ratios.size());
+/// True if the friction stayed while the load rose; while all pillars stick, both rise together.
+/// Only loads above all earlier ones show it: unloaded pillars stick with the shear of before.
+bool FrictionEstimator::stays(double friction, const FrictionPosterior::Summary& now,
+                              double load_ratio, History& history) const {
+  constexpr double kOneSided = 1.64;   // deviations
+  constexpr double kLeastRise = 1e-6;  // spread of the logarithm of the load
+  const bool newly_loaded = load_ratio >= parameters_.new_load * history.most_ratio &&
+                            load_ratio > parameters_.least_load;
+  if (!newly_loaded || now.spread > parameters_.clear_spread) return false;
+  const double log_ratio = std::log(history.most_ratio);
+  const double log_friction = std::log(now.median);
+  FadingLine& growth = history.growth;
+  growth.add(log_ratio - history.log_ratio, log_friction - history.log_friction,
+             parameters_.load_memory);
+  history.log_ratio = log_ratio;
+  history.log_friction = log_friction;
+  if (!(growth.spread() > kLeastRise)) return false;
+  const double own = parameters_.friction_noise * parameters_.friction_noise;
+  const double slope = growth.slope();
+  const double end = slope + kOneSided * std::sqrt((growth.noise() + own) / growth.spread());
+  const double away = std::log(friction) - (log_friction + growth.height());
+  return std::abs(slope) < parameters_.most_growth && end < parameters_.most_growth_end &&
+         std::abs(away) < parameters_.same_friction;
 }
 
-/// True if the friction stayed while the mean ratio of the pillars changed; under sticking both
-/// change together. `clear`: this frame alone determines the friction.
-bool FrictionEstimator::stays(double friction, bool clear, const Workspace& work,
-                              History& history) const {
-  if (std::abs(friction - history.friction) > parameters_.same_friction * friction) history = {};
-  const std::vector<ObservedRatio>& ratios = work.samples.ratios();
-  if (!clear || ratios.empty()) return history.stayed;
-  double mean = 0;
-  for (const ObservedRatio& pillar : ratios)
-    mean += pillar.ratio / static_cast<double>(ratios.size());
-  if (history.friction == 0) {
-    history = {friction, mean, false};
-  } else if (std::abs(mean / history.mean_ratio - 1) > parameters_.other_load) {
-    history.stayed = true;
+/// True if nearly all pillars share the friction as their ratio in directions apart, or on the way
+/// of half the contact's length. Sticking, only a face or a body pressed obliquely has one ratio,
+/// in one direction and at one place.
+bool FrictionEstimator::slides(std::uint32_t contact, const FrictionPosterior::Summary& now,
+                               const ContactSamples& samples, History& history) const {
+  const double log_friction = std::log(now.median);
+  const bool one_ratio = now.spread <= parameters_.clear_spread &&
+                         samples.load_ratio() >= parameters_.sliding_load * now.median;
+  if (!one_ratio ||
+      std::abs(log_friction - history.log_friction_then) > parameters_.same_friction) {
+    history.log_friction_then = log_friction;
+    history.travel = {};
+  } else {
+    history.travel.rows += movements_[contact].rows;
+    history.travel.cols += movements_[contact].cols;
   }
-  return history.stayed;
+  if (!one_ratio) return false;
+  return samples.alignment() < parameters_.apart ||
+         std::hypot(history.travel.rows, history.travel.cols) > samples.box().scale();
 }
 
 /// The friction to report, and its source.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
-                                            const FrictionCurve& log_likelihood, Workspace& work) {
-  constexpr double kOneInTwenty = 0.05;
+                                            const FrictionCurve& log_likelihood,
+                                            const ContactSamples& samples) {
   const auto [median, spread] = beliefs_[contact].estimate.summary();
-  ContactFriction friction{median, spread, FrictionSource::prior,
-                           beliefs_[contact].cautious.quantile(kOneInTwenty)};
+  ContactFriction friction{
+      median, spread, FrictionSource::prior,
+      parameters_.bound_factor * beliefs_[contact].cautious.quantile(kOneInTwenty)};
   if (given_) {
     friction.median = *given_;
     friction.source = FrictionSource::given;
     return friction;
   }
-  if (friction.spread > parameters_.reported_spread) return friction;
+  if (friction.least > prior_least_) friction.source = FrictionSource::at_least;
+  History& history = histories_[contact];
+  history.most_ratio = std::max(history.most_ratio, samples.load_ratio());
+  if (spread > parameters_.reported_spread) return friction;
   FrictionPosterior alone = prior_.estimate;
   alone.update(log_likelihood);
   const FrictionPosterior::Summary now = alone.summary();
-  const bool agrees = std::abs(now.median / friction.median - 1) <= parameters_.same_friction;
-  const bool clear = agrees && now.spread <= parameters_.clear_spread;
-  const bool certain = stays(friction.median, clear, work, histories_[contact]);
-  if (!certain && may_stick(friction.median, work)) return friction;
-  const bool observed = agrees && now.spread <= parameters_.reported_spread;
-  friction.spread =
-      std::hypot(parameters_.stated_over_spread * friction.spread,
-                 friction_scatter(work.samples.ratios(), friction.median, parameters_));
+  const bool stayed = stays(median, now, samples.load_ratio(), history);
+  const bool slid = slides(contact, now, samples, history);
+  if (stayed || slid) history.friction = median;
+  if (!history.friction || std::abs(median / *history.friction - 1) > parameters_.other_friction) {
+    return friction;
+  }
+  friction.median = *history.friction;
+  friction.spread = std::hypot(parameters_.stated_over_spread * spread,
+                               friction_scatter(samples.ratios(), friction.median, parameters_));
+  const bool observed = now.spread <= parameters_.reported_spread &&
+                        std::abs(now.median / friction.median - 1) <= parameters_.same_friction;
   friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
 }

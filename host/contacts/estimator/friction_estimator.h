@@ -13,6 +13,7 @@
 #include "contacts/estimator/friction_posterior.h"
 #include "contacts/estimator/past_pressure.h"
 #include "contacts/estimator/pressure_regression.h"
+#include "contacts/fading_line.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/friction.h"
@@ -76,23 +77,30 @@ class FrictionEstimator {
     std::vector<ObservedRatio> predicted;
   };
 
-  /// Evidence that a contact's friction does not change with its load.
+  /// Evidence that a contact's friction does not grow with its load (section 5).
   struct History {
-    double friction = 0;
-    double mean_ratio = 0;  ///< of its pillars when `friction` was first observed
-    bool stayed = false;    ///< `friction` stayed while the mean ratio changed
+    FadingLine growth;      ///< logarithm of a frame's friction over that of its load ratio
+    double most_ratio = 0;  ///< largest load ratio so far
+    double log_ratio = 0;   ///< the newest point of `growth`
+    double log_friction = 0;
+    PastPressure::Movement travel;  ///< since a frame first showed `log_friction_then`
+    double log_friction_then = 0;
+    std::optional<double> friction;  ///< the last one shown
   };
 
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
-  [[nodiscard]] bool may_stick(double friction, Workspace& work) const;
-  bool stays(double friction, bool clear, const Workspace& work, History& history) const;
+  [[nodiscard]] bool stays(double friction, const FrictionPosterior::Summary& now,
+                           double load_ratio, History& history) const;
+  [[nodiscard]] bool slides(std::uint32_t contact, const FrictionPosterior::Summary& now,
+                            const ContactSamples& samples, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
-                                         Workspace& work);
+                                         const ContactSamples& samples);
 
   Sensor sensor_;
   ContactParameters parameters_;
   FrictionLikelihood likelihood_;
   FrictionBelief prior_;
+  double prior_least_;  ///< the friction that the cautious prior exceeds in 19 of 20 cases
   std::optional<double> given_;
   bool carries_over_;
   ContactSnapshot snapshot_;

@@ -75,11 +75,11 @@ struct ContactQuantities {
   /// Sum over the pillars on their poses; set with ContactOptions::surface.
   std::optional<Wrench> wrench;
 
-  /// Friction coefficient. Set if it was given, or if the posterior's logarithm has a standard
-  /// deviation of at most 0.2 and the contact cannot be a flat face that sticks
-  /// (docs/derivations/contact.md, section 5).
+  /// Friction coefficient: ratio of shear to normal force at which the contact slides as a whole.
+  /// Set if it was given, or once it stayed while the load rose (docs/derivations/contact.md,
+  /// section 5); with the source at_least a lower bound, which holds in 19 of 20 cases.
   std::optional<double> friction;
-  std::optional<double> friction_deviation;  ///< its standard deviation; set with it
+  std::optional<double> friction_deviation;  ///< its standard deviation; unset for a lower bound
   FrictionSource friction_source = FrictionSource::prior;
   SlipState slip = SlipState::unknown;
   /// Slipping fraction of the normal force, [0, 1]: of the unambiguous pillars, the part carried by
@@ -88,11 +88,11 @@ struct ContactQuantities {
   std::optional<double> slipping_share;
   /// Slip margin, 1 − |shear| / (friction · normal) of the sums: the reserve before the whole
   /// contact slides in a straight line. A spin, whose shear cancels, does not lower it. Unset
-  /// without friction, or if normal_n is not above zero.
+  /// without friction_deviation, or if normal_n is not above zero.
   std::optional<double> slip_margin;
-  /// Set with a friction: of a contact that slides, time 0 and probability 1; of one that spins,
-  /// whose slip margin stays above 0.5 while it slides, unset; else from the fourth frame of a
-  /// track on.
+  /// Set with friction_deviation: of a contact that slides, time 0 and probability 1; of one that
+  /// spins, whose slip margin stays above 0.5 while it slides, unset; else from the fourth frame of
+  /// a track on.
   std::optional<SlipForecast> slip_forecast;
 };
 

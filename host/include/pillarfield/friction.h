@@ -29,9 +29,10 @@ enum class FrictionSource : std::uint8_t {
   given,         ///< FrictionKnowledge::given
   observed,      ///< the pillars of this frame
   carried_over,  ///< the pillars of earlier frames
+  at_least,      ///< the pillars, which stick or may stick: a lower bound
 };
 
-/// "prior", "given", "observed", "carried_over".
+/// "prior", "given", "observed", "carried_over", "at_least".
 [[nodiscard]] const char* name_of(FrictionSource source);
 
 /// The estimated friction coefficient of a contact, log-normal.
@@ -39,7 +40,7 @@ struct ContactFriction {
   double median = 0;
   double spread = 0;  ///< standard deviation of the logarithm
   FrictionSource source = FrictionSource::prior;
-  /// The friction is at least this in 19 of 20 cases.
+  /// The friction is at least this in 19 of 20 cases: the report of FrictionSource::at_least.
   double least = 0;
 };
 

@@ -135,8 +135,9 @@ enum PillarfieldSlip {
 enum PillarfieldFrictionSource {
   PILLARFIELD_FRICTION_UNKNOWN = 0,
   PILLARFIELD_FRICTION_GIVEN = 1,
-  PILLARFIELD_FRICTION_OBSERVED = 2,    /* by the pillars of this frame */
-  PILLARFIELD_FRICTION_CARRIED_OVER = 3 /* from earlier frames */
+  PILLARFIELD_FRICTION_OBSERVED = 2,     /* by the pillars of this frame */
+  PILLARFIELD_FRICTION_CARRIED_OVER = 3, /* from earlier frames */
+  PILLARFIELD_FRICTION_AT_LEAST = 4      /* a lower bound, in 19 of 20 cases */
 };
 
 /* Forces act on the skin: x right, y up, normal positive under pressure. Places are in mm from the

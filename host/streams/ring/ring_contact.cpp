@@ -88,7 +88,8 @@ static_assert(static_cast<int>(SlipState::sticking) == PILLARFIELD_STICKING &&
               static_cast<int>(SlipState::sliding) == PILLARFIELD_SLIDING);
 static_assert(static_cast<int>(FrictionSource::given) == PILLARFIELD_FRICTION_GIVEN &&
               static_cast<int>(FrictionSource::observed) == PILLARFIELD_FRICTION_OBSERVED &&
-              static_cast<int>(FrictionSource::carried_over) == PILLARFIELD_FRICTION_CARRIED_OVER);
+              static_cast<int>(FrictionSource::carried_over) == PILLARFIELD_FRICTION_CARRIED_OVER &&
+              static_cast<int>(FrictionSource::at_least) == PILLARFIELD_FRICTION_AT_LEAST);
 
 }  // namespace
 

@@ -160,7 +160,9 @@ std::string format_quantity(const QuantityColumn& column, const ContactQuantitie
                             const PressureUnit& unit) {
   const double value = column.get(contact) / (is_pressure(column) ? unit.kpa : 1);
   if (column.kind == ColumnKind::word) return value == 0 ? "–" : column.word(value);
-  return three_digits(value);
+  const bool is_bound = std::string_view(column.name) == "friction" && contact.friction &&
+                        contact.friction_source == FrictionSource::at_least;
+  return (is_bound ? "≥ " : "") + three_digits(value);
 }
 
 }  // namespace pillarfield::viewer
