@@ -149,6 +149,7 @@ SolverPlan bare_plan(std::uint32_t pillars_a_side, SenselType type) {
   plan.skin.rows = 2 * pillars_a_side;
   plan.skin.cols = 2 * pillars_a_side;
   plan.sensel_type = type;
+  plan.estimator = Estimator::direct;
   return plan;
 }
 

@@ -16,7 +16,6 @@ int main(int argc, char** argv) try {
   plan.skin = recording->skin();
   plan.sensel_type = recording->sensel_type();
   plan.calibration = recording->calibration();
-  plan.estimator = pf::Estimator::contact;  // estimates friction, and from it ambiguous pillars
   pf::Processor processor(pf::open_device(), plan);
 
   pf::ContactOptions options;

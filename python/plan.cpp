@@ -39,7 +39,7 @@ sensel_type: 'uint8', 'uint16' or 'float32'
 calibration: Calibration, or the path of its file
 scene: Scene, or the path of its file; its constants and options replace those of skin
 layout: 'pillars' or 'sensels'; replaces that of skin and calibration
-estimator: 'direct', 'paper' or 'contact'
+estimator: 'contact', 'direct' or 'paper'; None: 'contact', without pillars 'direct'
 outputs: of 'angles' and 'uncertainty', beside the forces, and 'pressure', which files of them then hold
 friction: friction coefficient if it is known to 3 %, 0.1..9.9
 friction_bound: its upper bound, 0.1..100
@@ -205,7 +205,7 @@ auto values_of(const auto& references) {
 py::tuple plan_state(const SolverPlan& plan) {
   SkinCalibration calibration = blank_calibration(plan.skin);
   calibration.planes = plan.calibration;
-  return py::make_tuple(kVersion, plan.skin, name_of(plan.sensel_type), name_of(plan.estimator),
+  return py::make_tuple(kVersion, plan.skin, name_of(plan.sensel_type), name_of(estimator_of(plan)),
                         calibration, values_of(scalars_of(plan)));
 }
 
@@ -223,7 +223,7 @@ SolverPlan plan_from(const py::tuple& state) {
 
 std::string plan_text(const SolverPlan& plan) {
   return fmt::format("<Plan {} x {} {}, estimator '{}'{}{}>", plan.skin.rows, plan.skin.cols,
-                     name_of(plan.sensel_type), name_of(plan.estimator),
+                     name_of(plan.sensel_type), name_of(estimator_of(plan)),
                      plan.angles ? ", angles" : "", plan.uncertainty ? ", uncertainty" : "");
 }
 
@@ -240,7 +240,7 @@ void bind_plan(py::module_& module) {
           "'uint8', 'uint16' or 'float32'")
       .def_readonly("frame_interval_s", &SolverPlan::frame_interval_s, "s")
       .def_property_readonly(
-          "estimator", [](const SolverPlan& plan) { return name_of(plan.estimator); },
+          "estimator", [](const SolverPlan& plan) { return name_of(estimator_of(plan)); },
           "'direct', 'paper' or 'contact'")
       .def_property_readonly(
           "stages", [](const SolverPlan& plan) { return kernel_stages(plan); },

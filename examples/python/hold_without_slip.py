@@ -25,7 +25,7 @@ def sense(grip_n: float, weight_n: float, index: int) -> pf.Simulation:
 
 grip_n, margins = 10.0, []
 first = sense(grip_n, 2.0, 0)
-plan = pf.Plan(first.skin, scene=first.scene, estimator="contact")
+plan = pf.Plan(first.skin, scene=first.scene)
 with pf.Processor(plan, contacts=True) as processor:
     for index in range(80):
         weight_n = 2.0 + 0.1 * index

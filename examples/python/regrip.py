@@ -23,7 +23,7 @@ def sense(grip_n: float, load_n: float, index: int) -> pf.Simulation:
 
 grip_n, leads_s, least_s = 5.0, [], float("inf")
 first = sense(grip_n, 2.0, 0)
-plan = pf.Plan(first.skin, scene=first.scene, estimator="contact")
+plan = pf.Plan(first.skin, scene=first.scene)
 with pf.Processor(plan, contacts=True) as processor:
     for index in range(RATE_HZ * SECONDS):
         load_n = 2.0 + GROWTH_N_PER_S * index / RATE_HZ

@@ -102,7 +102,7 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
                 const SolveSummary& summary, const FrameSource& source) {
   nlohmann::ordered_json json = {{"input", options.input},
                                  {"output", options.output},
-                                 {"estimator", name_of(plan.estimator)},
+                                 {"estimator", name_of(estimator_of(plan))},
                                  {"device", device.info().name},
                                  {"zero_copy", device.info().shares_memory},
                                  {"stages", kernel_stages(plan)},
@@ -162,7 +162,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
     fmt::print("No sensel: {} of the {} {} of a frame\n", grouped(absent),
                grouped(plan.skin.elements()), name);
   }
-  if (plan.estimator == Estimator::contact) {
+  if (estimator_of(plan) == Estimator::contact) {
     fmt::print("Resolved by the friction of their contacts: {} of {} pillars of region 3\n",
                grouped(regions.resolved), grouped(regions.of(Region::three)));
   }

@@ -8,7 +8,7 @@ ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
   check(plan, "solve_on_host");
   check(frame, plan.skin, plan.sensel_type, "solve_on_host");
   ForceField field = solve_in_lanes(plan, frame);
-  if (plan.estimator == Estimator::contact) ContactEstimator(plan).resolve(field);
+  if (estimator_of(plan) == Estimator::contact) ContactEstimator(plan).resolve(field);
   return field;
 }
 

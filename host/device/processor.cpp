@@ -178,7 +178,7 @@ struct Processor::State {
       curvature.emplace(wanted);
     }
     if (wanted.baseline_rate) drift.emplace(wanted);
-    if (wanted.estimator == Estimator::contact) {
+    if (estimator_of(wanted) == Estimator::contact) {
       contacts.emplace(wanted, threads_beside(device.state()));
     }
   }

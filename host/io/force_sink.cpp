@@ -132,7 +132,7 @@ ForceFileInfo file_info(const SolverPlan& plan, const std::string& device,
   info.rows = plan.skin.element_rows();
   info.cols = plan.skin.element_cols();
   info.element_pitch_mm = plan.skin.element_pitch_mm();
-  info.estimator = name_of(plan.estimator);
+  info.estimator = name_of(estimator_of(plan));
   if (plan.skin.has_pillars() && plan.estimator != Estimator::paper)
     info.segment_point = plan.segment_point;
   info.device = device;

@@ -44,7 +44,7 @@ class RangeSink final : public ForceSink {
 }  // namespace
 
 std::uint64_t warm_up_frames(const SolverPlan& plan, bool contacts) {
-  const bool carries_friction = plan.estimator == Estimator::contact && plan.friction.memory;
+  const bool carries_friction = estimator_of(plan) == Estimator::contact && plan.friction.memory;
   if (!contacts && !carries_friction && !has_memory_on_device(plan)) return 0;
   constexpr double kTimeConstants = 3;
   constexpr double kLeastSeconds = 3;

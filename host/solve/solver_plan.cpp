@@ -73,7 +73,7 @@ void check_layout(const SolverPlan& plan, std::string_view where) {
     throw Error(where, fmt::format("the skin has no pillars, but the plan has {}", what),
                 "leave it out, or give the skin the layout pillars");
   };
-  refuse(plan.estimator != Estimator::direct,
+  refuse(estimator_of(plan) != Estimator::direct,
          plan.estimator == Estimator::paper ? "the paper's estimator" : "the estimator contact");
   refuse(plan.parity_tolerance_counts.has_value(), "a parity test");
   const FrictionKnowledge& friction = plan.friction;
@@ -131,6 +131,10 @@ const char* name_of(Estimator estimator) {
       break;
   }
   return "contact";
+}
+
+Estimator estimator_of(const SolverPlan& plan) {
+  return plan.estimator.value_or(plan.skin.has_pillars() ? Estimator::contact : Estimator::direct);
 }
 
 void check(const SolverPlan& plan, std::string_view where) {

@@ -37,7 +37,7 @@
   X(lean, PF_LEAN, frame, false, effects.arm_mm.has_value())                                       \
   X(shear_ratio, none, frame, false, effects.arm_mm.has_value())                                   \
   X(follow_baseline, PF_BASELINE, frame, true, plan.baseline_rate.has_value())                     \
-  X(estimate_contacts, none, host, true, plan.estimator == Estimator::contact)
+  X(estimate_contacts, none, host, true, estimator_of(plan) == Estimator::contact)
 
 /* Constants of the stages. X(name, needed, kind, value):
  *   needed  by the stages `is`

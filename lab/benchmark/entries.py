@@ -1,26 +1,36 @@
 """Entries of the open benchmark, as score.py runs them (docs/histories.md):
 
-f(readings [T, R, C], counts_per_newton, threshold_counts) -> forces [T, 3, P, Q], N, and slip [T] or None."""
+f(readings [T, R, C], counts_per_newton, threshold_counts, rate_hz) -> forces [T, 3, P, Q], N, and a dictionary of what is
+reported of each frame, score.REPORTS."""
 
 import functools
 
 import numpy as np
 
 import generate
-from score import regions, sensels
+from score import REPORTS, regions, sensels
 
-def product(estimator, readings, k, threshold, contacts=False):
+def product(estimator, readings, k, threshold, rate_hz, contacts=False):
     import pillarfield
-    skin = pillarfield.Skin(*readings.shape[1:], counts_per_newton=k, threshold_counts=threshold, full_scale_counts=255)
-    found = pillarfield.solve(readings, skin=skin, rate_hz=generate.RATE_HZ, noise_counts=generate.NOISE,
+    skin = pillarfield.Skin(*readings.shape[1:], layout="pillars", counts_per_newton=k,
+                            threshold_counts=threshold, full_scale_counts=255)
+    found = pillarfield.solve(readings, skin=skin, rate_hz=rate_hz, noise_counts=generate.NOISE,
                               estimator=estimator, contacts=contacts)
+    reports = [reports_of(list(found[t].contacts)) for t in range(len(found))] if contacts else []
     return (np.stack([found.shear_x, found.shear_y, found.normal], 1),
-            [slip_of(found[t].contacts) for t in range(len(found))] if contacts else None)
+            dict(zip(REPORTS, np.transpose(np.array(reports, float)))) if contacts else {})
 
 
 direct = functools.partial(product, "direct")
 paper = functools.partial(product, "paper")
 contact = functools.partial(product, "contact", contacts=True)
+
+
+def reports_of(contacts):
+    """The slip of all contacts, and the friction and the time to slip of the heaviest."""
+    one = max(contacts, key=lambda each: each.normal_n, default=None)
+    return slip_of(contacts), *(getattr(one, name, None) for name in (
+        "friction", "friction_deviation", "time_to_slip_s", "time_to_slip_low_s", "time_to_slip_high_s"))
 
 
 def slip_of(contacts):
@@ -49,7 +59,7 @@ def forces_of(v, k, threshold, diagonal):
     return np.stack([(v1 + v4 - v2 - v3) / 8**0.5, (v1 + v2 - v3 - v4) / 8**0.5, (v1 + v2 + v3 + v4) / 4], 1)
 
 
-def penalty(readings, k, threshold, friction=2.0, weight=1.0, steps=100):
+def penalty(readings, k, threshold, _rate_hz=None, friction=2.0, weight=1.0, steps=100):
     """Least sum over neighbours (N_i - N_j)^2 + weight * sum max(0, |s| - friction N)^2 on the segments, by projected
     gradients (shear towards usable sensels falls by sqrt(2) times the diagonal). Constants: a grid's best in training()."""
     v = sensels(readings.astype(float))
@@ -63,7 +73,7 @@ def penalty(readings, k, threshold, friction=2.0, weight=1.0, steps=100):
         slope = 2**0.5 * np.maximum(abs(x), abs(y)) / np.maximum(shear, 1e-9) + friction
         slope = around - weight * np.maximum(shear - friction * n, 0) * slope
         diagonal = np.clip(diagonal - slope / (8 + weight * (2**0.5 + friction)**2), 0, length)
-    return forces_of(v, k, threshold, diagonal), None
+    return forces_of(v, k, threshold, diagonal), {}
 
 
 def patches(readings, threshold):
@@ -85,7 +95,7 @@ def training(seed, number):
     for index in range(number):
         friction, size = np.exp(rng.uniform(np.log((0.7, 1.5)), np.log((4.5, 12))))
         degrees, shape = rng.uniform((0, 0.8), (360, 1.25))
-        frames = generate.drag_and_slide((28, 28), size, friction, degrees, (shape, 1 / shape), rng.uniform(-0.5, 0.5, 2),
+        frames = generate.drag_and_slide(*generate.cells(28, 28), size, friction, degrees, (shape, 1 / shape), rng.uniform(-0.5, 0.5, 2),
                                          (0, 0.3, 0.6, 0.9), [(turn, 1) for turn in (0, *rng.uniform(-90, 90, 2))])
         yield generate.history(frames, friction, (seed, index))
 
@@ -108,9 +118,9 @@ def trained(hidden=600, ridge=3.0):
     return lambda features: np.clip(lifted(features) @ output, 0, 1)
 
 
-def learnt(readings, k, threshold):
+def learnt(readings, k, threshold, _rate_hz=None):
     v = sensels(readings.astype(float))
     diagonal = lengths(v, threshold)
     places, features = patches(readings, threshold)
     diagonal[places] *= trained()(features)
-    return forces_of(v, k, threshold, diagonal), None
+    return forces_of(v, k, threshold, diagonal), {}

@@ -101,7 +101,7 @@ def judge(program, path, truth):
     """Sum of squared errors, counts, of pillars with three or four usable sensels, their number,
     and how many truths lie in the stated 95 % in x and in y."""
     out = path.with_suffix(".forces.h5")
-    run(program, "solve", path, "-o", out, "--noise", NOISE_COUNTS, "--outputs",
+    run(program, "solve", path, "-o", out, "--estimator", "direct", "--noise", NOISE_COUNTS, "--outputs",
         "forces,uncertainty")
     with h5py.File(out) as file:
         status = file["force/status"][:]

@@ -74,6 +74,7 @@ SolverPlan plan_for(const Simulator& simulator) {
   plan.sensel_type = simulator.sensel_type();
   plan.calibration = simulator.calibration();
   set_solver(plan, scene);
+  plan.estimator = Estimator::direct;
   return plan;
 }
 

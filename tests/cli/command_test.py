@@ -141,7 +141,7 @@ class Work(CommandTest):
         self.assertEqual((facts["frames"], facts["truth"], facts["sensel_type"]), (6, True, "uint8"))
         facts = run_json("info", self.forces)
         self.assertEqual((facts["frames"], facts["estimator"], facts["source"]),
-                         (6, "direct", "ball.h5"))
+                         (6, "contact", "ball.h5"))
         self.assertEqual(run_json("info", self.scene)["title"], "A ball")
         run("simulate", SCENES / "touch/curved_skin.toml", "-o", self.recording, "--frames", 1, "--overwrite")
         facts = run_json("info", self.recording)

@@ -98,7 +98,7 @@ class Contacts(CommandTest):
 
     def test_friction_options_apply_to_contacts_of_direct_forces(self):
         def first(*known):
-            self.solve("--contacts", self.csv, *known)
+            self.solve("--estimator", "direct", "--contacts", self.csv, *known)
             return [(row["friction"], row["friction_source"], row["friction_deviation"])
                     for row in self.rows() if row["id"] == "1" and row["row"] == "contact"]
 

@@ -25,6 +25,7 @@ class SolvedScene {
     plan_.sensel_type = simulator_.sensel_type();
     plan_.calibration = simulator_.calibration();
     set_solver(plan_, scene());
+    plan_.estimator = Estimator::direct;
     plan_.angles = false;
     plan_.uncertainty = false;
   }

@@ -83,6 +83,7 @@ SolverPlan bare_plan(std::uint32_t rows, std::uint32_t cols, SenselType type) {
   plan.skin.rows = rows;
   plan.skin.cols = cols;
   plan.sensel_type = type;
+  plan.estimator = Estimator::direct;
   return plan;
 }
 

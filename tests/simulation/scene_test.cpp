@@ -181,7 +181,7 @@ TEST(Scene, WhatIsNotListedIsAbsent) {
   EXPECT_FALSE(scene.skin.full_scale_counts);
   EXPECT_FALSE(scene.sensor.adc_bits);
   EXPECT_FALSE(scene.parity_tolerance_counts);
-  EXPECT_EQ(scene.estimator, Estimator::direct);
+  EXPECT_FALSE(scene.estimator);
   EXPECT_FALSE(scene.angles);
   EXPECT_FALSE(scene.uncertainty);
   EXPECT_EQ(scene.skin.counts_per_newton, 320);

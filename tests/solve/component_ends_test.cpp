@@ -28,6 +28,7 @@ ForceField solved(const std::array<float, 4>& readings, SolverPlan& plan) {
   plan.skin.counts_per_newton = 100;
   plan.skin.threshold_counts = 2;
   plan.sensel_type = SenselType::f32;
+  plan.estimator = Estimator::direct;
   plan.noise_counts = 0.5;
   plan.uncertainty = true;
   FrameBuffer raw(SenselType::f32, 2, 2);

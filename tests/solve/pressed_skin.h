@@ -61,6 +61,7 @@ inline SolverPlan pressed_plan(std::uint32_t pillar_rows, std::uint32_t pillar_c
   plan.skin.counts_per_newton = kPressedCountsPerNewton;
   plan.skin.threshold_counts = 0.5;
   plan.sensel_type = SenselType::f32;
+  plan.estimator = Estimator::direct;
   plan.calibration.effects = effects;
   return plan;
 }

@@ -78,11 +78,6 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   if (scene.baseline_time_s) {
     info.notes.emplace_back("The baseline is fixed: frames are solved in any order.");
   }
-  if (carries_prior(scene.estimator, scene.friction)) {
-    info.notes.emplace_back(
-        "Played frames carry friction over from the frame before; a frame that is jumped to is "
-        "solved alone.");
-  }
   SolverPlan plan;
   plan.skin = scene.skin;
   plan.sensel_type = simulator->sensel_type();

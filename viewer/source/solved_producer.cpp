@@ -18,11 +18,12 @@ struct FieldMemoryOwner {
       readings;  ///< released first: a free slot implies a free frame
 };
 
-}  // namespace
-
-bool carries_prior(Estimator estimator, const FrictionKnowledge& friction) {
-  return estimator == Estimator::contact && friction.memory;
+/// True if a frame uses the friction carried over from the frame before.
+bool carries_prior(const SolverPlan& plan) {
+  return estimator_of(plan) == Estimator::contact && plan.friction.memory;
 }
+
+}  // namespace
 
 SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
@@ -40,7 +41,7 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_uncertainty = plan.uncertainty;
   set_sensor(info.contacts, plan);
   info.solver =
-      solver_words(plan.skin.layout, name_of(plan.estimator), processor.device().info().name);
+      solver_words(plan.skin.layout, name_of(estimator_of(plan)), processor.device().info().name);
 }
 
 SolvedProducer::SolvedProducer(SourceInfo info, std::shared_ptr<FrameProvider> provider,
@@ -48,7 +49,7 @@ SolvedProducer::SolvedProducer(SourceInfo info, std::shared_ptr<FrameProvider> p
     : info_(std::move(info)), provider_(std::move(provider)), processor_(std::move(processor)) {
   info_.frames = provider_->frames();
   if (plan.estimator == Estimator::direct) direct_point_ = plan.segment_point;
-  if (!carries_prior(plan.estimator, plan.friction)) return;
+  if (!carries_prior(plan)) return;
   idle_frame_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
 

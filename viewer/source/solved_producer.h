@@ -45,9 +45,6 @@ class FrameProvider {
                                                              std::unique_ptr<FrameSource> source,
                                                              ReadOptions options);
 
-/// True if a frame uses the friction carried over from the frame before.
-[[nodiscard]] bool carries_prior(Estimator estimator, const FrictionKnowledge& friction);
-
 /// The plan extended for display: with angles, and with uncertainty where the noise is known and
 /// the estimator supports it; with a fixed baseline.
 [[nodiscard]] SolverPlan shown_plan(SolverPlan plan);

@@ -83,7 +83,7 @@ void add_solve(CLI::App& parent, Work& work) {
       "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
       "  pillarfield solve demo.h5 -o forces.h5\n"
       "  pillarfield solve demo.h5 -o forces.npy --outputs angles,uncertainty --noise 0.5\n"
-      "  pillarfield solve demo.h5 -o forces.h5 --estimator contact --contacts contacts.csv\n");
+      "  pillarfield solve demo.h5 -o forces.h5 --contacts contacts.csv\n");
   Group input(command, "Input");
   input
       .text("INPUT", options->inputs, "FILE",

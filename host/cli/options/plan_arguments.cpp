@@ -51,8 +51,9 @@ void add_solver(CLI::App* command, PlanOptions& plan) {
   solver.choice<Estimator>(
       "--estimator", settings.estimator,
       {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"contact", Estimator::contact}},
-      "direct: each pillar from its own readings; paper: the paper's equations; contact: "
-      "ambiguous pillars from the friction of their contact [direct]");
+      "contact: ambiguous pillars from the friction of their contact, in earlier frames too; "
+      "direct: each pillar from its own readings; paper: the paper's equations "
+      "[contact; without pillars direct]");
   solver
       .text(
           "--outputs", settings.outputs, "WORDS",

@@ -22,7 +22,9 @@
 ///   zone, mask, noise. take_tare(), equilibrate(), calibrate_load() and FaultFinder measure them
 ///   step by step into a SkinCalibration; apply() puts that into a plan.
 /// - FrameView, FrameBuffer: one frame of readings, in your memory or in its own.
-/// - SolverPlan: the skin, its calibration, the estimator, and what to compute beside forces.
+/// - SolverPlan: the skin, its calibration, the estimator, and what to compute beside forces. The
+///   estimator `contact`, the default, remembers the friction of each contact, so that a frame
+///   depends on those before it; `direct` solves each frame alone.
 /// - Processor solves frames on an OpenCL device, several in flight. solve_on_host() solves one in
 ///   the calling thread, without OpenCL.
 /// - ForceFieldView: the result, a view into the processor. ForceField owns its memory.

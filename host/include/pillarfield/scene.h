@@ -88,7 +88,7 @@ struct Scene {
   std::uint64_t seed = 1;
   std::uint32_t recording = 0;  ///< number of this recording of the seed's sensor; sets its noise
   std::optional<double> parity_tolerance_counts;  ///< as in SolverPlan, like the next four members
-  Estimator estimator = Estimator::direct;
+  std::optional<Estimator> estimator;
   FrictionKnowledge friction;
   bool angles = false;
   bool uncertainty = false;

@@ -12,8 +12,8 @@ namespace pillarfield {
 
 /// The algorithm that estimates forces from readings.
 enum class Estimator : std::uint8_t {
-  direct,   ///< linear least squares; reaches the Cramér–Rao bound in regions 1 and 2
-            ///< (docs/derivations/direct_solve.md)
+  direct,  ///< linear least squares of each frame alone; reaches the Cramér–Rao bound in regions 1
+           ///< and 2 (docs/derivations/direct_solve.md)
   paper,    ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
   contact,  ///< direct, then ambiguous pillars from the estimated friction of their contact
             ///< (docs/derivations/contact.md)
@@ -37,7 +37,7 @@ struct SolverPlan {
   /// Standard deviation of a raw reading from frame to frame, counts, >= 0, without the rounding of
   /// the converter. Used for sensels without a noise plane. Unset: unknown.
   std::optional<double> noise_counts;
-  Estimator estimator = Estimator::direct;
+  std::optional<Estimator> estimator;  ///< unset: see estimator_of()
   /// Position of the force that Estimator::direct reports on the segment of a pillar with two
   /// adjacent usable sensels: a fraction, (0, 1], of the largest normal force on it. In simulated
   /// contacts of friction 1.6 and 2.2 the true force lies at 0.94 and 0.85, and the RMS error is 6
@@ -61,6 +61,10 @@ struct SolverPlan {
                              ///< sensels, and an estimator other than `paper`
   bool pressure = false;     ///< files of the forces hold the pressure too
 };
+
+/// The estimator of the plan. Unset, it is `contact` where the skin has pillars; sensels without
+/// pillars have only `direct`.
+[[nodiscard]] Estimator estimator_of(const SolverPlan& plan);
 
 /// Throws Error, naming `where`, if a member is out of range or two members exclude each other.
 void check(const SolverPlan& plan, std::string_view where);

@@ -177,7 +177,7 @@ void read_friction(TomlSection& section, FrictionKnowledge& friction) {
 void read_solver(TomlSection section, Scene& scene) {
   scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
   scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
-  scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
+  scene.estimator = read_name(section, "estimator", kEstimators);
   scene.angles = section.flag("angles").value_or(scene.angles);
   scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
   if (scene.uncertainty && scene.estimator == Estimator::paper) {
