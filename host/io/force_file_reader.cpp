@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"
@@ -15,6 +14,7 @@
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
 #include "io/stored_skin.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"

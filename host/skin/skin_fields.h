@@ -9,7 +9,6 @@
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/skin.h"
-#include "pillarfield/skin_calibration.h"
 
 namespace pillarfield {
 

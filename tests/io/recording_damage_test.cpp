@@ -83,6 +83,10 @@ const Damage kRecordingDamages[] = {
     {"chunks of 140 MB",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {11, 7, 10}, {2'000'000, 7, 10});
+       const std::vector<std::uint8_t> zeros(std::size_t{11} * 7 * 10);
+       const hid_t raw = H5Dopen2(f, "/frames/raw", H5P_DEFAULT);
+       H5Dwrite(raw, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data());
+       H5Dclose(raw);
      },
      {"/frames/raw", "2000000 x 7 x 10", "128 MiB", "smaller chunks"}},
     {"pitch NaN",

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/stored_frames.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
