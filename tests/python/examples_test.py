@@ -55,7 +55,7 @@ class Examples(unittest.TestCase):
         self.assertLess(number(r"RMS ([\d.]+) N", text), 0.002)
 
     def test_first_look(self):
-        """Each cell of the notebook runs, and shows what its last line is."""
+        """Each cell of the notebook runs, shows what its last line is, and keeps that for web pages."""
         book = json.loads((SOURCE / "examples/python/first_look.ipynb").read_text())
         self.assertEqual((book["nbformat"], {cell["cell_type"] for cell in book["cells"]}), (4, {"code", "markdown"}))
         os.environ["MPLBACKEND"] = "Agg"
@@ -64,6 +64,7 @@ class Examples(unittest.TestCase):
             source = "".join(cell["source"])
             if cell["cell_type"] == "markdown" or "matplotlib" in source and not importlib.util.find_spec("matplotlib"):
                 continue
+            self.assertTrue(cell["outputs"])
             *before, last = ast.parse(source).body
             exec(compile(ast.Module(before, []), "notebook", "exec"), names)
             shown.append(eval(compile(ast.Expression(last.value), "notebook", "eval"), names))
