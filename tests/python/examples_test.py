@@ -84,7 +84,7 @@ class Examples(unittest.TestCase):
         def ok():  # Called first when the node listens.
             if not streams:
                 streams.append(subprocess.Popen([os.environ["PILLARFIELD"], "stream", scene, "--frames", "20",
-                                                 "--to", f"udp:127.0.0.1:{port}", "--quiet"]))
+                                                 "--friction", "0.8", "--to", f"udp:127.0.0.1:{port}", "--quiet"]))
             return streams[0].poll() is None
 
         def publisher(_, name, __):
@@ -97,7 +97,7 @@ class Examples(unittest.TestCase):
         sys.modules["std_msgs"] = sys.modules["std_msgs.msg"] = types.SimpleNamespace(Float64=Message)
         exec(compile(node.replace("9871", port), "docs/ros2.md", "exec"), {})
 
-        forces = pf.solve(pf.simulate(scene))
+        forces = pf.solve(pf.simulate(scene), friction=0.8)
         points = forces.to_points()
         force = points.force_n.astype(float).sum(1)
         moment = np.cross(points.position_m, points.force_n).sum(1)
