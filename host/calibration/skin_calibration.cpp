@@ -10,6 +10,7 @@
 #include "base/quantile.h"
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
+#include "skin/skin_fields.h"
 #include "solve/sensor_corrections.h"
 
 namespace pillarfield {
@@ -99,11 +100,9 @@ void check(const SkinCalibration& calibration, std::string_view where) {
   if (calibration.power_law && !calibration.planes.effects.curve.empty()) {
     throw Error(where, "has a power law and a response curve", "remove one of them");
   }
-  if (!calibration.threshold_factor) return;
-  const double factor = *calibration.threshold_factor;
-  if (factor >= 0 && factor <= kMaxThresholdFactor) return;
-  throw Error(where, fmt::format("threshold_factor is {}", factor),
-              fmt::format("it must lie in [0, {}]", kMaxThresholdFactor));
+  if (calibration.threshold_factor) {
+    check_range(where, kThresholdFactor, *calibration.threshold_factor);
+  }
 }
 
 void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where) {

@@ -20,6 +20,7 @@
 #include "pillarfield/tuning.h"
 #include "pillarfield/version.h"
 #include "skin/effect_parameters.h"
+#include "skin/skin_fields.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -60,12 +61,9 @@ void print_facts(const Json& facts, bool json) {
 
 std::vector<std::string> plane_names(const Calibration& calibration) {
   std::vector<std::string> names;
-  if (!calibration.tare.empty()) names.emplace_back("tare");
-  if (!calibration.gain.empty()) names.emplace_back("gain");
-  if (!calibration.dead_zone.empty()) names.emplace_back("dead_zone");
-  if (!calibration.mask.empty()) names.emplace_back("mask");
-  if (!calibration.noise.empty()) names.emplace_back("noise");
-  if (!calibration.bend_x.empty()) names.insert(names.end(), {"bend_x", "bend_y", "bend_xy"});
+  visit_planes(calibration, [&](const PlaneField& field, const auto& plane) {
+    if (!plane.empty()) names.emplace_back(field.name);
+  });
   return names;
 }
 
@@ -81,10 +79,15 @@ void add_effects(Json& facts, const SensorEffects& effects) {
   }
 }
 
-void add_power_law(Json& facts, const std::optional<PowerLaw>& law) {
-  if (!law) return;
-  facts["power_law_exponent"] = law->exponent;
-  facts["power_law_reference_counts"] = law->reference_counts;
+/// Adds the constants of a Skin or SkinCalibration that are set.
+template <class Constants>
+void add_constants(Json& facts, const Constants& of) {
+  visit_constants(of, [&](const NumberField& field, const std::optional<double>& value) {
+    if (value) facts[field.name] = *value;
+  });
+  for (const auto& [field, member] : kPowerLawFields) {
+    if (of.power_law) facts[field.name] = (*of.power_law).*member;
+  }
 }
 
 void add_surface(Json& facts, const std::optional<Surface>& surface) {
@@ -109,10 +112,7 @@ void add_skin(Json& facts, const Skin& skin) {
     facts["pillar_cols"] = skin.pillar_cols();
   }
   facts["sensel_pitch_mm"] = pitch_json(skin.sensel_pitch_mm);
-  facts["counts_per_newton"] = skin.counts_per_newton;
-  facts["threshold_counts"] = skin.threshold_counts;
-  if (skin.full_scale_counts) facts["full_scale_counts"] = *skin.full_scale_counts;
-  add_power_law(facts, skin.power_law);
+  add_constants(facts, skin);
   add_surface(facts, skin.surface);
 }
 
@@ -172,13 +172,10 @@ Json facts_of_calibration(const std::string& file, const ReadOptions& read) {
                 {"planes", plane_names(calibration.planes)},
                 {"masked", count_masked(calibration.planes)},
                 {"absent", count_absent(calibration.planes)}};
-  const auto add = [&](const char* key, const std::optional<double>& value) {
-    if (value) facts[key] = *value;
-  };
-  add("threshold_counts", calibration.threshold_counts);
-  add("threshold_factor", calibration.threshold_factor);
-  add("counts_per_newton", calibration.counts_per_newton);
-  add_power_law(facts, calibration.power_law);
+  add_constants(facts, calibration);
+  if (calibration.threshold_factor) {
+    facts[kThresholdFactor.name] = *calibration.threshold_factor;
+  }
   add_effects(facts, calibration.planes.effects);
   facts["history"] = Json::array();
   for (const CalibrationStep& step : calibration.history) {

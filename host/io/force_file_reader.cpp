@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"
@@ -15,6 +14,7 @@
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
 #include "io/stored_skin.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -131,14 +131,14 @@ bool ContactTablesReader::has_rows_of(std::uint64_t index) const {
 
 void ContactTablesReader::read_options(const hdf5::File& file) {
   const hdf5::Handle group = hdf5::open_object(file, force_format::kContacts);
-  const auto minimum = hdf5::read_number(file, group.get(), force_format::kMinimumPillars);
+  const hdf5::Attributes attributes(file, group.get());
+  const auto minimum = attributes.number(force_format::kMinimumPillars);
   constexpr double kMaxExact = 0x1p53;
   if (minimum && *minimum >= 0 && *minimum <= kMaxExact) {
     options_.minimum_pillars = static_cast<std::uint64_t>(*minimum);
   }
-  options_.friction.given = hdf5::read_number(file, group.get(), force_format::kGivenFriction);
-  options_.reach_mm =
-      hdf5::read_number(file, group.get(), force_format::kReach).value_or(options_.reach_mm);
+  options_.friction.given = attributes.number(force_format::kGivenFriction);
+  options_.reach_mm = attributes.number(force_format::kReach).value_or(options_.reach_mm);
   check(options_, file.path.string());
 }
 
@@ -204,9 +204,6 @@ struct OpenForces {
 
   void open_planes(bool may_lack_chunks);
   void read_size(const std::vector<hsize_t>& shape);
-  void read_info();
-  [[nodiscard]] SkinLayout read_layout() const;
-  void read_surface_of_skin();
   void count_frames();
   void require_frame(std::uint64_t index) const;
 
@@ -241,10 +238,7 @@ void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const cha
 OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
   const int version = hdf5::require_format(file, force_format::kName, force_format::kVersion);
-  info.layout = read_layout();
-  info.angles = hdf5::exists(file, force_format::kMagnitude);
-  info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
-  info.pressure = hdf5::exists(file, force_format::kPressure);
+  read_planes_of(file, info);
   open_planes(version >= force_format::kSparseSince);
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
@@ -253,18 +247,8 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
     info.contacts = contacts->options();
   }
   read_size(status.shape());
-  read_info();
-  read_surface_of_skin();
-  info.first_frame = read_first_frame(file);
+  read_info(file, info, warnings);
   count_frames();
-}
-
-SkinLayout OpenForces::read_layout() const {
-  const auto name = hdf5::read_text(file, file.id.get(), force_format::kLayout);
-  if (!name) return SkinLayout::pillars;
-  if (const auto layout = layout_named(*name)) return *layout;
-  throw Error(file.path.string(), fmt::format("its layout is '{:.40}'", *name),
-              "it must be pillars or sensels");
 }
 
 void OpenForces::open_planes(bool may_lack_chunks) {
@@ -291,36 +275,6 @@ void OpenForces::read_size(const std::vector<hsize_t>& shape) {
   }
   info.rows = static_cast<std::uint32_t>(shape[0]);
   info.cols = static_cast<std::uint32_t>(shape[1]);
-}
-
-void OpenForces::read_info() {
-  const hid_t root = file.id.get();
-  info.estimator = hdf5::read_text(file, root, force_format::kEstimator).value_or("");
-  info.segment_point = hdf5::read_number(file, root, force_format::kSegmentPoint);
-  info.effects = read_effects(file, force_format::kEffects);
-  check(info.effects, file.path.string());
-  info.device = hdf5::read_text(file, root, force_format::kDevice).value_or("");
-  info.source = hdf5::read_text(file, root, force_format::kSource).value_or("");
-  const char* const pitch = force_format::pitch_of(info.layout);
-  const auto pitch_mm = read_pitch(file, root, pitch);
-  if (!pitch_mm) {
-    Skin usual;
-    usual.layout = info.layout;
-    info.element_pitch_mm = usual.element_pitch_mm();
-    warnings.push_back(fmt::format("The file has no {}; {:.6g} mm is assumed.", pitch,
-                                   info.element_pitch_mm.col_mm));
-    return;
-  }
-  if (!pitch_mm->is_positive()) {
-    throw Error(file.path.string(), fmt::format("{} is {}", pitch, text_of(*pitch_mm)),
-                "it must be above zero");
-  }
-  info.element_pitch_mm = *pitch_mm;
-}
-
-void OpenForces::read_surface_of_skin() {
-  info.surface = read_surface(file, {info.rows, info.cols, info.element_pitch_mm});
-  if (info.contacts) info.contacts->surface = info.surface;
 }
 
 void OpenForces::count_frames() {
@@ -396,13 +350,7 @@ FrameContacts ForceFileReader::read_contacts(std::uint64_t index) const {
 }
 
 bool is_force_file(const std::filesystem::path& path) {
-  const hdf5::QuietErrors quiet;
-  try {
-    const hdf5::File file = hdf5::open_to_read(InputFile(path), false);
-    return hdf5::read_text(file, file.id.get(), "format") == force_format::kName;
-  } catch (const Error&) {
-    return false;
-  }
+  return hdf5::format_of(path) == force_format::kName;
 }
 
 }  // namespace pillarfield

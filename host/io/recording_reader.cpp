@@ -45,6 +45,7 @@ class Recording final : public FileSource {
   std::optional<hdf5::StoredFrames> time_;  // unset: see assumed_time()
   std::vector<hdf5::StoredFrames> truth_;   // empty, or shear_x, shear_y, normal; normal alone
   bool is_other_layout_ = false;            // than the truth has
+  bool falls_as_stored_ = false;            // the file says that its readings were mirrored
 };
 
 void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
@@ -71,7 +72,7 @@ Recording::Recording(hdf5::File file, const ReadOptions& options)
   if (std::ranges::all_of(calibration_.noise, [](float noise) { return noise == 0; })) {
     calibration_.noise.clear();
   }
-  if (options.falling && !read_skin(file_).falling && !calibration_.tare.empty()) {
+  if (options.falling && !falls_as_stored_ && !calibration_.tare.empty()) {
     throw Error(path_.string(), "its tare is that of readings that rise under load",
                 "leave out --falling");
   }
@@ -139,12 +140,14 @@ void Recording::read_size() {
 }
 
 void Recording::take_skin(const ReadOptions& options) {
-  StoredSkin stored = read_skin(file_);
+  StoredSkin stored;
+  read_skin(file_, stored);
+  falls_as_stored_ = stored.falling;
   stored.layout = stored.layout.value_or(SkinLayout::pillars);
   take_constants(stored, options);
   is_other_layout_ = skin_.layout != stored.layout;
   skin_.surface = read_surface(file_, skin_.element_grid());
-  check(skin_, place(recording_format::kSkin).c_str());
+  check(skin_, place(kSkinGroup).c_str());
 }
 
 void Recording::open_truth() {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
 #include "io/hdf5/stored_frames.h"
@@ -25,6 +24,16 @@ std::filesystem::path checked(const std::filesystem::path& path, const Skin& ski
   check(calibration, skin, path.c_str(), type);
   if (options.flush_every == 0) throw Error(path.string(), "flush_every is 0", "flush every frame");
   return path;
+}
+
+hid_t stored_type_of(SenselType type) {
+  if (type == SenselType::u8) return H5T_STD_U8LE;
+  return type == SenselType::u16 ? H5T_STD_U16LE : H5T_IEEE_F32LE;
+}
+
+hid_t memory_type_of(SenselType type) {
+  if (type == SenselType::u8) return H5T_NATIVE_UINT8;
+  return type == SenselType::u16 ? H5T_NATIVE_UINT16 : H5T_NATIVE_FLOAT;
 }
 
 }  // namespace
@@ -73,13 +82,12 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
       part(path, OutputKind::recording, writer_options.replace),
       file(hdf5::create(part)),
       has_tare(!calibration.tare.empty()) {
-  hdf5::write_attribute(file, file.id.get(), "format", std::string(recording_format::kName));
-  hdf5::write_attribute(file, file.id.get(), "version",
-                        !skin.has_pillars() ? recording_format::kLayoutSince
+  const hdf5::Attributes root(file);
+  root.write("format", std::string(recording_format::kName));
+  root.write("version", !skin.has_pillars() ? recording_format::kLayoutSince
                         : options.truth     ? recording_format::kSparseTruthSince
                                             : 1);
-  write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
-                    skin.full_scale_counts, skin.power_law, skin.layout, skin.falling});
+  (void)write_skin(file, skin);
   write_planes(file, skin, calibration);
   if (skin.surface) write_surface(file, *skin.surface, skin.element_grid());
   create_datasets();
@@ -100,8 +108,7 @@ RecordingWriter::State::~State() {
 
 void RecordingWriter::State::create_datasets() {
   const hdf5::Handle group = hdf5::create_group(file, recording_format::kFrames);
-  raw = {
-      file, recording_format::kRaw, recording_format::stored_type_of(type), {skin.rows, skin.cols}};
+  raw = {file, recording_format::kRaw, stored_type_of(type), {skin.rows, skin.cols}};
   time = {file, recording_format::kTime, H5T_IEEE_F64LE, {}};
   if (options.missing) missing = {file, recording_format::kMissing, H5T_STD_U32LE, {}};
   if (!options.truth) return;
@@ -158,7 +165,7 @@ void RecordingWriter::State::put_truth(const ForceField& field) {
 void RecordingWriter::State::append(const FrameView& frame, double time_s, const ForceField* field,
                                     std::uint32_t missing_sensels) {
   check_frame(frame, time_s, field);
-  raw.put(frames, recording_format::memory_type_of(type), frame.data, frame.row_stride);
+  raw.put(frames, memory_type_of(type), frame.data, frame.row_stride);
   if (field != nullptr) put_truth(*field);
   time.put(frames, H5T_NATIVE_DOUBLE, &time_s);
   if (options.missing) missing.put(frames, H5T_NATIVE_UINT32, &missing_sensels);

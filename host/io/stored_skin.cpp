@@ -4,50 +4,42 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
-#include "io/hdf5/attribute.h"
-#include "io/hdf5/file.h"
 #include "io/hdf5/stored_frames.h"
-#include "io/recording_format.h"
 #include "pillarfield/error.h"
 #include "skin/effect_parameters.h"
+#include "skin/skin_fields.h"
 
 namespace pillarfield {
 namespace {
 
-/// A plane of floats: its name in the file and its member.
-struct FloatPlane {
-  const char* name;
-  std::vector<float> Calibration::*member;
-};
-constexpr FloatPlane kFloatPlanes[] = {{recording_format::kTare, &Calibration::tare},
-                                       {recording_format::kGain, &Calibration::gain},
-                                       {recording_format::kDeadZone, &Calibration::dead_zone},
-                                       {recording_format::kNoise, &Calibration::noise},
-                                       {recording_format::kBendX, &Calibration::bend_x},
-                                       {recording_format::kBendY, &Calibration::bend_y},
-                                       {recording_format::kBendXy, &Calibration::bend_xy}};
+constexpr const char* kPitch = "sensel_pitch_mm";
+constexpr const char* kLayout = "layout";
+constexpr const char* kFalling = "falling";  ///< 1: readings are mirrored
+constexpr const char* kCalibration = "/calibration";
+constexpr const char* kEffects = "/calibration/effects";
 
-std::optional<PowerLaw> read_power_law(const hdf5::File& file, hid_t skin) {
-  const auto exponent = hdf5::read_number(file, skin, recording_format::kExponent);
-  const auto reference_counts = hdf5::read_number(file, skin, recording_format::kReference);
-  if (!exponent && !reference_counts) return std::nullopt;
-  if (!exponent || !reference_counts) {
-    throw Error(fmt::format("{}: {}", file.path.string(), recording_format::kSkin),
-                fmt::format("has no attribute '{}'",
-                            exponent ? recording_format::kReference : recording_format::kExponent),
-                "a power law needs both attributes");
-  }
-  return PowerLaw{*exponent, *reference_counts};
+std::string path_of(const PlaneField& plane) {
+  return fmt::format("{}/{}", kCalibration, plane.name);
 }
 
-std::optional<SkinLayout> read_layout(const hdf5::File& file, hid_t object) {
-  const auto name = hdf5::read_text(file, object, recording_format::kLayout);
-  if (!name) return std::nullopt;
-  if (const auto layout = layout_named(*name)) return layout;
-  throw Error(file.path.string(), fmt::format("its layout is '{:.40}'", *name),
-              "it must be pillars or sensels");
+std::optional<PowerLaw> read_power_law(const hdf5::File& file, const hdf5::Attributes& skin) {
+  std::optional<PowerLaw> law;
+  const char* missing = nullptr;
+  for (const auto& [field, member] : kPowerLawFields) {
+    const auto value = skin.number(field.name);
+    if (!value) {
+      missing = field.name;
+      continue;
+    }
+    if (!law) law.emplace();
+    (*law).*member = *value;
+  }
+  if (!law || missing == nullptr) return law;
+  throw Error(fmt::format("{}: {}", file.path.string(), kSkinGroup),
+              fmt::format("has no attribute '{}'", missing), "a power law needs both attributes");
 }
 
 /// Converts a mask, which a file may store in any number type.
@@ -66,125 +58,127 @@ std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& s
   return mask;
 }
 
+void write(const hdf5::File& file, const std::string& name, const Skin& skin,
+           const std::vector<float>& plane) {
+  if (plane.empty()) return;
+  hdf5::write_plane(file, name.c_str(), H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, skin.rows, skin.cols,
+                    plane.data());
+}
+
+void write(const hdf5::File& file, const std::string& name, const Skin& skin,
+           const std::vector<std::uint8_t>& mask) {
+  if (mask.empty()) return;
+  hdf5::write_plane(file, name.c_str(), H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows, skin.cols,
+                    mask.data());
+}
+
 }  // namespace
+
+std::optional<SkinLayout> read_layout(const hdf5::Attributes& attributes, const hdf5::File& file) {
+  const auto name = attributes.text(kLayout);
+  if (!name) return std::nullopt;
+  if (const auto layout = layout_named(*name)) return layout;
+  throw Error(file.path.string(), fmt::format("its layout is '{:.40}'", *name),
+              "it must be pillars or sensels");
+}
 
 void write_effects(const hdf5::File& file, const char* place, const SensorEffects& effects) {
   if (effects.empty()) return;
   const hdf5::Handle group = hdf5::create_group(file, place);
+  const hdf5::Attributes attributes(file, group.get());
   for (const EffectParameter& parameter : parameters_of(effects)) {
-    if (parameter.list) {
-      hdf5::write_attribute(file, group.get(), parameter.name, parameter.values);
-    } else {
-      hdf5::write_attribute(file, group.get(), parameter.name, parameter.values.front());
-    }
+    parameter.list ? attributes.write(parameter.name, parameter.values)
+                   : attributes.write(parameter.name, parameter.values.front());
   }
 }
 
 SensorEffects read_effects(const hdf5::File& file, const char* place) {
   if (!hdf5::exists(file, place)) return {};
   const hdf5::Handle group = hdf5::open_object(file, place);
-  return effects_of(
-      [&](const EffectParameter& asked) {
-        return hdf5::read_numbers(file, group.get(), asked.name);
-      },
-      fmt::format("{}: {}", file.path.string(), place));
+  const hdf5::Attributes attributes(file, group.get());
+  return effects_of([&](const EffectParameter& asked) { return attributes.numbers(asked.name); },
+                    fmt::format("{}: {}", file.path.string(), place));
 }
 
-void write_pitch(const hdf5::File& file, hid_t object, const char* name, const Pitch& pitch) {
-  if (pitch.is_square()) {
-    hdf5::write_attribute(file, object, name, pitch.col_mm);
-  } else {
-    hdf5::write_attribute(file, object, name, std::vector{pitch.row_mm, pitch.col_mm});
+template <class Constants>
+hdf5::Handle write_skin(const hdf5::File& file, const Constants& skin) {
+  hdf5::Handle group = hdf5::create_group(file, kSkinGroup);
+  const hdf5::Attributes attributes(file, group.get());
+  attributes.write(kPitch, skin.sensel_pitch_mm);
+  visit_constants(skin, [&](const NumberField& field, const auto& value) {
+    attributes.write(field.name, value);
+  });
+  for (const auto& [field, member] : kPowerLawFields) {
+    if (skin.power_law) attributes.write(field.name, (*skin.power_law).*member);
   }
-}
-
-std::optional<Pitch> read_pitch(const hdf5::File& file, hid_t object, const char* name) {
-  const auto numbers = hdf5::read_numbers(file, object, name);
-  if (!numbers) return std::nullopt;
-  if (numbers->size() == 1) return Pitch(numbers->front());
-  if (numbers->size() == 2) return Pitch(numbers->front(), numbers->back());
-  throw Error(file.path.string(), fmt::format("{} has {} numbers", name, numbers->size()),
-              "store one, or two: from row to row and from column to column, mm");
-}
-
-hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
-  hdf5::Handle group = hdf5::create_group(file, recording_format::kSkin);
-  const auto write = [&](const char* name, const std::optional<double>& value) {
-    if (value) hdf5::write_attribute(file, group.get(), name, *value);
-  };
-  if (skin.sensel_pitch_mm) {
-    write_pitch(file, group.get(), recording_format::kPitch, *skin.sensel_pitch_mm);
-  }
-  write(recording_format::kCountsPerNewton, skin.counts_per_newton);
-  write(recording_format::kThreshold, skin.threshold_counts);
-  write(recording_format::kFullScale, skin.full_scale_counts);
-  if (skin.power_law) {
-    write(recording_format::kExponent, skin.power_law->exponent);
-    write(recording_format::kReference, skin.power_law->reference_counts);
-  }
-  if (skin.layout) {
-    hdf5::write_attribute(file, group.get(), recording_format::kLayout,
-                          std::string(name_of(*skin.layout)));
-  }
-  if (skin.falling) hdf5::write_attribute(file, group.get(), recording_format::kFalling, 1);
+  const std::optional<SkinLayout> layout = skin.layout;
+  if (layout) attributes.write(kLayout, std::string(name_of(*layout)));
+  if (skin.falling) attributes.write(kFalling, 1);
   return group;
 }
 
+template hdf5::Handle write_skin(const hdf5::File&, const Skin&);
+template hdf5::Handle write_skin(const hdf5::File&, const SkinCalibration&);
+
 hdf5::Handle open_skin(const hdf5::File& file) {
-  if (!hdf5::exists(file, recording_format::kSkin)) return {};
-  return hdf5::open_object(file, recording_format::kSkin);
+  if (!hdf5::exists(file, kSkinGroup)) return {};
+  return hdf5::open_object(file, kSkinGroup);
 }
 
-StoredSkin read_skin(const hdf5::File& file) {
+template <class Constants>
+void read_skin(const hdf5::File& file, Constants& skin) {
   const hdf5::Handle object = open_skin(file);
-  if (!object.valid()) return {};
-  const auto read = [&](const char* name) { return hdf5::read_number(file, object.get(), name); };
-  return {read_pitch(file, object.get(), recording_format::kPitch),
-          read(recording_format::kCountsPerNewton),
-          read(recording_format::kThreshold),
-          read(recording_format::kFullScale),
-          read_power_law(file, object.get()),
-          read_layout(file, object.get()),
-          read(recording_format::kFalling).value_or(0) != 0};
+  if (!object.valid()) return;
+  const hdf5::Attributes attributes(file, object.get());
+  skin.sensel_pitch_mm = attributes.pitch(kPitch);
+  visit_constants(skin, [&](const NumberField& field, std::optional<double>& value) {
+    value = attributes.number(field.name);
+  });
+  skin.power_law = read_power_law(file, attributes);
+  skin.layout = read_layout(attributes, file);
+  skin.falling = attributes.number(kFalling).value_or(0) != 0;
 }
+
+template void read_skin(const hdf5::File&, StoredSkin&);
+template void read_skin(const hdf5::File&, SkinCalibration&);
 
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration) {
   if (calibration.empty()) return;
-  const hdf5::Handle group = hdf5::create_group(file, recording_format::kCalibration);
-  for (const auto& [name, member] : kFloatPlanes) {
-    const std::vector<float>& plane = calibration.*member;
-    if (plane.empty()) continue;
-    hdf5::write_plane(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, skin.rows, skin.cols,
-                      plane.data());
-  }
-  write_effects(file, recording_format::kEffects, calibration.effects);
-  if (calibration.mask.empty()) return;
-  hdf5::write_plane(file, recording_format::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows,
-                    skin.cols, calibration.mask.data());
+  const hdf5::Handle group = hdf5::create_group(file, kCalibration);
+  visit_planes(calibration, [&](const PlaneField& field, const auto& plane) {
+    if constexpr (std::is_same_v<decltype(plane), const std::vector<float>&>) {
+      write(file, path_of(field), skin, plane);
+    }
+  });
+  write_effects(file, kEffects, calibration.effects);
+  // The mask comes last in files.
+  write(file, fmt::format("{}/{}", kCalibration, kMaskName), skin, calibration.mask);
 }
 
 void rewrite_tare(const hdf5::File& file, const Calibration& calibration, double threshold_counts) {
-  hdf5::rewrite_attribute(file, open_skin(file).get(), recording_format::kThreshold,
-                          threshold_counts);
-  for (const auto& [name, member] : kFloatPlanes) {
-    if (member != &Calibration::tare && member != &Calibration::noise) continue;
-    const std::vector<float>& plane = calibration.*member;
-    if (plane.empty() || !hdf5::exists(file, name)) continue;
-    hdf5::rewrite_plane(file, name, H5T_NATIVE_FLOAT, plane.data());
+  const hdf5::Handle skin = open_skin(file);
+  hdf5::Attributes(file, skin.get()).rewrite(kThresholdName, threshold_counts);
+  for (const auto& [name, plane] : {std::pair("/calibration/tare", &calibration.tare),
+                                    std::pair("/calibration/noise", &calibration.noise)}) {
+    if (plane->empty() || !hdf5::exists(file, name)) continue;
+    hdf5::rewrite_plane(file, name, H5T_NATIVE_FLOAT, plane->data());
   }
 }
 
 Calibration read_planes(const hdf5::File& file, const Skin& skin, std::optional<SenselType> type) {
-  const auto plane = [&](const char* name) {
-    if (!hdf5::exists(file, name)) return std::vector<float>();
-    return hdf5::read_plane(file, name, skin.rows, skin.cols);
-  };
+  const std::string place = fmt::format("{}: {}", file.path.string(), kCalibration);
   Calibration calibration;
-  for (const auto& [name, member] : kFloatPlanes) calibration.*member = plane(name);
-  const std::string place =
-      fmt::format("{}: {}", file.path.string(), recording_format::kCalibration);
-  calibration.effects = read_effects(file, recording_format::kEffects);
-  calibration.mask = mask_of(plane(recording_format::kMask), skin, place);
+  visit_planes(calibration, [&](const PlaneField& field, auto& plane) {
+    const std::string name = path_of(field);
+    if (!hdf5::exists(file, name)) return;
+    const std::vector<float> values = hdf5::read_plane(file, name.c_str(), skin.rows, skin.cols);
+    if constexpr (std::is_same_v<decltype(plane), std::vector<float>&>) {
+      plane = values;
+    } else {
+      plane = mask_of(values, skin, place);
+    }
+  });
+  calibration.effects = read_effects(file, kEffects);
   check(calibration, skin, place, type);
   return calibration;
 }
@@ -210,13 +204,14 @@ SurfaceShape shape_named(const std::string& name, const std::string& place) {
 
 void write_surface(const hdf5::File& file, const Surface& surface, const ElementGrid& pillars) {
   const hdf5::Handle group = hdf5::create_group(file, kSurface);
-  hdf5::write_attribute(file, group.get(), kShape, std::string(name_of(surface.shape)));
+  const hdf5::Attributes attributes(file, group.get());
+  attributes.write(kShape, std::string(name_of(surface.shape)));
   if (surface.shape == SurfaceShape::height_map) {
     hdf5::write_plane(file, kHeights, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, pillars.rows, pillars.cols,
                       surface.heights_mm.data());
   } else if (surface.shape != SurfaceShape::plane) {
-    hdf5::write_attribute(file, group.get(), kRadius, surface.radius_mm);
-    hdf5::write_attribute(file, group.get(), kAxis, surface.axis_deg);
+    attributes.write(kRadius, surface.radius_mm);
+    attributes.write(kAxis, surface.axis_deg);
   }
 }
 
@@ -224,13 +219,14 @@ std::optional<Surface> read_surface(const hdf5::File& file, const ElementGrid& p
   if (!hdf5::exists(file, kSurface)) return std::nullopt;
   const std::string place = fmt::format("{}: {}", file.path.string(), kSurface);
   const hdf5::Handle group = hdf5::open_object(file, kSurface);
+  const hdf5::Attributes attributes(file, group.get());
   Surface surface;
-  surface.shape = shape_named(hdf5::read_text(file, group.get(), kShape).value_or(""), place);
+  surface.shape = shape_named(attributes.text(kShape).value_or(""), place);
   if (surface.shape == SurfaceShape::height_map) {
     surface.heights_mm = hdf5::read_plane(file, kHeights, pillars.rows, pillars.cols);
   } else {
-    surface.radius_mm = hdf5::read_number(file, group.get(), kRadius).value_or(surface.radius_mm);
-    surface.axis_deg = hdf5::read_number(file, group.get(), kAxis).value_or(surface.axis_deg);
+    surface.radius_mm = attributes.number(kRadius).value_or(surface.radius_mm);
+    surface.axis_deg = attributes.number(kAxis).value_or(surface.axis_deg);
   }
   check(surface, pillars, place);
   return surface;

@@ -2,27 +2,30 @@
 
 #include <optional>
 
-#include "io/hdf5/file.h"
+#include "io/hdf5/attribute.h"
 #include "io/skin_constants.h"
 #include "pillarfield/calibration.h"
 #include "pillarfield/skin.h"
+#include "pillarfield/skin_calibration.h"
 #include "pillarfield/surface.h"
 
 namespace pillarfield {
 
-/// Creates the group /skin with the constants that are set, and returns it.
-hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);
+inline constexpr const char* kSkinGroup = "/skin";
 
-/// Reads /skin; all constants are unset if it is absent. Throws Error if one is not a number or one
-/// of the two power-law constants is missing.
-[[nodiscard]] StoredSkin read_skin(const hdf5::File& file);
+/// Creates the group /skin with the constants that are set, and returns it: those of a Skin or of a
+/// SkinCalibration.
+template <class Constants>
+hdf5::Handle write_skin(const hdf5::File& file, const Constants& skin);
 
-/// Writes a pitch as one number, or as two: from row to row, from column to column.
-void write_pitch(const hdf5::File& file, hid_t object, const char* name, const Pitch& pitch);
+/// Reads the constants in /skin into a StoredSkin or a SkinCalibration; those that are absent are
+/// unset. Throws Error if one is not a number or one of the two power-law constants is missing.
+template <class Constants>
+void read_skin(const hdf5::File& file, Constants& skin);
 
-/// Reads such a pitch; unset if it is absent. Throws Error if it has neither one nor two numbers.
-[[nodiscard]] std::optional<Pitch> read_pitch(const hdf5::File& file, hid_t object,
-                                              const char* name);
+/// Reads the attribute `layout` of an object; unset if it is absent.
+[[nodiscard]] std::optional<SkinLayout> read_layout(const hdf5::Attributes& attributes,
+                                                    const hdf5::File& file);
 
 /// The object /skin; invalid if absent.
 [[nodiscard]] hdf5::Handle open_skin(const hdf5::File& file);

@@ -6,16 +6,20 @@
 
 #include "pillarfield/error.h"
 #include "skin/pillar_sensels.h"
+#include "skin/skin_fields.h"
 
 namespace pillarfield {
 namespace {
 
-/// Throws Error unless a plane is empty or has one value in [low, high] per sensel. The limits are
+/// Throws Error unless a plane is empty or has one value in range per sensel. The limits are
 /// rounded like the values: 0.01 is below itself as a float.
 template <class Value>
-void check_plane(const std::vector<Value>& plane, const char* name, const Skin& skin,
-                 std::string_view where, double low, double high) {
+void check_plane(const PlaneField& field, const std::vector<Value>& plane, const Skin& skin,
+                 std::string_view where, double largest) {
   if (plane.empty()) return;
+  const char* const name = field.name;
+  const double low = field.low_for(largest);
+  const double high = field.high_for(largest);
   if (plane.size() != skin.sensels()) {
     throw Error(where, fmt::format("calibration plane '{}' has {} values", name, plane.size()),
                 fmt::format("the skin has {} x {} sensels", skin.rows, skin.cols));
@@ -71,14 +75,9 @@ double largest_plane_counts(SenselType type) {
 void check(const Calibration& calibration, const Skin& skin, std::string_view where,
            std::optional<SenselType> type) {
   const double largest = largest_plane_counts(type.value_or(SenselType::f32));
-  check_plane(calibration.tare, "tare", skin, where, -largest, largest);
-  check_plane(calibration.gain, "gain", skin, where, kMinGain, kMaxGain);
-  check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, largest);
-  check_plane(calibration.mask, "mask", skin, where, kMissing, kAbsent);
-  check_plane(calibration.noise, "noise", skin, where, 0, std::min(largest, kMaxNoiseCounts));
-  check_plane(calibration.bend_x, "bend_x", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
-  check_plane(calibration.bend_y, "bend_y", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
-  check_plane(calibration.bend_xy, "bend_xy", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
+  visit_planes(calibration, [&](const PlaneField& field, const auto& plane) {
+    check_plane(field, plane, skin, where, largest);
+  });
   if (calibration.bend_x.empty() != calibration.bend_y.empty() ||
       calibration.bend_x.empty() != calibration.bend_xy.empty()) {
     throw Error(where, "only some of the planes bend_x, bend_y and bend_xy are given",

@@ -6,17 +6,15 @@
 
 #include "pillarfield/error.h"
 #include "skin/limits.h"
+#include "skin/skin_fields.h"
 
 namespace pillarfield {
-namespace {
 
-void check_range(std::string_view where, const char* name, double value, double low, double high) {
-  if (std::isfinite(value) && value >= low && value <= high) return;
-  throw Error(where, fmt::format("{} is {}", name, value),
-              fmt::format("it must lie in [{}, {}]", low, high));
+void check_range(std::string_view where, const NumberField& field, double value) {
+  if (std::isfinite(value) && value >= field.low && value <= field.high) return;
+  throw Error(where, fmt::format("{} is {}", field.name, value),
+              fmt::format("it must lie in [{}, {}]", field.low, field.high));
 }
-
-}  // namespace
 
 std::size_t size_of(SenselType type) {
   switch (type) {
@@ -62,8 +60,8 @@ double straightened(const PowerLaw& law, double reading) {
 }
 
 void check(const Skin& skin, std::string_view where) {
-  check_range(where, "rows", skin.rows, 2, kMaxSensels);
-  check_range(where, "cols", skin.cols, 2, kMaxSensels);
+  check_range(where, {"rows", 2, kMaxSensels}, skin.rows);
+  check_range(where, {"cols", 2, kMaxSensels}, skin.cols);
   if (!is_valid(skin.sensel_pitch_mm)) {
     throw Error(where, "sensel_pitch_mm is " + text_of(skin.sensel_pitch_mm),
                 "it must lie in [0.001, 1000]");
@@ -75,18 +73,14 @@ void check(const Skin& skin, std::string_view where) {
                             text_of(skin.sensel_pitch_mm)),
                 "give one pitch, or the layout sensels");
   }
-  check_range(where, "counts_per_newton", skin.counts_per_newton, kMinCountsPerNewton,
-              kMaxCountsPerNewton);
-  check_range(where, "threshold_counts", skin.threshold_counts, 0, kMaxCounts);
-  if (skin.power_law) {
-    check_range(where, "power_law_exponent", skin.power_law->exponent, kMinExponent, kMaxExponent);
-    check_range(where, "power_law_reference_counts", skin.power_law->reference_counts,
-                kMinReferenceCounts, kMaxReferenceCounts);
+  visit_constants(skin, [&](const NumberField& field, const std::optional<double>& value) {
+    if (value) check_range(where, field, *value);
+  });
+  for (const auto& [number, member] : kPowerLawFields) {
+    if (skin.power_law) check_range(where, number, (*skin.power_law).*member);
   }
   if (skin.surface) check(*skin.surface, skin.element_grid(), where);
-  if (!skin.full_scale_counts) return;
-  check_range(where, "full_scale_counts", *skin.full_scale_counts, 0, kMaxCounts);
-  if (*skin.full_scale_counts <= skin.threshold_counts) {
+  if (skin.full_scale_counts && *skin.full_scale_counts <= skin.threshold_counts) {
     throw Error(where,
                 fmt::format("full_scale_counts is {}, not above threshold_counts, {}",
                             *skin.full_scale_counts, skin.threshold_counts),

@@ -40,7 +40,7 @@ class PlainData(CommandTest):
     def solve(self, path, *options):
         """Forces (T, P, Q, 3), status and times."""
         forces = self.folder / "forces.h5"
-        run("solve", path, "-o", forces, "-q", *options)
+        run("solve", path, "-o", forces, "-q", "--estimator", "direct", *options)
         with h5py.File(forces) as file:
             force = np.stack([file["force"][name][:] for name in ("shear_x", "shear_y", "normal")], -1)
             return force, file["force/status"][:], file["force/time"][:]
@@ -282,7 +282,7 @@ class PlainData(CommandTest):
             np.save(folder / f"{i + 7}.npy", frame)  # 10 and 11 come last, not first
         for names in ((folder,), sorted(folder.iterdir())):
             self.assert_solved(names[0], *names[1:], "--rate", 100)
-        run("solve", *folder.iterdir(), "-o", f"{out}/", "--contacts", f"{out}/", *CONSTANTS)
+        run("solve", *folder.iterdir(), "-o", f"{out}/", "--contacts", f"{out}/", "--estimator", "direct", *CONSTANTS)
         self.assertEqual(sorted(path.name for path in out.iterdir()),
                          sorted(f"{i + 7}.{ending}" for i in range(5) for ending in ("csv", "h5")))
         with h5py.File(out / "10.h5") as file:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -212,6 +213,30 @@ TEST(SensorEffects, WiresOfANarrowTileMakeSenselsActive) {
     for (int repeated = 0; repeated < 3; ++repeated) {
       processor.submit(frame.view());
       expect_same_bits(processor.receive(), expected.view());
+    }
+  }
+}
+
+/// A contact in the tile of an infinite reading, and without skipping idle blocks.
+TEST(SensorEffects, AnInfiniteReadingBehindWiresMakesNoOtherIdle) {
+  SolverPlan plan = bare_plan(16, 48, SenselType::f32);
+  plan.skin.threshold_counts = 12;
+  plan.calibration.effects.wires = {16, 48, 1e-5, 1e-5, 1e-5};
+  FrameBuffer frame(SenselType::f32, 16, 48);
+  for (const int lanes : {1, 4}) {
+    for (const float infinity : {1.0F, -1.0F}) {
+      std::ranges::fill(frame.readings<float>(), 0.0F);
+      for (std::size_t i = 0; i < 24; ++i) frame.readings<float>()[(8 + i / 12) * 48 + i % 12] = 60;
+      frame.readings<float>()[2 * 48 + 30] = infinity * std::numeric_limits<float>::infinity();
+      std::vector<ForceField> results;
+      for (const bool skip_idle : {false, true}) {
+        Processor processor(test_device(), plan, {},
+                            {.lanes = tested_lanes(lanes), .paths = {.skip_idle = skip_idle}});
+        processor.submit(frame.view());
+        results.emplace_back(processor.receive());
+      }
+      EXPECT_EQ(results[0].status[4 * 24], status::kUsable);
+      expect_same_bits(results[1].view(), results[0].view());
     }
   }
 }

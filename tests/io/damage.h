@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "pillarfield/recording.h"
 #include "tests/io/sample_files.h"
 
 namespace pillarfield::io_test {
@@ -116,6 +117,30 @@ void read_changed(const std::filesystem::path& path, const std::string& whole, s
     SCOPED_TRACE(testing::Message() << "trial " << trial);
     read_or_refuse(path, changed(whole, trial), read);
   }
+}
+
+/// The readings of all frames as floats.
+inline std::vector<float> all_readings(FrameSource& source) {
+  std::vector<float> all;
+  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+  for (std::uint64_t index = 0; index < source.frames(); ++index) {
+    source.read(index, frame);
+    const auto append = [&](const auto& readings) {
+      for (const auto reading : readings) all.push_back(static_cast<float>(reading));
+    };
+    if (source.sensel_type() == SenselType::u8) append(frame.readings<std::uint8_t>());
+    if (source.sensel_type() == SenselType::u16) append(frame.readings<std::uint16_t>());
+    if (source.sensel_type() == SenselType::f32) append(frame.readings<float>());
+  }
+  return all;
+}
+
+inline std::vector<double> times_of(FrameSource& source) {
+  std::vector<double> times_s;
+  for (std::uint64_t index = 0; index < source.frames(); ++index) {
+    times_s.push_back(source.time(index));
+  }
+  return times_s;
 }
 
 }  // namespace pillarfield::io_test

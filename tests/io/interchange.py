@@ -92,27 +92,6 @@ class Interchange(unittest.TestCase):
                 for plane, expected in sample_forces(frame, 5, 7).items():
                     numpy.testing.assert_array_equal(file["force"][plane][frame], expected)
 
-    def test_numpy_reads_our_arrays(self):
-        write("forces", self.folder / "f.npy", 5, 7, 40)
-        array = numpy.load(self.folder / "f.npy", mmap_mode="r")
-        self.assertEqual(array.shape, (40, 5, 7))
-        self.assertEqual(array.dtype.itemsize, 13)
-        for frame in range(40):
-            for plane, expected in sample_forces(frame, 5, 7).items():
-                numpy.testing.assert_array_equal(array[frame][plane], expected)
-
-    def test_numpy_reads_our_tables(self):
-        write("forces", self.folder / "f.csv", 5, 7, 40)
-        table = numpy.genfromtxt(self.folder / "f.csv", delimiter=",", names=True)
-        line = 0
-        for frame in range(40):
-            forces = sample_forces(frame, 5, 7)
-            for row, col in zip(*numpy.nonzero(forces["status"])):
-                self.assertEqual(tuple(table[line])[:4], (frame, frame / 4, row, col))
-                self.assertEqual(numpy.float32(table[line]["normal_n"]), forces["normal"][row, col])
-                line += 1
-        self.assertEqual(line, len(table))
-
     def new_recording(self, raw, **options):
         """Writes a recording with h5py and returns the output of READER_PROCESS."""
         path = self.folder / "h5py.h5"
@@ -148,6 +127,16 @@ class Interchange(unittest.TestCase):
                         lines = self.new_recording(typed, layout=layout, file=file)
                         self.expect_frames(lines, typed)
                         self.assertEqual(lines[0][3], typed.dtype.newbyteorder("=").name)
+
+    def test_a_chunk_that_does_not_fit_its_checksum_is_refused(self):
+        self.new_recording(numpy.ones((4, 6, 9), "u1"), layout={"chunks": (4, 6, 9), "fletcher32": True})
+        with h5py.File(self.folder / "h5py.h5", "r") as file:
+            place = file["frames/raw"].id.get_chunk_info(0).byte_offset
+        with open(self.folder / "h5py.h5", "r+b") as file:
+            file.seek(place)
+            file.write(b"\7")
+        with self.assertRaisesRegex(AssertionError, "frame 0 of /frames/raw cannot be read.*damaged"):
+            read(self.folder / "h5py.h5")
 
     def test_we_name_a_compression_that_we_lack(self):
         with self.assertRaisesRegex(AssertionError, "'lzf'.* which HDF5 lacks here; store it with"):

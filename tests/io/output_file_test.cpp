@@ -75,12 +75,8 @@ int noted_renameat2(int from_folder, const char* from, int to_folder, const char
 namespace pillarfield {
 namespace {
 
-using io_test::bytes_of;
-using io_test::error_of;
-using io_test::has_all;
-using io_test::sample_forces;
-using io_test::TemporaryDirectory;
-using io_test::write_bytes;
+// NOLINTNEXTLINE(google-build-using-namespace): tests of these files
+using namespace io_test;
 using Names = std::vector<std::string>;
 namespace fs = std::filesystem;
 
@@ -432,6 +428,24 @@ TEST(CheckOutputs, TwoOutputsNeverShareAFile) {
       Replace::results);
   EXPECT_TRUE(name_same_file(directory / "a.csv", directory / "link.csv"));
   EXPECT_FALSE(name_same_file(directory / "a.csv", directory / "b.csv"));
+}
+
+TEST(CheckOutputs, AnInputIsNeverWrittenByWhateverName) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "in.h5", "precious");
+  write_bytes(directory / "new.h5.part", "precious");
+  fs::create_symlink("in.h5", directory / "soft.h5");
+  fs::create_hard_link(directory / "in.h5", directory / "hard.h5");
+  fs::create_symlink(".", directory / "here");
+  for (const char* input : {"in.h5", "soft.h5", "hard.h5", "new.h5.part"}) {
+    const bool is_part = std::string_view(input) == "new.h5.part";
+    for (const std::string output : {"in.h5", "soft.h5", "hard.h5", "here/in.h5"}) {
+      const PlannedOutput planned = {directory / (is_part ? "new.h5" : output), OutputKind::forces};
+      EXPECT_TRUE(has_all(
+          error_of([&] { check_outputs({directory / input}, {planned}, Replace::anything); }),
+          {"read", "write to another file"}));
+    }
+  }
 }
 
 TEST(CheckOutputs, UnwritablePathsAreRefused) {

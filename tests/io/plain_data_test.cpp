@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "pillarfield/recording.h"
-#include "tests/io/all_readings.h"
 #include "tests/io/damage.h"
 
 // The corpus of fuzz/ holds plain data written by NumPy and h5py; tests/cli/plain_data_test.py
@@ -23,14 +22,6 @@ ReadOptions untimed() { return {.untimed = true}; }
 
 /// Frames of two rows and two columns.
 ReadOptions square() { return {.frame_size = FrameSize{2, 2}}; }
-
-std::vector<double> times_of(FrameSource& source) {
-  std::vector<double> times_s;
-  for (std::uint64_t index = 0; index < source.frames(); ++index) {
-    times_s.push_back(source.time(index));
-  }
-  return times_s;
-}
 
 class PlainTable : public testing::Test {
  protected:

@@ -8,18 +8,13 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
-#include "tests/io/sample_files.h"
+#include "tests/io/full_files.h"
 
 namespace pillarfield {
 namespace {
 
-using io_test::bytes_of;
-using io_test::error_of;
-using io_test::fill_frame;
-using io_test::has_all;
-using io_test::sample_forces;
-using io_test::TemporaryDirectory;
-using io_test::write_bytes;
+// NOLINTNEXTLINE(google-build-using-namespace): tests of these files
+using namespace io_test;
 
 using Names = std::vector<std::string>;
 
@@ -90,14 +85,7 @@ void expect_equal(const Skin& read, const Skin& written) {
 }
 
 void expect_equal(const Calibration& read, const Calibration& written) {
-  EXPECT_EQ(read.tare, written.tare);
-  EXPECT_EQ(read.gain, written.gain);
-  EXPECT_EQ(read.dead_zone, written.dead_zone);
-  EXPECT_EQ(read.mask, written.mask);
-  EXPECT_EQ(read.noise, written.noise);
-  EXPECT_EQ(read.bend_x, written.bend_x);
-  EXPECT_EQ(read.bend_y, written.bend_y);
-  EXPECT_EQ(read.bend_xy, written.bend_xy);
+  EXPECT_EQ(planes_of(read), planes_of(written));
   EXPECT_EQ(read.effects.curve.readings, written.effects.curve.readings);
   EXPECT_EQ(read.effects.curve.loads, written.effects.curve.loads);
   ASSERT_EQ(read.effects.sensel_leak.has_value(), written.effects.sensel_leak.has_value());

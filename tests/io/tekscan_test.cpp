@@ -95,13 +95,6 @@ class Tekscan : public testing::Test {
     return all;
   }
 
-  static std::vector<double> times(FrameSource& source) {
-    std::vector<double> all;
-    FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
-    for (std::uint64_t i = 0; i < source.frames(); ++i) all.push_back(source.read(i, frame));
-    return all;
-  }
-
   static bool has(const std::vector<std::string>& sentences, const std::string& part) {
     return std::ranges::any_of(sentences, [&](const std::string& sentence) {
       return sentence.find(part) != std::string::npos;
@@ -124,7 +117,7 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_EQ(source->format(), "Tekscan ASCII");
   EXPECT_EQ(source->sensel_type(), SenselType::u8);
   EXPECT_EQ(readings(*source), written.frames);
-  EXPECT_EQ(times(*source), (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(times_of(*source), (std::vector<double>{0, 0.5}));
   EXPECT_EQ(source->skin().rows, 3u);
   EXPECT_EQ(source->skin().cols, 4u);
   EXPECT_EQ(source->skin().sensel_pitch_mm, 0.5);
@@ -220,13 +213,13 @@ TEST_F(Tekscan, WarnsOfAssumptions) {
   EXPECT_TRUE(warnings(*source, "no times"));
   EXPECT_TRUE(warnings(*source, "no UNITS"));
   EXPECT_EQ(source->skin().threshold_counts, 0);
-  EXPECT_EQ(times(*source), (std::vector<double>{0, 1}));
+  EXPECT_EQ(times_of(*source), (std::vector<double>{0, 1}));
 }
 
 TEST_F(Tekscan, PrefersTheTimesOfTheFrames) {
   Export written;
   written.frame_lines = {"Frame 1, 0.25,, 1/2/2020 6:21:52PM", "Frame 2, 0.75"};
-  EXPECT_EQ(times(*open(written.text())), (std::vector<double>{0.25, 0.75}));
+  EXPECT_EQ(times_of(*open(written.text())), (std::vector<double>{0.25, 0.75}));
 }
 
 TEST_F(Tekscan, HoldsFramesToTheirRawSum) {

@@ -191,9 +191,9 @@ class Readme(unittest.TestCase):
         folder.mkdir()
         for name in ("scenes", "examples"):
             (folder / name).symlink_to(SOURCE / name)
-        dev, install, first, own, program = readme_blocks("sh")
-        self.assertIn("./dev demo", dev)
-        self.assertIn("cmake --install build/release --prefix $HOME/.local", install)
+        build, first, own, program = readme_blocks("sh")
+        self.assertIn("./dev demo", build)
+        self.assertIn("cmake --install build/release --prefix $HOME/.local", build)
         if not (PREFIX / "bin/pillarfield-viewer").exists():
             first = re.sub("^pillarfield-viewer.*\n", "", first, flags=re.MULTILINE)
         run("bash", "-ec", first, cwd=folder)

@@ -55,7 +55,7 @@ class Examples(unittest.TestCase):
         self.assertLess(number(r"RMS ([\d.]+) N", text), 0.002)
 
     def test_first_look(self):
-        """Each cell of the notebook runs, and shows what its last line is."""
+        """Each cell of the notebook runs, shows what its last line is, and keeps that for web pages."""
         book = json.loads((SOURCE / "examples/python/first_look.ipynb").read_text())
         self.assertEqual((book["nbformat"], {cell["cell_type"] for cell in book["cells"]}), (4, {"code", "markdown"}))
         os.environ["MPLBACKEND"] = "Agg"
@@ -64,6 +64,7 @@ class Examples(unittest.TestCase):
             source = "".join(cell["source"])
             if cell["cell_type"] == "markdown" or "matplotlib" in source and not importlib.util.find_spec("matplotlib"):
                 continue
+            self.assertTrue(cell["outputs"])
             *before, last = ast.parse(source).body
             exec(compile(ast.Module(before, []), "notebook", "exec"), names)
             shown.append(eval(compile(ast.Expression(last.value), "notebook", "eval"), names))
@@ -83,7 +84,7 @@ class Examples(unittest.TestCase):
         def ok():  # Called first when the node listens.
             if not streams:
                 streams.append(subprocess.Popen([os.environ["PILLARFIELD"], "stream", scene, "--frames", "20",
-                                                 "--to", f"udp:127.0.0.1:{port}", "--quiet"]))
+                                                 "--friction", "0.8", "--to", f"udp:127.0.0.1:{port}", "--quiet"]))
             return streams[0].poll() is None
 
         def publisher(_, name, __):
@@ -96,7 +97,7 @@ class Examples(unittest.TestCase):
         sys.modules["std_msgs"] = sys.modules["std_msgs.msg"] = types.SimpleNamespace(Float64=Message)
         exec(compile(node.replace("9871", port), "docs/ros2.md", "exec"), {})
 
-        forces = pf.solve(pf.simulate(scene))
+        forces = pf.solve(pf.simulate(scene), friction=0.8)
         points = forces.to_points()
         force = points.force_n.astype(float).sum(1)
         moment = np.cross(points.position_m, points.force_n).sum(1)

@@ -15,8 +15,8 @@ class Ring(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.simulation = pf.simulate(skins.scene(frames=30))
-        cls.plan = skins.plan_of(cls.simulation, outputs=["angles"])
-        cls.expected = pf.solve(cls.simulation, outputs=["angles"])
+        cls.plan = skins.plan_of(cls.simulation, outputs=["angles"], estimator="direct")
+        cls.expected = pf.solve(cls.simulation, outputs=["angles"], estimator="direct")
 
     def equal(self, forces, index):
         return all(np.array_equal(getattr(forces, name), getattr(self.expected[index], name))

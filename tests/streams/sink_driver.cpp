@@ -28,7 +28,7 @@ constexpr const char* kUsage =
     "sink_driver SCENE [--frames N] [--rate HZ] [--reference FORCES.h5] [--to TARGET]...\n"
     "            [--record FILE.h5] [--wait-for-clients N] [--settle SECONDS] [--linger SECONDS] "
     "[--no-contacts]\n"
-    "            [--normal-only] [--abandon]\n";
+    "            [--normal-only]\n";
 
 struct DriverOptions {
   std::string scene;
@@ -42,7 +42,6 @@ struct DriverOptions {
   double linger_s = 0;  // before the sinks finish
   bool contacts = true;
   bool normal_only = false;  // sinks get no shear
-  bool abandon = false;      // ends without finish()
 };
 
 DriverOptions options_of(const std::vector<std::string>& words) {
@@ -70,8 +69,6 @@ DriverOptions options_of(const std::vector<std::string>& words) {
       options.contacts = false;
     else if (word == "--normal-only")
       options.normal_only = true;
-    else if (word == "--abandon")
-      options.abandon = true;
     else
       options.scene = word;
   }
@@ -186,7 +183,7 @@ void run(const DriverOptions& options) {
   }
   std::this_thread::sleep_for(std::chrono::duration<double>(options.linger_s));
   for (const auto& sink : sinks) {
-    if (!options.abandon) sink->finish();
+    sink->finish();
     print(*sink);
   }
   if (reference) reference->finish();

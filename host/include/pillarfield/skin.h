@@ -93,6 +93,7 @@ struct Skin {
 
 /// Limits that keep every result within single precision.
 inline constexpr std::uint32_t kMaxSensels = 65534;  ///< rows or columns of a skin
+inline constexpr double kMaxThresholdFactor = 1000;  ///< of SkinCalibration
 inline constexpr double kMaxCounts = 1e33;           ///< readings, threshold, full scale
 inline constexpr double kMinCountsPerNewton = 1e-2;
 inline constexpr double kMaxCountsPerNewton = 1e6;

@@ -40,9 +40,6 @@ struct SkinCalibration {
   std::vector<CalibrationStep> history;  ///< oldest first
 };
 
-/// Largest SkinCalibration::threshold_factor.
-inline constexpr double kMaxThresholdFactor = 1000;
-
 /// A step of the history, dated now, with this version of the program.
 [[nodiscard]] CalibrationStep step_done(std::string step, std::vector<std::string> sources,
                                         std::uint64_t frames, std::string parameters);

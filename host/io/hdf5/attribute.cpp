@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kLongestText = 1 << 16;
 constexpr hssize_t kMostNumbers = 1 << 16;
 
-void write(const File& file, hid_t object, const char* name, const Handle& space, hid_t stored_type,
-           hid_t memory_type, const void* values) {
+void write_values(const File& file, hid_t object, const char* name, const Handle& space,
+                  hid_t stored_type, hid_t memory_type, const void* values) {
   const std::string failure = fmt::format("cannot write attribute '{}'", name);
   const Handle attribute =
       own(H5Acreate2(object, name, stored_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), file.path,
@@ -26,7 +26,7 @@ void write(const File& file, hid_t object, const char* name, const Handle& space
 void write_scalar(const File& file, hid_t object, const char* name, hid_t stored_type,
                   hid_t memory_type, const void* value) {
   const Handle space = own(H5Screate(H5S_SCALAR), file.path, "cannot make a data space");
-  write(file, object, name, space, stored_type, memory_type, value);
+  write_values(file, object, name, space, stored_type, memory_type, value);
 }
 
 Handle text_type(const File& file, std::size_t size) {
@@ -93,71 +93,84 @@ std::string read_fixed_text(const File& file, const Attribute& attribute) {
 
 }  // namespace
 
-void write_attribute(const File& file, hid_t object, const char* name, int value) {
-  write_scalar(file, object, name, H5T_STD_I64LE, H5T_NATIVE_INT, &value);
+void Attributes::write(const char* name, int value) const {
+  write_scalar(file_, object_, name, H5T_STD_I64LE, H5T_NATIVE_INT, &value);
 }
 
-void write_attribute(const File& file, hid_t object, const char* name, double value) {
-  write_scalar(file, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+void Attributes::write(const char* name, double value) const {
+  write_scalar(file_, object_, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
-void write_attribute(const File& file, hid_t object, const char* name, const std::string& value) {
-  const Handle type = text_type(file, value.size() + 1);
-  write_scalar(file, object, name, type.get(), type.get(), value.c_str());
+void Attributes::write(const char* name, const std::string& value) const {
+  const Handle type = text_type(file_, value.size() + 1);
+  write_scalar(file_, object_, name, type.get(), type.get(), value.c_str());
 }
 
-void write_attribute(const File& file, hid_t object, const char* name,
-                     const std::vector<double>& values) {
+void Attributes::write(const char* name, const std::vector<double>& values) const {
   const hsize_t extent = values.size();
   const Handle space =
-      own(H5Screate_simple(1, &extent, nullptr), file.path, "cannot make a data space");
-  write(file, object, name, space, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data());
+      own(H5Screate_simple(1, &extent, nullptr), file_.path, "cannot make a data space");
+  write_values(file_, object_, name, space, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data());
 }
 
-void rewrite_attribute(const File& file, hid_t object, const char* name, double value) {
-  const auto attribute = open(file, object, name);
-  if (!attribute) throw Error(file.path.string(), fmt::format("has no attribute '{}'", name), "");
-  require(H5Awrite(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file.path, attribute->failure);
+void Attributes::write(const char* name, const Pitch& pitch) const {
+  if (pitch.is_square()) return write(name, pitch.col_mm);
+  write(name, std::vector{pitch.row_mm, pitch.col_mm});
 }
 
-std::optional<double> read_number(const File& file, hid_t object, const char* name) {
-  const CrashGuard guard(file.path, file.trusted);
-  const auto attribute = open_single(file, object, name);
+void Attributes::rewrite(const char* name, double value) const {
+  const auto attribute = open(file_, object_, name);
+  if (!attribute) throw Error(file_.path.string(), fmt::format("has no attribute '{}'", name), "");
+  require(H5Awrite(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file_.path, attribute->failure);
+}
+
+std::optional<double> Attributes::number(const char* name) const {
+  const CrashGuard guard(file_.path, file_.trusted);
+  const auto attribute = open_single(file_, object_, name);
   if (!attribute) return std::nullopt;
-  require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
+  require_number(file_.path, fmt::format("attribute '{}'", name), attribute->type.get());
   double value = 0;
-  require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file.path, attribute->failure);
+  require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file_.path, attribute->failure);
   return value;
 }
 
-std::optional<std::vector<double>> read_numbers(const File& file, hid_t object, const char* name) {
-  const CrashGuard guard(file.path, file.trusted);
-  const auto attribute = open(file, object, name);
+std::optional<std::vector<double>> Attributes::numbers(const char* name) const {
+  const CrashGuard guard(file_.path, file_.trusted);
+  const auto attribute = open(file_, object_, name);
   if (!attribute) return std::nullopt;
-  require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
+  require_number(file_.path, fmt::format("attribute '{}'", name), attribute->type.get());
   if (attribute->values < 1 || attribute->values > kMostNumbers) {
-    throw Error(file.path.string(),
+    throw Error(file_.path.string(),
                 fmt::format("attribute '{}' has {} values", name, attribute->values),
                 fmt::format("store 1 to {}", kMostNumbers));
   }
   std::vector<double> values(static_cast<std::size_t>(attribute->values));
-  require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, values.data()), file.path,
+  require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, values.data()), file_.path,
           attribute->failure);
   return values;
 }
 
-std::optional<std::string> read_text(const File& file, hid_t object, const char* name) {
-  const CrashGuard guard(file.path, file.trusted);
-  const auto attribute = open_single(file, object, name);
+std::optional<Pitch> Attributes::pitch(const char* name) const {
+  const auto numbers = this->numbers(name);
+  if (!numbers) return std::nullopt;
+  if (numbers->size() == 1) return Pitch(numbers->front());
+  if (numbers->size() == 2) return Pitch(numbers->front(), numbers->back());
+  throw Error(file_.path.string(), fmt::format("{} has {} numbers", name, numbers->size()),
+              "store one, or two: from row to row and from column to column, mm");
+}
+
+std::optional<std::string> Attributes::text(const char* name) const {
+  const CrashGuard guard(file_.path, file_.trusted);
+  const auto attribute = open_single(file_, object_, name);
   if (!attribute) return std::nullopt;
   if (H5Tget_class(attribute->type.get()) != H5T_STRING) {
-    throw Error(file.path.string(),
+    throw Error(file_.path.string(),
                 fmt::format("attribute '{}' must be a string, not {}", name,
                             name_of_type(attribute->type.get())),
                 "store a string");
   }
   const bool variable = H5Tis_variable_str(attribute->type.get()) > 0;
-  return variable ? read_variable_text(file, *attribute) : read_fixed_text(file, *attribute);
+  return variable ? read_variable_text(file_, *attribute) : read_fixed_text(file_, *attribute);
 }
 
 }  // namespace pillarfield::hdf5

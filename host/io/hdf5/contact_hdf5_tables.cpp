@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/stored_frames.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -53,8 +53,8 @@ void Hdf5Table::add_column(const hdf5::File& file, const std::string& name, hid_
   const std::string path = group_ + "/" + name;
   columns_.push_back({name, {file, path.c_str(), stored_type, {}}, {}});
   const hid_t dataset = columns_.back().dataset.id();
-  if (!unit.empty()) hdf5::write_attribute(file, dataset, force_format::kUnit, unit);
-  if (!words.empty()) hdf5::write_attribute(file, dataset, force_format::kWords, words);
+  if (!unit.empty()) hdf5::Attributes(file, dataset).write(force_format::kUnit, unit);
+  if (!words.empty()) hdf5::Attributes(file, dataset).write("words", words);
 }
 
 void Hdf5Table::put(double value) {
@@ -80,13 +80,11 @@ ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& optio
   const hdf5::Handle group =
       hdf5::own(H5Gopen2(file.id.get(), force_format::kContacts, H5P_DEFAULT), file.path,
                 "its contacts cannot be written");
-  hdf5::write_attribute(file, group.get(), force_format::kMinimumPillars,
-                        static_cast<double>(options.minimum_pillars));
-  hdf5::write_attribute(file, group.get(), force_format::kReach, options.reach_mm);
-  if (options.friction.given) {
-    hdf5::write_attribute(file, group.get(), force_format::kGivenFriction, *options.friction.given);
-  }
-  contacts_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
+  const hdf5::Attributes attributes(file, group.get());
+  attributes.write(force_format::kMinimumPillars, static_cast<double>(options.minimum_pillars));
+  attributes.write(force_format::kReach, options.reach_mm);
+  attributes.write(force_format::kGivenFriction, options.friction.given);
+  contacts_.add_column(file, "frame", H5T_STD_U64LE, "");
   add_columns(file, identity_columns(), contacts_);
   add_columns(file, columns_, contacts_);
 
@@ -96,7 +94,7 @@ ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& optio
   add_columns(file, columns_, patch_);
 
   ended_ = {file, force_format::kEnded};
-  ended_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
+  ended_.add_column(file, "frame", H5T_STD_U64LE, "");
   add_columns(file, ended_columns(), ended_);
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pillarfield/contact_columns.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
+#include "pillarfield/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 
 namespace pillarfield {

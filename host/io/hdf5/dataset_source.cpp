@@ -34,7 +34,7 @@ namespace {
 }  // namespace
 
 std::unique_ptr<FileSource> read_hdf5_frames(hdf5::File file, const ReadOptions& options) {
-  const auto format = hdf5::read_text(file, file.id.get(), "format");
+  const auto format = hdf5::Attributes(file).text("format");
   if (format && format->starts_with("pillarfield-")) {
     if (!options.dataset.empty() || !options.times.empty()) {
       throw Error(file.path.string(),

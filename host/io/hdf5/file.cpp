@@ -118,8 +118,18 @@ File open_to_read(const InputFile& input, bool trusted) {
   return file;
 }
 
+std::optional<std::string> format_of(const std::filesystem::path& path) {
+  const QuietErrors quiet;
+  try {
+    const File file = open_to_read(InputFile(path), false);
+    return Attributes(file).text("format").value_or("");
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 int require_format(const File& file, std::string_view format, int newest) {
-  const auto found = read_text(file, file.id.get(), "format");
+  const auto found = Attributes(file).text("format");
   if (!found) {
     throw Error(file.path.string(),
                 fmt::format("is an HDF5 file but not a {}: it has no attribute 'format'", format),
@@ -129,7 +139,7 @@ int require_format(const File& file, std::string_view format, int newest) {
     throw Error(file.path.string(), fmt::format("its format is '{:.60}', not '{}'", *found, format),
                 advice_for(*found, format));
   }
-  const auto version = read_number(file, file.id.get(), "version");
+  const auto version = Attributes(file).number("version");
   if (!version) throw Error(file.path.string(), "has no attribute 'version'", kLayout);
   for (int known = 1; known <= newest; ++known) {
     if (*version == known) return known;

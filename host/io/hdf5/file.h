@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "io/hdf5/driver.h"
@@ -29,6 +31,9 @@ struct File {
 /// Opens a file for reading, as a SWMR reader if its writer has not closed it; `input` may be
 /// closed afterwards. Unless it is `trusted`, datasets refuse frames above kMostUntrustedValues.
 [[nodiscard]] File open_to_read(const InputFile& input, bool trusted);
+
+/// The root attribute `format`: "" if absent, unset if the file cannot be read as HDF5.
+[[nodiscard]] std::optional<std::string> format_of(const std::filesystem::path& path);
 
 /// Returns the root attribute `version`. Throws Error unless it is 1 to `newest`, and `format` as
 /// given.

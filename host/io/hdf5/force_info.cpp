@@ -6,7 +6,6 @@
 
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
-#include "io/hdf5/file.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
 #include "pillarfield/pressure_unit.h"
@@ -21,34 +20,45 @@ constexpr const char* kConvention =
 
 constexpr const char* kConventionOfSensels = "normal is positive when pressed";
 
+constexpr const char* kEffectsOfForces = "/effects";
+constexpr const char* kFirstFrame = "first_frame";
+constexpr const char* kMagnitude = "/force/magnitude";
+constexpr const char* kPressure = "/force/pressure";
+
+/// Visits the attributes that need no more than their value, visit(name, member).
+template <class Info, class Visit>
+void visit_info(Info& info, Visit visit) {
+  visit("estimator", info.estimator);
+  visit("segment_point", info.segment_point);
+  visit("device", info.device);
+  visit("source", info.source);
+}
+
+std::uint64_t read_first_frame(const hdf5::File& file) {
+  const auto first = hdf5::Attributes(file).number(kFirstFrame);
+  if (!first) return 0;
+  constexpr double kMost = 0x1p46;
+  if (*first >= 0 && *first <= kMost) return static_cast<std::uint64_t>(*first);
+  throw Error(file.path.string(), fmt::format("has no valid attribute '{}'", kFirstFrame),
+              hdf5::kDamaged);
+}
+
 }  // namespace
 
 void write_info(const hdf5::File& file, const ForceFileInfo& info,
                 const std::filesystem::path& path) {
-  const hid_t root = file.id.get();
-  hdf5::write_attribute(file, root, "format", std::string(force_format::kName));
+  const hdf5::Attributes root(file);
+  root.write("format", std::string(force_format::kName));
   const bool has_pillars = info.layout == SkinLayout::pillars;
-  hdf5::write_attribute(file, root, "version",
-                        has_pillars ? force_format::kSparseSince : force_format::kLayoutSince);
-  if (!has_pillars) {
-    hdf5::write_attribute(file, root, force_format::kLayout, std::string(name_of(info.layout)));
-  }
-  hdf5::write_attribute(file, root, force_format::kUnit, std::string("N"));
-  hdf5::write_attribute(file, root, force_format::kSignConvention,
-                        std::string(has_pillars ? kConvention : kConventionOfSensels));
-  hdf5::write_attribute(file, root, force_format::kEstimator, info.estimator);
-  if (info.segment_point) {
-    hdf5::write_attribute(file, root, force_format::kSegmentPoint, *info.segment_point);
-  }
-  hdf5::write_attribute(file, root, force_format::kDevice, info.device);
-  hdf5::write_attribute(file, root, force_format::kSource, info.source);
-  hdf5::write_attribute(file, root, force_format::kProgramVersion, std::string(kVersion));
-  write_pitch(file, root, force_format::pitch_of(info.layout), info.element_pitch_mm);
-  write_effects(file, force_format::kEffects, info.effects);
-  if (info.first_frame > 0) {
-    hdf5::write_attribute(file, root, force_format::kFirstFrame,
-                          static_cast<double>(info.first_frame));
-  }
+  root.write("version", has_pillars ? force_format::kSparseSince : force_format::kLayoutSince);
+  if (!has_pillars) root.write("layout", std::string(name_of(info.layout)));
+  root.write(force_format::kUnit, std::string("N"));
+  root.write("sign_convention", std::string(has_pillars ? kConvention : kConventionOfSensels));
+  visit_info(info, [&](const char* name, const auto& value) { root.write(name, value); });
+  root.write("program_version", std::string(kVersion));
+  root.write(force_format::pitch_of(info.layout), info.element_pitch_mm);
+  write_effects(file, kEffectsOfForces, info.effects);
+  if (info.first_frame > 0) root.write(kFirstFrame, static_cast<double>(info.first_frame));
   if (!info.surface) return;
   const ElementGrid pillars = {info.rows, info.cols, info.element_pitch_mm};
   check(*info.surface, pillars, path.c_str());
@@ -57,19 +67,45 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
 
 void write_pressure_unit(const hdf5::File& file, const ForceFileInfo& info) {
   if (!info.pressure) return;
-  const hdf5::Handle pressure = hdf5::open_object(file, force_format::kPressure);
-  hdf5::write_attribute(file, pressure.get(), force_format::kUnit,
-                        std::string(kPressureUnits.front().name));
+  const hdf5::Handle pressure = hdf5::open_object(file, kPressure);
+  hdf5::Attributes(file, pressure.get())
+      .write(force_format::kUnit, std::string(kPressureUnits.front().name));
 }
 
-std::uint64_t read_first_frame(const hdf5::File& file) {
-  const auto first = hdf5::read_number(file, file.id.get(), force_format::kFirstFrame);
-  if (!first) return 0;
-  constexpr double kMost = 0x1p46;
-  if (*first >= 0 && *first <= kMost) return static_cast<std::uint64_t>(*first);
-  throw Error(file.path.string(),
-              fmt::format("has no valid attribute '{}'", force_format::kFirstFrame),
-              hdf5::kDamaged);
+void read_planes_of(const hdf5::File& file, ForceFileInfo& info) {
+  info.layout = read_layout(hdf5::Attributes(file), file).value_or(SkinLayout::pillars);
+  info.angles = hdf5::exists(file, kMagnitude);
+  info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
+  info.pressure = hdf5::exists(file, kPressure);
+}
+
+void read_info(const hdf5::File& file, ForceFileInfo& info, std::vector<std::string>& warnings) {
+  const hdf5::Attributes root(file);
+  visit_info(info, [&](const char* name, auto& value) {
+    if constexpr (requires { value.reset(); }) {
+      value = root.number(name);
+    } else {
+      value = root.text(name).value_or("");
+    }
+  });
+  info.effects = read_effects(file, kEffectsOfForces);
+  check(info.effects, file.path.string());
+  const char* const name = force_format::pitch_of(info.layout);
+  const auto pitch_mm = root.pitch(name);
+  if (pitch_mm && !pitch_mm->is_positive()) {
+    throw Error(file.path.string(), fmt::format("{} is {}", name, text_of(*pitch_mm)),
+                "it must be above zero");
+  }
+  Skin usual;
+  usual.layout = info.layout;
+  info.element_pitch_mm = pitch_mm.value_or(usual.element_pitch_mm());
+  if (!pitch_mm) {
+    warnings.push_back(fmt::format("The file has no {}; {:.6g} mm is assumed.", name,
+                                   info.element_pitch_mm.col_mm));
+  }
+  info.surface = read_surface(file, {info.rows, info.cols, info.element_pitch_mm});
+  if (info.contacts) info.contacts->surface = info.surface;
+  info.first_frame = read_first_frame(file);
 }
 
 }  // namespace pillarfield

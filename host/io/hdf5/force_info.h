@@ -1,7 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "io/hdf5/file.h"
 #include "pillarfield/force_file.h"
@@ -16,7 +17,11 @@ void write_info(const hdf5::File& file, const ForceFileInfo& info,
 /// Writes the unit of the pressure, where the file has it.
 void write_pressure_unit(const hdf5::File& file, const ForceFileInfo& info);
 
-/// Number of the first frame in its source. Throws Error if it is out of range.
-[[nodiscard]] std::uint64_t read_first_frame(const hdf5::File& file);
+/// Reads layout and planes that a file has. Throws Error for an unknown layout.
+void read_planes_of(const hdf5::File& file, ForceFileInfo& info);
+
+/// Reads the rest of what write_info() writes; `info` has the size and layout. Adds a warning of a
+/// missing pitch. Throws Error if a value is out of range.
+void read_info(const hdf5::File& file, ForceFileInfo& info, std::vector<std::string>& warnings);
 
 }  // namespace pillarfield

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -10,7 +9,6 @@
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_sink.h"
-#include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/recording_format.h"
 #include "pillarfield/error.h"
@@ -39,22 +37,11 @@ bool is_empty_file(const std::filesystem::path& path) {
   return std::filesystem::file_size(path, error) == 0 && !error;
 }
 
-/// The attribute `format` of an HDF5 file; unset if it cannot be read.
-std::optional<std::string> hdf5_format(const InputFile& file) {
-  try {
-    const hdf5::QuietErrors quiet;
-    const hdf5::File opened = hdf5::open_to_read(file, false);
-    return hdf5::read_text(opened, opened.id.get(), "format").value_or("");
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 /// True if a file is an earlier result of this kind, in the format of its extension.
 bool is_earlier_result(const InputFile& file, OutputKind kind) {
   const std::string head = file.text_at(0, 1024);
   if (const SinkFormat* const format = format_by_extension(file.path(), kind)) {
-    return format->begins.empty() ? hdf5_format(file) == force_format::kName
+    return format->begins.empty() ? hdf5::format_of(file.path()) == force_format::kName
                                   : format_by_beginning(head) == format;
   }
   return std::ranges::any_of(kBeginnings, [&](const Beginning& beginning) {
@@ -96,7 +83,7 @@ void require_disposable(const std::filesystem::path& path, Replace replace) {
   bool is_kept = detected.frames != nullptr && format_by_beginning(head) == nullptr;
   bool is_ours = head.starts_with(kMcapBeginning);
   if (detected.kind == FileKind::hdf5) {
-    const auto format = hdf5_format(part);  // Unset: a writer died before its first flush.
+    const auto format = hdf5::format_of(path);  // Unset: a writer died before its first flush.
     is_kept = format && format != force_format::kName &&
               (format != recording_format::kName || has_frames(path));
     is_ours = format == recording_format::kName || format == calibration_format::kName;

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "pillarfield/contact_columns.h"
 #include "io/force_sink.h"
 #include "io/output/text_part.h"
+#include "pillarfield/contact_columns.h"
 
 namespace pillarfield {
 namespace {

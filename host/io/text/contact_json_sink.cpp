@@ -5,10 +5,10 @@
 
 #include "base/number_text.h"
 #include "base/utf8.h"
-#include "pillarfield/contact_columns.h"
 #include "io/force_format.h"
 #include "io/force_sink.h"
 #include "io/output/text_part.h"
+#include "pillarfield/contact_columns.h"
 
 namespace pillarfield {
 namespace {
