@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -31,6 +33,11 @@ template <class Member>
 void set_number(Member& member, std::optional<double> value) {
   if constexpr (std::is_same_v<Member, std::optional<double>>) {
     member = value;
+  } else if constexpr (std::is_integral_v<Member>) {
+    using Limits = std::numeric_limits<Member>;
+    if (value)
+      member = *value < Limits::max() ? static_cast<Member>(std::fmax(*value, Limits::lowest()))
+                                      : Limits::max();
   } else if (value) {
     member = static_cast<Member>(*value);
   }

@@ -9,12 +9,12 @@ SOURCE = os.environ["PILLARFIELD_SOURCE"]
 
 # At most so many lines of code, and files of any kind.
 LIMITS = {
-    "core": 106300,
-    "viewer": 22700,
-    "laboratory": 8400,
-    "all": 137300,
-    "tests": 39800,
-    "files": 1410,
+    "core": 107800,
+    "viewer": 21050,
+    "laboratory": 7050,
+    "all": 135900,
+    "tests": 40600,
+    "files": 1320,
 }
 
 # A comment that lacks its subject.
