@@ -1,4 +1,4 @@
-// What a solve is compared with: copies, memcpy, an empty launch, and the paper's equations.
+// References for the solve: copies, memcpy, an empty launch, and the paper's equations.
 
 #include <fmt/format.h>
 
