@@ -16,15 +16,17 @@ namespace {
 // NOLINTNEXTLINE(google-build-using-namespace): tests of these files
 using namespace io_test;
 
-/// Replaces a dataset by an empty one of another size and type; chunked if `chunk` is given.
+/// Replaces a dataset by an empty one of another size and type; chunked if `chunk` is given, and
+/// compressed with a level above 0.
 void replace(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& extent,
-             const std::vector<hsize_t>& chunk = {}) {
+             const std::vector<hsize_t>& chunk = {}, unsigned level = 0) {
   H5Ldelete(file, name, H5P_DEFAULT);
   const std::vector<hsize_t> most(extent.size(), H5S_UNLIMITED);
   const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(),
                                        chunk.empty() ? nullptr : most.data());
   const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
   if (!chunk.empty()) H5Pset_chunk(layout, static_cast<int>(chunk.size()), chunk.data());
+  if (level > 0) H5Pset_deflate(layout, level);
   const hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
   H5Dclose(dataset);
   H5Pclose(layout);
@@ -82,13 +84,13 @@ const Damage kRecordingDamages[] = {
      {"/frames/raw", "6 chunks, but only 0"}},
     {"chunks of 140 MB",
      [](hid_t f) {
-       replace(f, "/frames/raw", H5T_STD_U8LE, {11, 7, 10}, {2'000'000, 7, 10});
-       const std::vector<std::uint8_t> zeros(std::size_t{11} * 7 * 10);
+       replace(f, "/frames/raw", H5T_STD_U8LE, {11, 6, 6}, {4'000'000, 6, 6}, 1);
+       const std::vector<std::uint8_t> zeros(std::size_t{11} * 6 * 6);
        const hid_t raw = H5Dopen2(f, "/frames/raw", H5P_DEFAULT);
        H5Dwrite(raw, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data());
        H5Dclose(raw);
      },
-     {"/frames/raw", "2000000 x 7 x 10", "128 MiB", "smaller chunks"}},
+     {"/frames/raw", "4000000 x 6 x 6", "128 MiB", "smaller chunks"}},
     {"pitch NaN",
      [](hid_t f) { set_number(f, "/skin", "sensel_pitch_mm", kNoNumber); },
      {"/skin", "sensel_pitch_mm is nan"}},
