@@ -79,6 +79,7 @@ SolverPlan plan_of(const Scene& scene) {
   plan.skin = scene.skin;
   plan.sensel_type = SenselType::u8;
   set_solver(plan, scene);
+  plan.estimator = Estimator::direct;
   return plan;
 }
 
