@@ -84,7 +84,7 @@ def score(history, forces, reports=None):
 
 def friction_score(history, found):
     """Frames with a report, and of these those off by more than 10 %, and within 1.96 stated deviations."""
-    off, reported = abs(found["friction"] - history.friction), np.isfinite(found["friction"])
+    off, reported = abs(found["friction"] - history.friction), np.isfinite(found["friction"] + found["friction_deviation"])
     return dict(zip(FRICTION_SCORES, (100 * reported.mean(), percent(off > 0.1 * history.friction, reported),
                                       percent(off <= 1.96 * found["friction_deviation"], reported))))
 
