@@ -189,8 +189,8 @@ TEST_F(FullFiles, CutOrChangedEndInAnErrorOrAreRead) {
     SCOPED_TRACE(file.name);
     file.write(path_);
     const std::string whole = bytes_of(path_);
-    read_changed(directory_ / "changed.h5", whole, 300, file.read);
-    read_cut(directory_ / "cut.h5", whole, 200, [&](const auto& path) {
+    read_changed(directory_ / "changed.h5", whole, 100, file.read);
+    read_cut(directory_ / "cut.h5", whole, 70, [&](const auto& path) {
       file.read(path);
       ADD_FAILURE() << "a part was read";
     });
