@@ -5,7 +5,7 @@
 
 namespace pillarfield {
 
-/// A line by least squares through points of which later ones weigh more.
+/// A least-squares line in which later points weigh more.
 class FadingLine {
  public:
   /// Adds a point `step` to the right of the newest one and `change` above it. The weights of

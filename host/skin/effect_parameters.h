@@ -26,7 +26,7 @@ struct EffectParameter {
 /// Returns the values of a parameter, unset for an absent one.
 using FindParameter = std::function<std::optional<std::vector<double>>(const EffectParameter&)>;
 
-/// The effects of which `find` returns a parameter. Throws Error, naming `where`, if a number is a
+/// The effects whose parameters `find` returns. Throws Error, naming `where`, if a number is a
 /// list, or if only some parameters of an effect are there and `all_needed`; else these keep their
 /// values without an effect. Ranges are left to check().
 [[nodiscard]] SensorEffects effects_of(const FindParameter& find, std::string_view where,

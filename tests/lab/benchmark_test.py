@@ -74,9 +74,10 @@ class Scores(unittest.TestCase):
         self.assertAlmostEqual(list(score.score(self.history, 1.1 * self.history.truth)[0].values())[3], 10)
 
     def test_frictions_are_judged_where_they_are_reported(self):
-        friction = np.array([np.nan, 2, 2.1, 2.3, 2.3, 2.3, np.nan, np.nan, np.nan])
+        friction = np.array([np.nan, 2, 2.1, 2.3, 2.3, 2.3, 1, np.nan, np.nan])
+        deviation = np.array([0.1, 0.1, 0.1, 0.1, 0.2, 0.2, np.nan, 0.2, 0.2])  # NaN: the friction is a bound
         found = score.score(self.history, self.history.truth, {
-            "friction": friction, "friction_deviation": np.where(np.arange(9) < 4, 0.1, 0.2)})[1]
+            "friction": friction, "friction_deviation": deviation})[1]
         np.testing.assert_allclose(list(found.values()), [500 / 9, 60, 80])
 
     def test_times_to_slip_are_judged_until_the_body_slides(self):
