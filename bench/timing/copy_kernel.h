@@ -24,7 +24,9 @@ struct OpenedDevice {
   cl::Context context;
 };
 
+/// Frees what std::aligned_alloc() gave.
 struct FreePages {
+  // NOLINTNEXTLINE(cppcoreguidelines-no-malloc): RAII is the unique_ptr that has this deleter
   void operator()(std::byte* memory) const { std::free(memory); }
 };
 
