@@ -14,9 +14,9 @@ namespace pillarfield {
 
 /// A number by its name in files, and its range.
 struct NumberField {
-  const char* name;
-  double low;
-  double high;
+  const char* name = "";
+  double low = 0;
+  double high = 0;
 };
 
 /// Throws Error, naming `where`, unless a value is in range.
@@ -51,9 +51,9 @@ inline constexpr PowerLawField kPowerLawFields[] = {
 /// A plane by its name in files, and the range of its values; those of a reading are also at most
 /// the largest reading.
 struct PlaneField {
-  const char* name;
-  double low;
-  double high;
+  const char* name = "";
+  double low = 0;
+  double high = 0;
   bool is_reading = false;
 
   [[nodiscard]] double low_for(double largest) const {

@@ -19,7 +19,7 @@ class Renderer {
 
   /// Records the drawing of a picture. `shown` must stay alive until the commands are complete;
   /// commands recorded earlier must be complete.
-  void record(const vk::raii::CommandBuffer& commands, const ShownField& shown,
+  void record(const vk::raii::CommandBuffer& commands, const ShownField& field,
               const SourceInfo& source, const RenderSettings& wanted);
 
   /// Changes size and scale; recorded commands must be complete.

@@ -94,6 +94,7 @@ class Group {
   CLI::Option* choice(const std::string& name, Target& target,
                       const std::array<Named<Value>, count>& table, const char* description) {
     std::vector<std::pair<std::string, Value>> choices;
+    choices.reserve(count);
     for (const Named<Value>& row : table) choices.emplace_back(row.name, row.value);
     return choice<Value>(name, target, choices, description);
   }
