@@ -119,6 +119,20 @@ class Replay(StreamTest):
                                           "--json"))
         self.assertEqual(summary["solved"], 50)
 
+    def test_planes_of_a_scene_are_computed_for_sinks_or_by_request(self):
+        full = self.folder / "full.toml"
+        full.write_text(BALL + "[solver]\nangles = true\nuncertainty = true\n")
+
+        def forces_over_readings(*arguments):
+            cost = self.ended(self.started(full, "--frames", 3, "--rate", 100, "--summary", "--json",
+                                           *arguments))["cost"]
+            return cost["forces_gb_per_s"] / cost["readings_gb_per_s"]
+
+        forces_alone = 13 / 4  # bytes of a pillar: three floats and the status
+        self.assertAlmostEqual(forces_over_readings(), forces_alone, 6)
+        self.assertAlmostEqual(forces_over_readings("--outputs", "angles"), 25 / 4, 6)
+        self.assertGreater(forces_over_readings("--to", self.folder / "all.h5"), 60 / 4)
+
     def test_the_summary_counts_late_and_lost_frames(self):
         limits = ("--repeat", "--frames", 20, "--summary")
         summary = self.ended(self.started(self.scene, "--rate", 0.5, "--seconds", 1, "--summary",

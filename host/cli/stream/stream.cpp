@@ -64,7 +64,8 @@ void check_files(const StreamOptions& options) {
   check_outputs(files_read(options), outputs, options.replace);
 }
 
-/// The plan has a tare, so that it can be measured again.
+/// The plan has a tare, so that it can be measured again. Without sinks, which alone take them, a
+/// scene's angles and uncertainty are computed only where the command line asks for them.
 SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
   SolverPlan plan = cli::plan_of(options.plan, plan_of_frames(source), options.source, [&] {
     if (options.rate_hz) return 1 / *options.rate_hz;
@@ -72,6 +73,11 @@ SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
                 "give --rate HZ");
   });
   if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
+  if (const PlanSettings& asked = options.plan.settings;
+      options.sinks.empty() && !asked.everything) {
+    plan.angles = asked.angles.value_or(false);
+    plan.uncertainty = asked.uncertainty.value_or(false);
+  }
   check(plan, options.source);
   return plan;
 }
