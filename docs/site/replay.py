@@ -1,6 +1,6 @@
 """Records what the page of `stream --to web` gets of a scene, and writes the page as a replay that needs no server.
 
-replay.py PILLARFIELD SCENE FOLDER NAME writes NAME.html, the page as it is served, and NAME.js, a round of the scene.
+replay.py PILLARFIELD SCENE OUTPUT writes OUTPUT.html, the page as it is served, and OUTPUT.js, a round of the scene.
 """
 
 import base64
@@ -50,24 +50,28 @@ def record(port, frames):
     return [pictures[i] for i in sorted(pictures)], health
 
 
-def main(program, scene, folder, name):
+def save(url, scene, output):
+    """Writes OUTPUT.html and OUTPUT.js with a round of the scene that is streamed at this address again and again."""
     timing = tomllib.loads(pathlib.Path(scene).read_text(encoding="utf-8"))["time"]
-    with subprocess.Popen([program, "stream", scene, "--repeat", "--to", "web:0"], stderr=subprocess.PIPE,
-                          stdout=subprocess.DEVNULL, text=True) as process:
-        try:
-            url = next(found[0] for line in process.stderr if (found := re.search(r"http://\S+/", line)))
-            page = urllib.request.urlopen(url).read().decode()
-            pictures, health = record(int(url.rstrip("/").rsplit(":", 1)[1]), timing["frames"])
-        finally:
-            process.send_signal(signal.SIGTERM)
+    page = urllib.request.urlopen(url).read().decode()
+    pictures, health = record(int(url.rstrip("/").rsplit(":", 1)[1]), timing["frames"])
     packed = b"".join(struct.pack("<2I", len(planes), len(text)) + planes + text for planes, text in pictures)
     recording = {"rate_hz": timing["rate_hz"], "health": health,
                  "pictures": base64.b64encode(gzip.compress(packed, mtime=0)).decode()}
-    output = pathlib.Path(folder)
-    (output / f"{name}.js").write_text(f"const RECORDING = {json.dumps(recording)};\n"
-                                       + (HERE / "replay.js").read_text(encoding="utf-8"), encoding="utf-8")
+    script = f"const RECORDING = {json.dumps(recording)};\n" + (HERE / "replay.js").read_text(encoding="utf-8")
     before, after = page.split("<script>")
-    (output / f"{name}.html").write_text(f'{before}<script src="{name}.js"></script>\n<script>{after}', encoding="utf-8")
+    page = f'{before}<script src="{pathlib.Path(output).name}.js"></script>\n<script>{after}'
+    for ending, text in (("js", script), ("html", page)):
+        pathlib.Path(f"{output}.{ending}").write_text(text, encoding="utf-8")
+
+
+def main(program, scene, output):
+    with subprocess.Popen([program, "stream", scene, "--repeat", "--to", "web:0"], stderr=subprocess.PIPE,
+                          stdout=subprocess.DEVNULL, text=True) as process:
+        try:
+            save(next(found[0] for line in process.stderr if (found := re.search(r"http://\S+/", line))), scene, output)
+        finally:
+            process.send_signal(signal.SIGTERM)
 
 
 if __name__ == "__main__":
