@@ -36,8 +36,8 @@ struct LiveSourceOptions {
   /// Time after which an Error ends the wait for the first frame; unset: the wait has no end.
   std::optional<std::chrono::nanoseconds> most_wait = {};
   std::uint32_t serial_baud = 2'000'000;  ///< of `serial:`
-  /// Of the frames that wait, only the newest is delivered: the others are dropped, as by a program
-  /// that is slower than its sensor, and count in StreamHealth::lost and overrun.
+  /// Only the newest of the frames that wait is delivered: the others are dropped and count in
+  /// StreamHealth::lost and overrun. For a program that is slower than its sensor.
   bool newest = false;
 };
 
