@@ -88,8 +88,9 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
                         settings.paths.skip_idle, calibration.planes());
   if (slot.tiles_across > 0) tiles_ = {slot.tiles_across, slot.tiles_down};
   layout_ = slot.layout;
-  memory_ = settings.shares_memory ? shared_memory(device.context, slot.results)
-                                   : staged_memory(device.context, queue_, plan, slot.results);
+  memory_ = settings.shares_memory
+                ? shared_memory(device.context, slot.results)
+                : staged_memory(device.context, queue_, plan, slot.results, *settings.frames);
   if (padded_sensels(plan.skin) != plan.skin.sensels()) {
     padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
   }

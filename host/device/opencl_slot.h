@@ -42,6 +42,7 @@ struct SlotSettings {
   int lanes = 1;
   bool shares_memory = false;
   SpeedPaths paths;
+  const PinnedFrames* frames = nullptr;  ///< of devices with their own memory; outlives the slots
 };
 
 /// One frame in flight on an OpenCL device: a queue of its own, a kernel with its arguments, and

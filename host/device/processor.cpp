@@ -199,6 +199,7 @@ struct Processor::State {
     settings.paths = paths;
     settings.program = device.state().program(kernel_source(plan, settings.lanes, settings.paths));
     settings.shares_memory = shares_memory;
+    settings.frames = &frames;
     for (int i = 0; i < count; ++i) {
       slots.push_back(
           std::make_shared<OpenClSlot>(device.state(), plan, settings, calibration, order));
@@ -248,6 +249,7 @@ struct Processor::State {
   std::unique_ptr<ThreadPool> pool;   ///< of the host, for large frames
   DeviceCalibration calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
+  PinnedFrames frames;            ///< of frame_buffer()
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
   std::optional<DriftFollower> drift;          ///< of a followed baseline
   std::optional<ContactStage> contacts;        ///< of the estimator `contact`
@@ -319,6 +321,17 @@ void Processor::State::submit(const FrameView& frame) {
 void Processor::submit(const FrameView& frame) {
   check(frame, state_->skin, state_->sensel_type, kSubmit);
   state_->submit(frame);
+}
+
+FrameBuffer Processor::frame_buffer() {
+  State& state = *state_;
+  const Skin& skin = state.skin;
+  if (state.shares_memory || state.lanes) return {state.sensel_type, skin.rows, skin.cols};
+  auto memory = with_opencl_errors(state.device.info().name, [&] {
+    return state.frames.add(state.device.state().context,
+                            skin.sensels() * size_of(state.sensel_type));
+  });
+  return {state.sensel_type, skin.rows, skin.cols, std::move(memory)};
 }
 
 ForceFieldView Processor::receive() {

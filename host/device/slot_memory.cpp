@@ -1,5 +1,6 @@
 #include "device/slot_memory.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "skin/quads.h"
@@ -97,11 +98,31 @@ class PinnedMemory {
   std::size_t bytes_;
 };
 
+}  // namespace
+
+std::shared_ptr<std::byte[]> PinnedFrames::add(const cl::Context& context, std::size_t bytes) {
+  std::erase_if(frames_, [](const auto& frame) { return frame.expired(); });
+  const cl::CommandQueue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
+  const auto memory = std::make_shared<PinnedMemory>(context, queue, bytes);
+  std::shared_ptr<std::byte[]> frame(memory, memory->data());
+  frames_.emplace_back(frame);
+  return frame;
+}
+
+bool PinnedFrames::hold(const FrameView& frame) const {
+  return frame.row_stride == frame.cols && std::ranges::any_of(frames_, [&](const auto& each) {
+           return each.lock().get() == frame.data;
+         });
+}
+
+namespace {
+
 class StagedMemory final : public SlotMemory {
  public:
   StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan,
-               const ResultLayout& layout)
+               const ResultLayout& layout, const PinnedFrames& frames)
       : SlotMemory(layout),
+        frames_(frames),
         frame_bytes_(padded_sensels(plan.skin) * size_of(plan.sensel_type)),
         frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
         frame_on_host_(context, queue, frame_bytes_),
@@ -113,8 +134,12 @@ class StagedMemory final : public SlotMemory {
   }
 
   DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
-    copy_readings(frame, frame_on_host_.data());
-    queue.enqueueWriteBuffer(frame_, CL_FALSE, 0, frame_bytes_, frame_on_host_.data());
+    const void* readings = frame.data;
+    if (!frames_.hold(frame)) {
+      copy_readings(frame, frame_on_host_.data());
+      readings = frame_on_host_.data();
+    }
+    queue.enqueueWriteBuffer(frame_, CL_FALSE, 0, frame_bytes_, readings);
     return {frame_, frame.cols};
   }
 
@@ -123,6 +148,7 @@ class StagedMemory final : public SlotMemory {
   }
 
  private:
+  const PinnedFrames& frames_;
   std::size_t frame_bytes_;
   cl::Buffer frame_;
   PinnedMemory frame_on_host_;
@@ -132,8 +158,9 @@ class StagedMemory final : public SlotMemory {
 }  // namespace
 
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan, const ResultLayout& layout) {
-  return std::make_unique<StagedMemory>(context, queue, plan, layout);
+                                          const SolverPlan& plan, const ResultLayout& layout,
+                                          const PinnedFrames& frames) {
+  return std::make_unique<StagedMemory>(context, queue, plan, layout, frames);
 }
 
 }  // namespace pillarfield

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "device/opencl.h"
 #include "lanes/frame_memory.h"
@@ -12,6 +14,18 @@ namespace pillarfield {
 struct DeviceFrame {
   cl::Buffer readings;
   std::uint64_t row_stride = 0;  ///< readings
+};
+
+/// Frames in pinned memory, which the driver copies from directly.
+class PinnedFrames {
+ public:
+  /// Memory of a new frame.
+  [[nodiscard]] std::shared_ptr<std::byte[]> add(const cl::Context& context, std::size_t bytes);
+  /// True if the frame is the whole of one that add() made.
+  [[nodiscard]] bool hold(const FrameView& frame) const;
+
+ private:
+  std::vector<std::weak_ptr<std::byte[]>> frames_;
 };
 
 /// Transfers one frame to the device and its result back. The device owns the memory between
@@ -48,9 +62,10 @@ class SlotMemory : public ResultMemory {
 /// Zero copy: the kernel reads the caller's memory and writes memory that the caller reads.
 std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const ResultLayout& layout);
 
-/// Copies through pinned memory of the driver: one copy by the host and one by the device in each
-/// direction.
+/// Copies through pinned memory of the driver: one copy by the host, but of frames that lie in
+/// `frames`, and one by the device.
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan, const ResultLayout& layout);
+                                          const SolverPlan& plan, const ResultLayout& layout,
+                                          const PinnedFrames& frames);
 
 }  // namespace pillarfield
