@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/thread_pool.h"
+#include "device/device_state.h"
 #include "device/opencl.h"
 #include "lanes/frame_memory.h"
 #include "pillarfield/frame.h"
@@ -28,6 +30,14 @@ class PinnedFrames {
   std::vector<std::weak_ptr<std::byte[]>> frames_;
 };
 
+/// What all slots of a device with its own memory share.
+struct Transfers {
+  explicit Transfers(std::size_t threads) : pool(threads) {}
+
+  PinnedFrames frames;
+  ThreadPool pool;  ///< unpacks results
+};
+
 /// Transfers one frame to the device and its result back. The device owns the memory between
 /// upload() and download(), the host otherwise.
 class SlotMemory : public ResultMemory {
@@ -38,6 +48,16 @@ class SlotMemory : public ResultMemory {
 
   /// Starts the transfer of the results to the host.
   virtual void download(const cl::CommandQueue& queue) = 0;
+
+  /// After the commands of download(): starts to fetch results that it left out; false if there are
+  /// none.
+  [[nodiscard]] virtual bool fetch_rest(const cl::CommandQueue& queue) {
+    static_cast<void>(queue);
+    return false;
+  }
+
+  /// After all commands: puts the results into their planes.
+  virtual void unpack() {}
 
   /// Clears the flags of idle blocks while no command runs; what the host reads stays.
   virtual void clear_flags(const cl::CommandQueue& queue) {
@@ -62,10 +82,10 @@ class SlotMemory : public ResultMemory {
 /// Zero copy: the kernel reads the caller's memory and writes memory that the caller reads.
 std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const ResultLayout& layout);
 
-/// Copies through pinned memory of the driver: one copy by the host, but of frames that lie in
-/// `frames`, and one by the device.
-std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
+/// Copies through pinned memory of the driver: frames, but those in `transfers.frames`, once by the
+/// host and once by the device; results as PackedResults does.
+std::unique_ptr<SlotMemory> staged_memory(Device::State& device, const cl::CommandQueue& queue,
                                           const SolverPlan& plan, const ResultLayout& layout,
-                                          const PinnedFrames& frames);
+                                          Transfers& transfers);
 
 }  // namespace pillarfield
