@@ -206,7 +206,7 @@ constexpr QuantityColumn kQuantities[] = {
     column("mean_pressure_kpa", "kPa", "mean pressure", member<&Q::mean_pressure_kpa>(), kAlways,
            {"", "mean", 13}),
     column("peak_pressure_kpa", "kPa", "pressure on the most loaded element", kPeakPressure,
-           kOptional, {"peak_pressure_kpa", "most", 14}),
+           kOptional, {"peak_pressure_kpa", "largest", 14}),
     column("friction", "", "friction coefficient; its lower bound if friction_source is 'at_least'",
            member<&Q::friction>(), kOfPillars, {"friction", "friction", 2}),
     column("friction_deviation", "", "standard deviation of the friction coefficient",
