@@ -10,11 +10,11 @@ SOURCE = os.environ["PILLARFIELD_SOURCE"]
 # At most so many lines of code, and files of any kind.
 LIMITS = {
     "core": 108800,
-    "viewer": 21050,
+    "viewer": 21400,
     "laboratory": 7050,
     "all": 137000,
     "tests": 41200,
-    "files": 1320,
+    "files": 1330,
 }
 
 # A comment that lacks its subject.
