@@ -371,7 +371,7 @@ class Warnings(unittest.TestCase):
         random = np.random.default_rng(3)
         for rows, dtype in ((8, np.uint8), (8, np.float32), (40, np.uint8), (40, np.float32)):
             gains = random.normal(1, 0.05, (rows, rows))
-            load = 60 * (1 + np.sin(np.arange(120) / 10))[:, None, None]
+            load = 60 * (1 + np.sin(np.arange(300) / 100))[:, None, None]
             for noise in (0.2, 0.5, 1.0, 2.0):
                 readings = random.normal(20 + gains * load, noise)
                 frames = (np.rint(readings) if dtype == np.uint8 else readings).astype(dtype)
