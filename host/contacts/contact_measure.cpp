@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "contacts/estimator/contact_parameters.h"
+
 namespace pillarfield {
 namespace {
 
@@ -16,6 +18,9 @@ constexpr double kSlipRatio = 0.92;
 
 /// Standard deviation of a ratio, in units of reading noise over normal force (direct_solve.md).
 constexpr double kNoiseOfRatio = 1.6;
+
+/// Lower bound of the friction of a contact's roughest part over that of the whole.
+constexpr double kRoughest = 1 / ContactParameters{}.bound_factor;
 
 bool is_well_known(const ContactFriction& friction) {
   return friction.source != FrictionSource::prior && friction.source != FrictionSource::at_least &&
@@ -71,7 +76,7 @@ ContactQuantities quantities_of(const ContactSum& sum, const Pitch& pitch_mm, bo
 }
 
 SlipTest slip_test(const ContactFriction& friction, double noise_n) {
-  return {kSlipRatio * (is_well_known(friction) ? friction.median : friction.least),
+  return {kSlipRatio * (is_well_known(friction) ? friction.median : kRoughest * friction.least),
           kNoiseOfRatio * noise_n};
 }
 

@@ -67,7 +67,8 @@ std::optional<SlipForecast> SlipTrend::forecast(double friction, double deviatio
   const double rate_variance = noise / line_.spread() + kRateChange * kRateChange * rate * rate;
   const double variance = deviation * deviation + noise / line_.weights();
   const double left = friction - (ratio_ + line_.height());
-  const bool swings = swing_ > 0 && left > 0;
+  const bool slides = left <= 0;
+  const bool swings = swing_ > 0 && !slides;
   const double goes_on = swings ? kSwingGoesOn : 1;
 
   // P(slip within t) = Phi((rate t - left) / sqrt(variance + rate_variance t^2)), if it goes on.
@@ -77,19 +78,17 @@ std::optional<SlipForecast> SlipTrend::forecast(double friction, double deviatio
     const double sigma = std::sqrt(variance + rate_variance * t * t);
     found.probability[i] = goes_on * normal_probability((rate * t - left) / sigma);
   }
-  if (left <= 0) {
-    found.time_s = 0;
-  } else if (rate > 0) {
-    found.time_s = left / rate;
-  }
   const double z = kEndsDeviations * kEndsDeviations;
   const double a = rate * rate - z * rate_variance;
   const double c = left * left - z * variance;
+  if (slides) found.time_s = 0;
+  if (slides || c <= 0) found.low_s = 0;   // the interval of the friction holds the ratio
+  if (!(rate > 0 && a > 0)) return found;  // A load that may rest has no time.
   const double root = std::sqrt(std::max(rate * rate * left * left - a * c, 0.0));
-  const bool already = c <= 0 || left <= 0;  // the interval of the friction holds the ratio
-  if (already) found.low_s = 0;
-  if (!already && (a < 0 || rate > 0)) found.low_s = c / (rate * left + root);
-  if (!swings && a > 0 && rate > 0) found.high_s = std::max((rate * left + root) / a, 0.0);
+  if (!found.low_s) found.low_s = c / (rate * left + root);
+  if (swings) return found;
+  found.time_s = std::max(left / rate, 0.0);
+  found.high_s = std::max((rate * left + root) / a, 0.0);
   return found;
 }
 

@@ -185,6 +185,20 @@ TEST(Slip, APressedContactSticksWhateverItsFriction) {
   EXPECT_FALSE(contact.slip_margin || contact.slipping_share);
 }
 
+/// The friction of its roughest part tells its pillars, not the lower bound of the whole.
+TEST(Slip, ABoundedContactSticksIfFewPillarsComeNearItsLargestRatios) {
+  for (const double most : {0.69, 0.79}) {
+    ForceField field(12, 12);
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      const double ratio = i % 12 == 0 ? 0.8 : 0.25 + (most - 0.25) * i / 100;
+      load(field, 1 + i / 10, 1 + i % 10, static_cast<float>(ratio), 0, 1);
+    }
+    const ContactQuantities contact = only_contact(field);
+    EXPECT_EQ(contact.friction_source, FrictionSource::at_least) << most;
+    EXPECT_EQ(contact.slip, most < 0.7 ? SlipState::sticking : SlipState::unknown) << most;
+  }
+}
+
 /// Pillars whose noise reaches from the friction to their ratio may slip.
 TEST(Slip, NoisyPillarsMayMakeItUnknown) {
   ForceField field(1, 100);
@@ -293,6 +307,27 @@ TEST(Friction, OfARoundedBodyIsObservedAndCarriedOver) {
   EXPECT_EQ(stuck.slip, SlipState::sticking);
   EXPECT_EQ(stuck.friction_source, FrictionSource::carried_over);
   EXPECT_NEAR(*stuck.friction, 0.7, 0.02);
+}
+
+/// After unloading, pillars that stick at smaller ratios say nothing; of a contact that slides they
+/// contradict the friction last shown.
+TEST(Friction, IsContradictedBySmallerRatiosOnlyOfAContactThatSlides) {
+  for (const int others : {40, 5}) {
+    ContactTracker tracker(kPitchMm);
+    const auto update = [&](const ForceField& field) {
+      return tracker.update(field.view(), 0).contacts.at(0).quantities;
+    };
+    ASSERT_EQ(update(mostly_sliding(10, 10, 0.7)).friction_source, FrictionSource::observed);
+    ContactQuantities contact;
+    for (int i = 0; i < 2; ++i) contact = update(face(100 - others, 0.55, 0.25));
+    if (others == 40) {
+      EXPECT_EQ(contact.friction_source, FrictionSource::carried_over);
+      EXPECT_NEAR(contact.friction.value(), 0.7, 0.02);
+    } else {
+      EXPECT_EQ(contact.friction_source, FrictionSource::at_least);
+      EXPECT_LT(contact.friction.value(), 0.55);
+    }
+  }
 }
 
 TEST(Friction, OfAnUnevenBodyHasADeviationThatSaysSo) {

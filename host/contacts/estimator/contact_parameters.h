@@ -54,8 +54,10 @@ struct ContactParameters {
   double clear_spread = 0.06;
   /// Relative distance up to which two frictions count as equal.
   double same_friction = 0.05;
-  /// Relative distance from the friction last shown at which the posterior contradicts it.
+  /// Relative distance from the friction last shown at which the posterior contradicts it: if it is
+  /// larger or the contact slides, and if it is smaller while pillars may stick.
   double other_friction = 0.1;
+  double unloaded_friction = 0.3;
   /// Fraction of the largest load ratio so far from which a frame counts as newly loaded, and the
   /// least ratio.
   double new_load = 0.99;
@@ -72,8 +74,9 @@ struct ContactParameters {
   /// which it turns.
   double sliding_load = 0.85;
   double apart = 0.5;
-  /// The lower bound of a friction over the 5 % quantile of the cautious posterior.
-  double bound_factor = 0.9;
+  /// The lower bound of a contact's friction over that of its roughest part, the 5 % quantile of
+  /// the cautious posterior.
+  double bound_factor = 0.87;
   /// Relative standard deviation of the friction over a contact, as known before its ratios are
   /// seen: usual, as of so many pillars, and where its estimate starts.
   double usual_scatter = 0.05;

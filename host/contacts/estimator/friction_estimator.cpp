@@ -268,11 +268,9 @@ bool FrictionEstimator::stays(double friction, const FrictionPosterior::Summary&
 /// True if nearly all pillars share the friction as their ratio in directions apart, or on the way
 /// of half the contact's length. Sticking, only a face or a body pressed obliquely has one ratio,
 /// in one direction and at one place.
-bool FrictionEstimator::slides(std::uint32_t contact, const FrictionPosterior::Summary& now,
+bool FrictionEstimator::slides(std::uint32_t contact, double friction, bool one_ratio,
                                const ContactSamples& samples, History& history) const {
-  const double log_friction = std::log(now.median);
-  const bool one_ratio = now.spread <= parameters_.clear_spread &&
-                         samples.load_ratio() >= parameters_.sliding_load * now.median;
+  const double log_friction = std::log(friction);
   if (!one_ratio ||
       std::abs(log_friction - history.log_friction_then) > parameters_.same_friction) {
     history.log_friction_then = log_friction;
@@ -307,11 +305,15 @@ ContactFriction FrictionEstimator::reported(std::uint32_t contact,
   alone.update(log_likelihood);
   const FrictionPosterior::Summary now = alone.summary();
   const bool stayed = stays(median, now, samples.load_ratio(), history);
-  const bool slid = slides(contact, now, samples, history);
+  const bool one_ratio = now.spread <= parameters_.clear_spread &&
+                         samples.load_ratio() >= parameters_.sliding_load * now.median;
+  const bool slid = slides(contact, now.median, one_ratio, samples, history);
   if (stayed || slid) history.friction = median;
-  if (!history.friction || std::abs(median / *history.friction - 1) > parameters_.other_friction) {
-    return friction;
-  }
+  if (!history.friction) return friction;
+  // Below the friction last shown, pillars that stick after unloading say nothing against it.
+  const double change = median / *history.friction - 1;
+  const double fall = one_ratio ? parameters_.other_friction : parameters_.unloaded_friction;
+  if (change > parameters_.other_friction || change < -fall) return friction;
   friction.median = *history.friction;
   friction.spread = std::hypot(parameters_.stated_over_spread * spread,
                                friction_scatter(samples.ratios(), friction.median, parameters_));

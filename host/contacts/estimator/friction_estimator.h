@@ -91,7 +91,7 @@ class FrictionEstimator {
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
   [[nodiscard]] bool stays(double friction, const FrictionPosterior::Summary& now,
                            double load_ratio, History& history) const;
-  [[nodiscard]] bool slides(std::uint32_t contact, const FrictionPosterior::Summary& now,
+  [[nodiscard]] bool slides(std::uint32_t contact, double friction, bool one_ratio,
                             const ContactSamples& samples, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
                                          const ContactSamples& samples);

@@ -35,8 +35,8 @@ struct Wrench {
 /// Time until a contact slides as a whole, if its load goes on to change at the present rate.
 struct SlipForecast {
   static constexpr std::array<double, 3> kWithinS = {0.1, 0.3, 1};
-  std::optional<double> time_s;  ///< unset if the load does not come nearer to the friction
-  /// Its 95 % interval; an end that is never reached is unset.
+  std::optional<double> time_s;  ///< unset unless the load surely rises, and while it may swing
+  /// Its 95 % interval; unset likewise, but low_s is set in a swing, and 0 near the friction.
   std::optional<double> low_s;
   std::optional<double> high_s;
   std::array<double, 3> probability{};  ///< of slip within kWithinS

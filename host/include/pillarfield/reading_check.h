@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,7 +22,8 @@ inline constexpr double kCovered = 0.8;
 [[nodiscard]] std::string coverage_words(double share, bool has_tare, SkinLayout layout);
 
 /// Notices solved frames whose readings were probably not what the plan takes them for: no tare,
-/// readings that fall under load, a threshold above all readings, frames without readings.
+/// readings that fall under load, a threshold above all readings, frames without readings, more
+/// noise than is stated.
 class ReadingCheck final : public ForceSink {
  public:
   /// `plan` must outlive the check.
@@ -44,6 +47,8 @@ class ReadingCheck final : public ForceSink {
   [[nodiscard]] Counts count(const FrameView& readings) const;
   void look_at(const FrameView& readings);
   void warn_of_no_contact(std::vector<std::string>& sentences) const;
+  void compare_with_earlier(const FrameView& readings);
+  [[nodiscard]] std::optional<double> measured_noise() const;
 
   const SolverPlan& plan_;
   std::uint64_t present_ = 0;  ///< pillars of a frame that have sensels
@@ -53,6 +58,12 @@ class ReadingCheck final : public ForceSink {
   std::uint64_t sunken_frames_ = 0;  ///< nearly all sensels read less than their tare
   std::uint64_t sensels_seen_ = 0;
   Counts most_;
+  /// Readings of sampled pillars in the frame before, and how far their parity changed from frame
+  /// to frame: numbers of changes of so many `parity_unit_`, counts.
+  double noise_;  ///< stated standard deviation of a reading, counts; zero: none
+  double parity_unit_;
+  std::vector<std::array<float, 4>> earlier_;
+  std::array<std::uint64_t, 256> parity_changes_{};
 };
 
 }  // namespace pillarfield
