@@ -100,14 +100,14 @@ std::uint64_t most_loaded_frame(FieldProducer& producer) {
 View first_view(const Options& options, const SourceInfo& source, const Layout& layout) {
   const SkinSize size = skin_size(source);
   if (options.orbit) {
-    OrbitView view = fitted_orbit(size, surface_of(options, source), layout);
+    OrbitView view = fit_orbit(size, surface_of(options, source), layout.plot);
     view.azimuth = options.azimuth.value_or(view.azimuth);
     view.elevation = options.elevation.value_or(view.elevation);
     view.target_mm = options.centre_mm.value_or(view.target_mm);
     view.distance_mm /= options.zoom;
     return view;
   }
-  TopView view = fitted_top(size, layout);
+  TopView view = fit_top(size, layout.plot);
   view.pixels_per_mm *= options.zoom;
   view.centre_mm = options.centre_mm.value_or(view.centre_mm);
   return view;

@@ -20,6 +20,10 @@
 namespace pillarfield::viewer {
 namespace {
 
+vk::Extent2D extent_of(const Viewport& place) {
+  return {static_cast<std::uint32_t>(place.width), static_cast<std::uint32_t>(place.height)};
+}
+
 /// Draws pictures and reads their pixels back.
 class HeadlessRenderer {
  public:
@@ -33,7 +37,8 @@ class HeadlessRenderer {
   }
 
   [[nodiscard]] Pixels render(const ShownField& field, const SourceInfo& source,
-                              const RenderSettings& settings) {
+                              const RenderSettings& settings, const Viewport& place) {
+    renderer_.resize(extent_of(place), settings.scale);
     device_.run([&](const vk::raii::CommandBuffer& commands) {
       renderer_.record(commands, field, source, settings);
     });
@@ -169,47 +174,47 @@ Shown open_all(const Options& options) {
   return shown;
 }
 
-/// The picture of one source.
-Viewport place_of_one(const Options& options, std::size_t sources) {
+/// The pictures of the sources.
+std::vector<Viewport> places_of(const Options& options, const Shown& shown,
+                                const RenderSettings& settings) {
   const Viewport all{0, 0, static_cast<double>(options.width), static_cast<double>(options.height)};
-  return sources > 1 ? first_half(all) : all;
+  if (shown.size() == 1) return {all};
+  return {first_half(all, settings), second_half(all, settings)};
 }
 
 Pixels draw(HeadlessRenderer& headless, FieldProducer& producer, std::uint64_t frame,
-            const RenderSettings& settings) {
+            const RenderSettings& settings, const Viewport& place) {
   ShownField field = producer.produce(std::min(frame, producer.info().frames - 1));
   if (settings.contacts) {
     field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
   }
-  return headless.render(field, producer.info(), settings);
+  return headless.render(field, producer.info(), settings, place);
 }
 
 /// All sources side by side; the last has the colour bar.
 Pixels draw_all(HeadlessRenderer& headless, const Shown& shown, std::uint64_t frame,
-                RenderSettings settings) {
-  settings.colour_bar = shown.size() == 1;
-  Pixels pixels = draw(headless, *shown.front(), frame, settings);
+                RenderSettings settings, const std::vector<Viewport>& places) {
+  Pixels pixels = draw(headless, *shown.front(), frame, settings, places.front());
   settings.colour_bar = true;
   if (shown.size() == 1) return pixels;
-  return side_by_side(pixels, draw(headless, *shown.back(), frame, settings));
+  return side_by_side(pixels, draw(headless, *shown.back(), frame, settings, places.back()));
 }
 
 /// Renders the frames of `span` into `pictures` and the video.
 void write_pictures(const Options& options, const Shown& shown, const RenderSettings& settings,
                     const FrameRange& span, const std::vector<std::filesystem::path>& pictures) {
-  const Viewport place = place_of_one(options, shown.size());
-  const vk::Extent2D size{static_cast<std::uint32_t>(place.width), options.height};
-  HeadlessRenderer headless(options, size);
+  const std::vector<Viewport> places = places_of(options, shown, settings);
+  HeadlessRenderer headless(options, extent_of(places.front()));
   const VideoPace pace(options, shown.front()->info().rate_hz);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
-    const auto width = static_cast<std::uint32_t>(shown.size()) * size.width;
-    video = std::make_unique<VideoWriter>(options.video, width, size.height, pace.fps(),
+    const auto width = static_cast<std::uint32_t>(places.back().x + places.back().width);
+    video = std::make_unique<VideoWriter>(options.video, width, options.height, pace.fps(),
                                           replace_of(options));
   }
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     stop_if_interrupted(options, frame - span.begin);
-    const Pixels pixels = draw_all(headless, shown, frame, settings);
+    const Pixels pixels = draw_all(headless, shown, frame, settings, places);
     if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace_of(options));
     if (video == nullptr) continue;
     const std::uint64_t repeats = pace.pictures_of(frame - span.begin);
@@ -239,7 +244,8 @@ void run_headless(const Options& options) {
   check_exports(options, pictures, replace);
   RenderSettings settings =
       default_settings(options, *producer, HeadlessRenderer::scale_of(options));
-  const Viewport picture = place_of_one(options, shown.size());
+  settings.colour_bar = shown.size() == 1;  // Else the second has it.
+  const Viewport picture = places_of(options, shown, settings).front();
   settings.view = first_view(options, source, layout_of(picture.width, picture.height, settings));
 
   if (!options.csv.empty()) {

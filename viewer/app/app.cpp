@@ -297,7 +297,7 @@ bool Application::fit_to_window() {
   std::vector<Presenter::Place> places;
   if (shows_source()) places.push_back(place_in_window(place_.area));
   if (shows_source() && state_.source.beside != nullptr) {
-    places.push_back(place_in_window(second_half(screen_.field)));
+    places.push_back(place_in_window(second_half(screen_.field, state_.look.settings)));
   }
   const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
                     scale() == presenter_.gui().scale();
@@ -316,7 +316,7 @@ void Application::arrange() {
   state_.look.settings.colour_bar = alone;
   const Viewport before = place_.area;
   screen_ = divide(size.width, size.height, scale(), sides_of(state_));
-  place_.area = alone ? screen_.field : first_half(screen_.field);
+  place_.area = alone ? screen_.field : first_half(screen_.field, state_.look.settings);
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
   if (moved && state_.look.view_is_fitted && state_.source.player != nullptr) {
     reset_view(state_, place_);

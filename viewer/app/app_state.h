@@ -20,7 +20,7 @@ class Notice : public std::string {
     is_failure = false;
     return *this;
   }
-  void fail(const char* words) {
+  void fail(const std::string& words) {
     assign(words);
     is_failure = true;
   }

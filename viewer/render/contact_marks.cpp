@@ -89,23 +89,6 @@ class Brush {
   float unit_;
 };
 
-/// Places labels, heaviest contacts first, where they cover no other.
-void write_words(ImDrawList& list, const std::vector<ContactMark>& marks, const Viewport& plot,
-                 double scale) {
-  std::vector<Viewport> taken;
-  for (const ContactMark& mark : marks) {
-    if (mark.centre.hidden && std::ranges::all_of(mark.outline, &SeenPoint::hidden)) continue;
-    Viewport box = box_about(mark.outline);
-    box.y = std::min(box.y, mark.centre.y - 6 * scale);  // Above its hill.
-    const Viewport label = label_box(mark.words, {box.x, box.y - 3 * scale}, plot, scale);
-    if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(label, other); })) {
-      continue;
-    }
-    draw_label(list, label, mark.words, kLine, scale);
-    taken.push_back(label);
-  }
-}
-
 }  // namespace
 
 Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot, double scale) {
@@ -116,6 +99,26 @@ Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot, 
   const double bottom = std::max(plot.y, plot.y + plot.height - height);
   return {std::round(std::clamp(corner.x, plot.x, right)),
           std::round(std::clamp(corner.y - height, plot.y, bottom)), width, height};
+}
+
+bool covers_any(const Viewport& box, const std::vector<Viewport>& others) {
+  return std::ranges::any_of(others, [&](const Viewport& other) { return overlap(box, other); });
+}
+
+std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks, const Viewport& plot,
+                                  double scale) {
+  std::vector<Viewport> labels;
+  for (const ContactMark& mark : marks) {
+    Viewport label{0, 0, 0, 0};
+    if (!mark.centre.hidden || !std::ranges::all_of(mark.outline, &SeenPoint::hidden)) {
+      const Viewport box = box_about(mark.outline);
+      const double top = std::min(box.y, mark.centre.y - 6 * scale);  // Above its hill.
+      label = label_box(mark.words, {box.x, top - 3 * scale}, plot, scale);
+      if (covers_any(label, labels)) label.width = 0;
+    }
+    labels.push_back(label);
+  }
+  return labels;
 }
 
 void draw_label(ImDrawList& list, const Viewport& box, const std::string& words, unsigned colour,
@@ -162,7 +165,10 @@ void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const G
                     to_imgui({plot.x + plot.width, plot.y + plot.height}));
   for (const ContactMark& mark : marks) brush.outline(mark);
   for (const ContactMark& mark : marks) brush.force(mark);
-  write_words(list, marks, plot, scale);
+  const std::vector<Viewport> labels = label_boxes(marks, plot, scale);
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (labels[i].width > 0) draw_label(list, labels[i], marks[i].words, kLine, scale);
+  }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     const double gap = 4 * scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};

@@ -37,6 +37,12 @@ struct ContactMark {
 /// Box of a label with a given lower left corner, moved into the plot.
 [[nodiscard]] Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot,
                                  double scale);
+/// Boxes of the labels of marks; of width 0 where all is hidden, or the label would cover that of a
+/// mark before.
+[[nodiscard]] std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks,
+                                                const Viewport& plot, double scale);
+/// True if the box covers a part of one of the others.
+[[nodiscard]] bool covers_any(const Viewport& box, const std::vector<Viewport>& others);
 /// Draws a label on a dark ground.
 void draw_label(ImDrawList& list, const Viewport& box, const std::string& words, unsigned colour,
                 double scale);

@@ -59,11 +59,6 @@ struct Canvas {
     line(box.x - 1, box.y - 1, box.x - 1, box.y + box.height, colour);
     line(box.x + box.width, box.y - 1, box.x + box.width, box.y + box.height, colour);
   }
-  /// Dims what lies behind letters in the plot.
-  void ground(const Viewport& box) const {
-    list.AddRectFilled(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
-                       packed_colour(background_of(settings.theme), 200), 3 * unit());
-  }
   [[nodiscard]] Colour special(Special kind) const { return colour_of(kind, settings.theme); }
 };
 
@@ -91,24 +86,22 @@ void draw_absent(const Canvas& canvas, const SourceInfo& source, const Ground& g
   canvas.list.PopClipRect();
 }
 
-/// Name and time in the upper left corner of the plot.
+/// Name and time above the plot.
 void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo& source,
                  const Layout& layout) {
-  const double x = layout.plot.x + 8 * canvas.unit();
-  const double y = layout.plot.y + 3 * canvas.unit();
+  const double x = layout.plot.x;
+  const double y = layout.plot.y - 18 * canvas.unit();
   const std::string name = canvas.settings.title.empty() ? source.name : canvas.settings.title;
   const std::uint64_t frames = std::max(field.frames, source.frames);
   const std::string of = frames > 0 ? fmt::format(" of {}", frames) : "";
   const std::string frame =
       fmt::format("frame {}{}   {}", field.index + 1, of,
                   canvas.settings.units.fixed(Dimension::time, field.time_s, 3));
-  const double gap = 18 * canvas.unit();
-  const double both = Canvas::size_of(name).x + gap + Canvas::size_of(frame).x;
-  const bool fits = both < layout.clear.width - gap;
-  canvas.ground({x - 4 * canvas.unit(), y, (fits ? both : Canvas::size_of(name).x) + gap / 2,
-                 Canvas::size_of(name).y + canvas.unit()});
+  const double right = x + Canvas::size_of(name).x + 18 * canvas.unit();
   canvas.text(x, y, name);
-  if (fits) canvas.text(x + Canvas::size_of(name).x + gap, y, frame, canvas.faint_colour);
+  if (right + Canvas::size_of(frame).x < x + layout.plot.width) {
+    canvas.text(right, y, frame, canvas.faint_colour);
+  }
 }
 
 void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout) {
@@ -181,7 +174,7 @@ void write_scale_bar(const Canvas& canvas, const SourceInfo& source, const Layou
   const double pixels = pixels_per_mm(canvas.settings.view, layout.plot);
   const Units& units = canvas.settings.units;
   const double factor = units.of(Dimension::length).factor;
-  const double length_mm = nice_ceiling(factor * (0.08 * layout.clear.width / pixels)) / factor;
+  const double length_mm = nice_ceiling(factor * (0.08 * layout.plot.width / pixels)) / factor;
   const double length = length_mm * pixels;
   const double x = layout.plot.x + 100 * canvas.unit();
   const double y = layout.plot.y + layout.plot.height - 16 * canvas.unit();
@@ -229,10 +222,10 @@ void write_wheel(const Canvas& canvas, const Layout& layout) {
   constexpr int kSectors = 128;
   constexpr double kTurn = 2 * std::numbers::pi;
   const auto table = table_of(canvas.settings.map);
-  // Labels above and below it are 20 nominal pixels high.
+  // Labels about it are 20 nominal pixels high and 30 wide.
   const double radius = std::clamp(0.5 * layout.bar.height - 20 * canvas.unit(),
-                                   10.0 * canvas.unit(), 46.0 * canvas.unit());
-  const double x = layout.bar.x + radius + 14 * canvas.unit();
+                                   10.0 * canvas.unit(), 44.0 * canvas.unit());
+  const double x = layout.bar.x + radius + 24 * canvas.unit();
   const double y = layout.bar.y + radius + 18 * canvas.unit();
   const auto at = [&](double angle, double r) {
     return ImVec2(static_cast<float>(x + r * std::cos(angle)),
@@ -284,7 +277,6 @@ class LegendList {
     canvas_.text(x_ + 20 * canvas_.unit(), y_, words);
     y_ += 20 * canvas_.unit();
   }
-  void skip(double pixels) { y_ += pixels * canvas_.unit(); }
   [[nodiscard]] double y() const { return y_; }
 
  private:
@@ -318,8 +310,7 @@ void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Lay
               canvas.faint_colour);
 }
 
-/// Returns its lower end.
-double write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
+void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
   LegendList list(canvas, layout.legend.x, layout.legend.y);
   const RenderSettings& settings = canvas.settings;
   if (settings.quantity == Quantity::region) {
@@ -342,24 +333,19 @@ double write_legend(const Canvas& canvas, const SourceInfo& source, const Layout
   if (count_absent_elements(source.calibration, source.skin) > 0) {
     list.add(packed_colour(background_of(settings.theme)), "no sensel");
   }
-  if (!settings.arrows) return list.y();
-  list.skip(6);
-  write_arrow_scale(canvas, source, layout, list.y());
-  return list.y() + 54 * canvas.unit();
+  if (settings.arrows) write_arrow_scale(canvas, source, layout, list.y() + 6 * canvas.unit());
 }
 
 void write_bar_title(const Canvas& canvas, const Layout& layout) {
   const QuantityInfo& info = info_of(canvas.settings.quantity);
   const std::string words = canvas.settings.units.title(info.title, info.dimension);
-  const double right = layout.plot.x + layout.plot.width - 6 * canvas.unit();
+  const double right = layout.legend.x + layout.legend.width - 6 * canvas.unit();
   const double x = std::min(layout.bar.x, right - Canvas::size_of(words).x);
   canvas.text(x, layout.bar.y - 28 * canvas.unit(), words);
 }
 
-/// Colour bar or wheel, and the legend, over a ground that dims the field.
+/// Colour bar or wheel, and the legend.
 void write_scales(const Canvas& canvas, const SourceInfo& source, Layout layout) {
-  canvas.list.ChannelsSplit(2);
-  canvas.list.ChannelsSetCurrent(1);
   write_bar_title(canvas, layout);
   const Scale scale = info_of(canvas.settings.quantity).scale;
   if (scale == Scale::cyclic) {
@@ -369,12 +355,7 @@ void write_scales(const Canvas& canvas, const SourceInfo& source, Layout layout)
   } else {
     layout.legend.y = layout.bar.y;  // The legend replaces the bar.
   }
-  const double bottom = write_legend(canvas, source, layout);
-  canvas.list.ChannelsSetCurrent(0);
-  const double left = layout.bar.x - 6 * canvas.unit();
-  canvas.ground({left, layout.plot.y, layout.plot.x + layout.plot.width - left,
-                 bottom + 4 * canvas.unit() - layout.plot.y});
-  canvas.list.ChannelsMerge();
+  write_legend(canvas, source, layout);
 }
 
 }  // namespace

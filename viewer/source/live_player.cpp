@@ -150,9 +150,8 @@ class LivePlayer final : public LiveView, private ForceSink {
   std::atomic<bool> ended_ = false;
   std::atomic<std::uint64_t> solved_ = 0;
 
-  std::mutex mutex_;  ///< guards the next three members
-  std::string message_;
-  std::uint64_t messages_ = 0;
+  std::mutex mutex_;                    ///< guards the next two members
+  LiveStatus told_;                     ///< messages and their counts
   LiveTime refused_at_ = -kInsistTime;  ///< the last tare
 
   std::thread thread_;  ///< last: uses the other members
@@ -232,10 +231,15 @@ void LivePlayer::publish(const SolvedFrame& frame, ShownField field) {
 
 void LivePlayer::take_events() {
   for (const LiveEvent& event : session_.take_events()) {
-    message_ = words_of(event);
-    ++messages_;
+    told_.message = words_of(event);
+    told_.failed = !event.error.empty() || !event.recorded.failure.empty();
+    ++told_.messages;
     if (event.kind != LiveEvent::Kind::tare) continue;
-    if (!event.error.empty()) refused_at_ = live_now();
+    if (told_.failed) {
+      refused_at_ = live_now();
+    } else {
+      ++told_.tares;
+    }
     const LiveSinkInfo now = session_.info();
     info_.skin = now.skin;
     info_.calibration = now.calibration;
@@ -243,17 +247,15 @@ void LivePlayer::take_events() {
 }
 
 LiveStatus LivePlayer::status() {
-  LiveStatus status;
+  const std::scoped_lock lock(mutex_);
+  take_events();
+  LiveStatus status = told_;
   status.health = session_.health();
   status.health.solved = solved_;  // and on display
   status.ended = ended_;
   status.taring = session_.is_taring();
   status.recording = session_.recording();
   for (const LiveSession::Sink& sink : session_.sinks()) status.recorded = sink.statistics;
-  const std::scoped_lock lock(mutex_);
-  take_events();
-  status.message = message_;
-  status.messages = messages_;
   return status;
 }
 

@@ -78,7 +78,9 @@ struct LiveStatus {
   std::string recording;             ///< file; empty: none
   LiveSinkStatistics recorded = {};  ///< of that file
   std::string message;               ///< about the last tare or recording
+  bool failed = false;               ///< it says that this failed
   std::uint64_t messages = 0;        ///< how many there were
+  std::uint64_t tares = 0;           ///< of these, that a tare was taken
 };
 
 /// "12 frames, 3 dropped, failed: the disk is full".

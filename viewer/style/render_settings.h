@@ -37,20 +37,21 @@ struct RenderSettings {
 /// The settings without the layers that a source lacks: those of shear where there are no pillars.
 [[nodiscard]] RenderSettings suited_to(const SourceInfo& source, RenderSettings settings);
 
+/// Room around the plot of a picture, pixels.
+struct Margins {
+  double left = 0, top = 0, right = 0, bottom = 0;
+  double legend = 0;  ///< further at the right, for colour bar and legend where they are shown
+};
+[[nodiscard]] Margins margins_of(const RenderSettings& settings);
+
 /// Parts of a picture of `width` x `height` pixels.
 struct Layout {
   Viewport plot;    ///< the skin
-  Viewport clear;   ///< the part of the plot at the left of bar and legend
-  Viewport bar;     ///< the colour bar, in the plot
-  Viewport legend;  ///< the meaning of colours and arrows, in the plot
+  Viewport bar;     ///< the colour bar, at the right of the plot
+  Viewport legend;  ///< the meaning of colours and arrows, below the bar
 };
 
 [[nodiscard]] Layout layout_of(double width, double height, const RenderSettings& settings);
-
-/// The whole skin from above, at the left of the legend, or in space.
-[[nodiscard]] TopView fitted_top(const SkinSize& skin, const Layout& layout);
-[[nodiscard]] OrbitView fitted_orbit(const SkinSize& skin, const Surface& surface,
-                                     const Layout& layout, const OrbitView& angles = {});
 
 /// Pillars along an arrow's cell: the least of 1, 2, 3, 4, 6, 8, 12, 16, ... for which the cell is
 /// at least `least_pixels` wide.

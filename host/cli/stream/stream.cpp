@@ -25,6 +25,10 @@ namespace {
 
 std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   if (!is_live_source(options.source)) {
+    if (options.newest) {
+      throw Error("--newest", "it is for live sources, and this is a file",
+                  "leave it out; --summary drops the late frames of a file");
+    }
     return replayed_file(options.source, frame_options(options.plan), options.rate_hz,
                          options.repeat, options.summary, options.quiet);
   }
@@ -36,6 +40,7 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   LiveSourceOptions live;
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
+  live.newest = options.newest;
   if (options.seconds || options.most_idle_s) {
     live.most_wait =
         nanoseconds_of(std::min(options.seconds.value_or(1e9), options.most_idle_s.value_or(1e9)));
@@ -64,7 +69,8 @@ void check_files(const StreamOptions& options) {
   check_outputs(files_read(options), outputs, options.replace);
 }
 
-/// The plan has a tare, so that it can be measured again.
+/// The plan has a tare, so that it can be measured again. Without sinks, which alone take them, a
+/// scene's angles and uncertainty are computed only where the command line asks for them.
 SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
   SolverPlan plan = cli::plan_of(options.plan, plan_of_frames(source), options.source, [&] {
     if (options.rate_hz) return 1 / *options.rate_hz;
@@ -72,6 +78,11 @@ SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
                 "give --rate HZ");
   });
   if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
+  if (const PlanSettings& asked = options.plan.settings;
+      options.sinks.empty() && !asked.everything) {
+    plan.angles = asked.angles.value_or(false);
+    plan.uncertainty = asked.uncertainty.value_or(false);
+  }
   check(plan, options.source);
   return plan;
 }

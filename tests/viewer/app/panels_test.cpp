@@ -132,6 +132,7 @@ TEST(KeysOfSensels, ThoseOfPillarsOnlySaySo) {
     EXPECT_TRUE(dispatch(shortcut.chords[0], fake.command()));
     EXPECT_TRUE(fake.state.look.settings == before) << shortcut.keys;
     EXPECT_EQ(fake.state.window.notice.find("this source has no "), 0U) << shortcut.keys;
+    EXPECT_TRUE(fake.state.window.notice.is_failure) << shortcut.keys;
   }
   EXPECT_EQ(left_out, 8U + 3U);  // quantities and layers
 }

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "viewer/app/load_range.h"
+#include <chrono>
+#include <tuple>
+#include <vector>
+
+#include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/panels/plot.h"
+#include "viewer/app/source/source_feed.h"
 #include "viewer/app/window/gui.h"
 #include "viewer/app/window/redraws.h"
-#include "viewer/options.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -15,11 +19,14 @@ double area(const Viewport& box) { return box.width * box.height; }
 
 constexpr Sides kBothSides{true, 0.12, 0};
 
+/// Both sides beside `pictures` of a skin.
+Sides sides_beside(double aspect, int pictures) { return {true, 0.12, 0, aspect, pictures}; }
+
 TEST(Screen, ItsPartsTileTheWindow) {
   for (const std::uint32_t width : {1u, 100u, 481u, 1280u, 3841u}) {
     for (const std::uint32_t height : {1u, 30u, 321u, 720u, 2160u}) {
       for (const double scale : {1.0, 1.25, 2.0}) {
-        for (const Sides& sides : {Sides{}, kBothSides}) {
+        for (const Sides& sides : {Sides{}, kBothSides, sides_beside(0.4, 1), sides_beside(3, 2)}) {
           const Screen screen = divide(width, height, scale, sides);
           const double all = area(screen.field) + area(screen.column) + area(screen.row) +
                              area(screen.transport) + area(screen.status);
@@ -34,28 +41,37 @@ TEST(Screen, ItsPartsTileTheWindow) {
   }
 }
 
-TEST(Screen, TheFieldHasMostOfTheDefaultWindow) {
-  const Options options;
+TEST(Screen, AWholeSkinFillsItsPlot) {
   for (const double scale : {1.0, 1.5}) {
-    const auto width = static_cast<std::uint32_t>(scale * options.width);
-    const auto height = static_cast<std::uint32_t>(scale * options.height);
-    const Screen screen = divide(width, height, scale, kBothSides);
-    RenderSettings settings;
-    settings.scale = scale;
-    const Layout picture = layout_of(screen.field.width, screen.field.height, settings);
-    EXPECT_GE(area(picture.plot), 0.55 * width * height) << "at scale " << scale;
+    for (const auto& [aspect, pictures, share] :
+         {std::tuple{1.0, 1, 0.8}, {1.0, 2, 0.7}, {0.42, 1, 0.55}, {2.0, 1, 0.7}}) {
+      const Screen screen =
+          divide(static_cast<std::uint32_t>(1280 * scale), static_cast<std::uint32_t>(720 * scale),
+                 scale, sides_beside(aspect, pictures));
+      RenderSettings settings;
+      settings.scale = scale;
+      settings.colour_bar = pictures == 1;
+      const Viewport place = pictures == 1 ? screen.field : first_half(screen.field, settings);
+      const Viewport plot = layout_of(place.width, place.height, settings).plot;
+      const double pixels = fit_top({100 * aspect, 100}, plot).pixels_per_mm;
+      EXPECT_GE(aspect * 1e4 * pixels * pixels, share * area(plot)) << aspect << ", " << pictures;
+    }
   }
 }
 
-TEST(Layout, AFittedSkinLiesBesideTheLegend) {
-  for (const SkinSize& skin : {SkinSize{100, 100}, SkinSize{400, 50}, SkinSize{50, 400}}) {
-    const Layout layout = layout_of(1000, 600, {});
-    const TopView view = fitted_top(skin, layout);
-    const double right = layout.plot.x + 0.5 * layout.plot.width +
-                         (0.5 * skin.width_mm - view.centre_mm.x) * view.pixels_per_mm;
-    EXPECT_LE(right, layout.clear.x + layout.clear.width);
-    const double left = right - skin.width_mm * view.pixels_per_mm;
-    EXPECT_GE(left, layout.plot.x);
+TEST(Layout, LegendLiesBesideThePlotAndHalvesHaveEqualPlots) {
+  RenderSettings settings;
+  const Layout whole = layout_of(1000, 600, settings);
+  EXPECT_LT(whole.plot.x + whole.plot.width, whole.bar.x);
+  for (const double width : {1000.0, 642.0, 321.0}) {
+    const Viewport all{0, 0, width, 400};
+    const Viewport first = first_half(all, settings);
+    const Viewport second = second_half(all, settings);
+    EXPECT_LE(second.x + second.width, width);
+    RenderSettings bare = settings;
+    bare.colour_bar = false;
+    EXPECT_EQ(layout_of(first.width, 400, bare).plot.width,
+              layout_of(second.width, 400, settings).plot.width);
   }
 }
 
@@ -78,6 +94,24 @@ TEST(LoadRange, RisesAtOnceAndFallsWithPatience) {
   EXPECT_FALSE(range.add(110, 3)) << "a load again";
   EXPECT_EQ(hold(110, 111 + LoadRange::kPatienceS, 1), 1.0F);
   EXPECT_EQ(range.add(200, 2), 2.0F);
+}
+
+TEST(LoadFollower, ATareForgetsTheLoadBefore) {
+  FakeAppState fake;
+  LoadFollower follower(true);
+  const auto shown = [&](float factor) {
+    ShownField& field = *fake.state.source.field;
+    const std::vector<float> normal(field.forces.normal.size(), factor);
+    field.forces.normal = normal;
+    field.arrived = std::chrono::steady_clock::now().time_since_epoch();
+    follower.take_field(fake.state);
+    return fake.state.look.settings.range.high;
+  };
+  EXPECT_EQ(shown(1000), 1200);
+  EXPECT_EQ(shown(10), 1200);
+  follower.forget();
+  EXPECT_EQ(shown(0), 1200) << "nothing to show";
+  EXPECT_EQ(shown(10), 12);
 }
 
 void expect_span(const Span& span, double from, double to) {

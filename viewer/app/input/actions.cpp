@@ -21,8 +21,8 @@ std::optional<Range>& remembered(AppState& state) {
 
 View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
   const Layout layout = layout_of(place.area.width, place.area.height, state.look.settings);
-  if (orbit) return fitted_orbit(place.skin(), state.look.settings.surface, layout);
-  return fitted_top(place.skin(), layout);
+  if (orbit) return fit_orbit(place.skin(), state.look.settings.surface, layout.plot);
+  return fit_top(place.skin(), layout.plot);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ void show_quantity(AppState& state, Quantity quantity) {
   RenderSettings& settings = state.look.settings;
   const QuantityInfo info = info_of(quantity);
   if (!is_available(quantity, state.source.player->info())) {
-    state.window.notice = fmt::format("this source has no {}", info.title);
+    state.window.notice.fail(fmt::format("this source has no {}", info.title));
     return;
   }
   const bool same_scale = info_of(settings.quantity).scale == info.scale;
@@ -99,12 +99,12 @@ void reset_view(AppState& state, const FieldPlace& place) {
 void stop_at_skin(AppState& state, const FieldPlace& place) {
   const Layout layout = layout_of(place.area.width, place.area.height, state.look.settings);
   if (const auto* const top = std::get_if<TopView>(&state.look.settings.view)) {
-    const double least = fitted_top(place.skin(), layout).pixels_per_mm;
+    const double least = fit_top(place.skin(), layout.plot).pixels_per_mm;
     if (top->pixels_per_mm <= least) reset_view(state, place);
     return;
   }
   auto& view = std::get<OrbitView>(state.look.settings.view);
-  const OrbitView whole = fitted_orbit(place.skin(), state.look.settings.surface, layout, view);
+  const OrbitView whole = fit_orbit(place.skin(), state.look.settings.surface, layout.plot, view);
   if (view.distance_mm >= whole.distance_mm) view = whole;
 }
 
@@ -122,8 +122,8 @@ void toggle_pin(AppState& state, PillarIndex pillar) {
     return;
   }
   if (pins.size() == Marks::kMostPins) {
-    state.window.notice =
-        fmt::format("{} pins at most; click one to take it away", Marks::kMostPins);
+    state.window.notice.fail(
+        fmt::format("{} pins at most; click one to take it away", Marks::kMostPins));
     return;
   }
   pins.push_back({pillar});
@@ -155,11 +155,11 @@ void clear_marks(AppState& state) {
 
 void keep_selection(AppState& state) {
   if (!state.marks.selection) {
-    state.window.notice = "select a part first; drag over the field";
+    state.window.notice.fail("select a part first; drag over the field");
     return;
   }
   if (state.marks.boxes.size() == NamedBoxes::kMost) {
-    state.window.notice = fmt::format("{} boxes at most; remove one", NamedBoxes::kMost);
+    state.window.notice.fail(fmt::format("{} boxes at most; remove one", NamedBoxes::kMost));
     return;
   }
   int number = 1;

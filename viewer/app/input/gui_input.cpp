@@ -111,7 +111,7 @@ void route_key(const KeyEvent& key, const Command& command, Controls& controls, 
 /// The second picture has the view of the first, so a place in it means the one in the first.
 InputEvent in_first_half(InputEvent event, const AppState& state, const Viewport& field) {
   if (state.source.beside == nullptr) return event;
-  const Viewport second = second_half(field);
+  const Viewport second = second_half(field, state.look.settings);
   std::visit(
       [&](auto& each) {
         if constexpr (requires { each.pixel; }) {

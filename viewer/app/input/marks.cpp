@@ -27,7 +27,11 @@ class Marker {
         ground_(state.source.field ? &*state.source.field : nullptr, *place.source,
                 state.look.settings, place.plot(state.look.settings)),
         list_(*ImGui::GetBackgroundDrawList()),
-        unit_(static_cast<float>(state.look.settings.scale)) {}
+        unit_(static_cast<float>(state.look.settings.scale)) {
+    if (!settings_.contacts || !state.source.field || !state.source.field->contacts) return;
+    taken_ = label_boxes(contact_marks(*state.source.field->contacts, ground_), ground_.plot(),
+                         settings_.scale);
+  }
 
   void outline(const PillarRect& rect, ImU32 colour) const {
     const auto points = ground_.outline(rect);
@@ -35,8 +39,8 @@ class Marker {
     draw_outline(list_, points, colour, 1.4f * unit_);
   }
 
-  /// A named box: its name stands below its lowest point, where no label of a contact is.
-  void box(const NamedBox& box) const {
+  /// A named box: its name stands below its lowest point, or inside where a label is there.
+  void box(const NamedBox& box) {
     const ImU32 colour = packed(pin_colour(box.number, Theme::dark));
     outline(box.rect, colour);
     std::optional<Vec2> corner;
@@ -48,9 +52,14 @@ class Marker {
     if (!corner) return;
     const double height = static_cast<double>(ImGui::CalcTextSize(box.name.c_str()).y);
     const double scale = settings_.scale;
-    const Vec2 below{corner->x, corner->y + std::round(4 * scale) + height};
-    draw_label(list_, label_box(box.name, below, place_.plot(settings_), scale), box.name, colour,
-               scale);
+    const double gap = std::round(4 * scale);
+    const Viewport plot = place_.plot(settings_);
+    Viewport label = label_box(box.name, {corner->x, corner->y + gap + height}, plot, scale);
+    if (covers_any(label, taken_)) {
+      label = label_box(box.name, {corner->x + gap, corner->y - gap}, plot, scale);
+    }
+    draw_label(list_, label, box.name, colour, scale);
+    taken_.push_back(label);
   }
 
   void pin(const Pin& pin, bool inspected) const {
@@ -95,6 +104,7 @@ class Marker {
   Ground ground_;
   ImDrawList& list_;
   float unit_;
+  std::vector<Viewport> taken_;  ///< by labels
 };
 
 }  // namespace
@@ -107,7 +117,7 @@ FieldPlace beside_place(const AppState& state, const FieldPlace& place) {
 }
 
 void draw_marks(const AppState& state, const FieldPlace& place) {
-  const Marker marker(state, place);
+  Marker marker(state, place);
   marker.clip();
   for (const NamedBox& box : state.marks.boxes) marker.box(box);
   if (state.marks.selection)

@@ -49,7 +49,7 @@ bool with_pillars(const SourceInfo& source) { return source.skin.has_pillars(); 
 template <bool RenderSettings::*layer>
 void toggle_of_pillars(const Command& command) {
   if (with_pillars(command.state.source.player->info())) return toggle<layer>(command);
-  command.state.window.notice = "this source has no pillars";
+  command.state.window.notice.fail("this source has no pillars");
 }
 
 template <std::int64_t frames>
@@ -103,7 +103,7 @@ void take_tare(const Command& command) {
     live->tare();
     command.state.window.notice = "measuring the tare; touch nothing";
   } else {
-    command.state.window.notice = "only a sensor has a live tare";
+    command.state.window.notice.fail("only a sensor has a live tare");
   }
 }
 

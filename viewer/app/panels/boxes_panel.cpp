@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -16,13 +15,10 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr const char* kWidestNumber = "0.0000";
-
-/// A number, as wide as kWidestNumber at most.
 void number_cell(double value) {
   ImGui::TableNextColumn();
   ImGui::AlignTextToFramePadding();
-  flush_right(std::abs(value) < 0.1 ? fmt::format("{:.4f}", value) : three_digits(value));
+  flush_right(table_number(value));
 }
 
 /// The name in the colour of the box, which can be edited. A name that no box may have is not
@@ -65,42 +61,36 @@ bool write_box(const AppState& state, NamedBox& box, bool focused) {
 
 struct BoxColumn {
   std::string head;
+  std::string_view unit;
   std::string help;
   float width;  ///< 0: what is left
 };
 
 std::vector<BoxColumn> box_columns(const AppState& state) {
-  const auto number = static_cast<float>(std::ceil(width_of(kWidestNumber)));
   const auto button = static_cast<float>(std::ceil(width_of("×")));
   const Units& units = state.look.settings.units;
-  const auto unit = [&](Dimension dimension) { return std::string(units.of(dimension).name); };
-  std::vector<BoxColumn> columns{
-      {"name", "click to rename", 0},
-      {unit(Dimension::force), units.title("normal force", Dimension::force), number}};
+  std::vector<BoxColumn> columns{{"name", "", "click to rename", 0}};
+  const auto add = [&](const char* head, Dimension dimension, const char* help) {
+    columns.push_back({head, units.of(dimension).name, help, number_width(head)});
+  };
+  add("normal", Dimension::force, "total normal force");
   if (state.source.player->info().skin.has_pillars()) {
-    columns.push_back(
-        {"shear", units.title("length of the total shear", Dimension::force), number});
+    add("shear", Dimension::force, "length of the total shear");
   }
-  columns.push_back({unit(Dimension::pressure), "mean pressure on what is in contact", number});
-  columns.push_back({"", "", button + 2 * ImGui::GetStyle().FramePadding.x});
+  add("pressure", Dimension::pressure, "mean pressure on what is in contact");
+  columns.push_back({"", "", "", button + 2 * ImGui::GetStyle().FramePadding.x});
   return columns;
 }
 
 void write_box_heads(const std::vector<BoxColumn>& columns) {
-  for (const auto& [head, help, width] : columns) {
+  for (const auto& [head, unit, help, width] : columns) {
     ImGui::TableSetupColumn(
         head.c_str(),
         width > 0 ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_WidthStretch, width);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const auto& [head, help, width] : columns) {
-    ImGui::TableNextColumn();
-    if (width > 0) {
-      flush_right(head);
-    } else {
-      ImGui::TextUnformatted(head.c_str());
-    }
-    if (!head.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
+  for (const auto& [head, unit, help, width] : columns) {
+    if (!head.empty()) column_head(head, unit, help, width == 0);
   }
 }
 

@@ -20,53 +20,44 @@ constexpr int kTableFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                             ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoPadOuterX;
 constexpr std::size_t kMostRows = 9;  ///< visible at a time
 
-constexpr const char* kId = "id";
-constexpr const char* kWidestId = "000";
-
-float width_of_column(const char* head, const char* widest) {
-  return static_cast<float>(std::ceil(std::max(width_of(head), width_of(widest))));
+/// Width of the column of ids, up to those of the listed contacts.
+float width_of_ids(const ShownContacts& contacts) {
+  double width = width_of("all");
+  for (const std::size_t place : contacts.heaviest) {
+    width = std::max(width, width_of(std::to_string(contacts.found.contacts[place].track_id)));
+  }
+  return static_cast<float>(std::ceil(width));
 }
 
 float width_of_column(const QuantityColumn& column) {
-  return width_of_column(column.live.head,
-                         column.kind == ColumnKind::word ? "sticking" : "\u22120.0000");
+  if (column.kind != ColumnKind::word) return number_width(column.live.head);
+  return static_cast<float>(std::ceil(width_of("sticking")));
 }
 
-/// The first columns, as far as they fit beside the id; a tooltip has the others.
-QuantityColumns fitting_columns(SkinLayout layout) {
+/// The first columns, as far as they fit into `room` pixels; a tooltip has the others.
+QuantityColumns fitting_columns(SkinLayout layout, float room) {
   const QuantityColumns all = live_columns(layout);
   const float padding = 2 * ImGui::GetStyle().CellPadding.x;
-  float left = ImGui::GetContentRegionAvail().x - width_of_column(kId, kWidestId);
   std::size_t count = 0;
-  while (count < all.size() && left >= width_of_column(all[count]) + padding) {
-    left -= width_of_column(all[count++]) + padding;
+  while (count < all.size() && room >= width_of_column(all[count]) + padding) {
+    room -= width_of_column(all[count++]) + padding;
   }
   return all.first(std::max<std::size_t>(count, 1));
 }
 
-void set_columns(QuantityColumns columns) {
-  ImGui::TableSetupColumn(kId, ImGuiTableColumnFlags_WidthFixed, width_of_column(kId, kWidestId));
-  for (const QuantityColumn& column : columns) {
-    ImGui::TableSetupColumn(column.live.head, ImGuiTableColumnFlags_WidthFixed,
-                            width_of_column(column));
-  }
-}
-
-std::string help_of(const QuantityColumn& column, const PressureUnit& unit) {
-  const std::string_view own = is_pressure(column) ? unit.name : column.unit;
-  return fmt::format("{}{}{}", column.help, own.empty() ? "" : ", ", own);
+std::string_view unit_of(const QuantityColumn& column, const PressureUnit& unit) {
+  if (is_pressure(column)) return unit.name;
+  return column.unit == std::string_view("mm^2") ? "mm²" : column.unit;
 }
 
 /// Fixed head row above the scrolled contacts.
 void write_head(QuantityColumns columns, const PressureUnit& unit) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  ImGui::TableNextColumn();
-  ImGui::TableHeader(kId);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("constant while the contact is tracked");
+  column_head("id", "", "constant while the contact is tracked", true);
   for (const QuantityColumn& column : columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(column.live.head);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help_of(column, unit).c_str());
+    const std::string_view own = unit_of(column, unit);
+    column_head(column.live.head, own,
+                fmt::format("{}{}{}", column.help, own.empty() ? "" : ", ", own));
   }
 }
 
@@ -115,15 +106,22 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayou
 std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts,
                                          SkinLayout layout, const PressureUnit& unit) {
   const std::size_t rows = std::min(contacts.above_noise, kMostRows) + 2;
-  const float row = static_cast<float>(style.line) + 2 * ImGui::GetStyle().CellPadding.y;
-  const float height = row * static_cast<float>(rows) + 2;
-  const auto columns = fitting_columns(layout);
+  const auto line = static_cast<float>(style.line);
+  const float height =
+      (line + 2 * ImGui::GetStyle().CellPadding.y) * static_cast<float>(rows) + line + 2;
+  const float ids = width_of_ids(contacts);
+  const float bar = contacts.above_noise > kMostRows ? ImGui::GetStyle().ScrollbarSize : 0;
+  const auto columns = fitting_columns(layout, ImGui::GetContentRegionAvail().x - ids - bar);
   if (!ImGui::BeginTable("contacts", static_cast<int>(columns.size()) + 1, kTableFlags,
                          ImVec2(0, height))) {
     return std::nullopt;
   }
   ImGui::TableSetupScrollFreeze(0, 2);
-  set_columns(columns);
+  ImGui::TableSetupColumn("id", ImGuiTableColumnFlags_WidthFixed, ids);
+  for (const QuantityColumn& column : columns) {
+    ImGui::TableSetupColumn(column.live.head, ImGuiTableColumnFlags_WidthFixed,
+                            width_of_column(column));
+  }
   write_head(columns, unit);
   write_row("all", contacts.found.total, layout, unit);
   const auto clicked = contact_rows(contacts, layout, unit);

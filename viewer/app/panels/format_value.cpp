@@ -156,13 +156,18 @@ std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& ski
                         kpa * plane(values, Uncertainty::normal))};
 }
 
+std::string table_number(double value) {
+  if (value == 0 || !(std::abs(value) < 0.1)) return three_digits(value);
+  return Units().fixed(Dimension::none, value, 4);
+}
+
 std::string format_quantity(const QuantityColumn& column, const ContactQuantities& contact,
                             const PressureUnit& unit) {
   const double value = column.get(contact) / (is_pressure(column) ? unit.kpa : 1);
   if (column.kind == ColumnKind::word) return value == 0 ? "–" : column.word(value);
   const bool is_bound = std::string_view(column.name) == "friction" && contact.friction &&
                         contact.friction_source == FrictionSource::at_least;
-  return (is_bound ? "≥ " : "") + three_digits(value);
+  return (is_bound ? "≥ " : "") + table_number(value);
 }
 
 }  // namespace pillarfield::viewer

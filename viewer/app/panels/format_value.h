@@ -55,8 +55,11 @@ struct DirectionDeviation {
 [[nodiscard]] std::vector<ShownValue> shown_forces(const PillarValues& values, const Skin& skin,
                                                    const Units& units);
 
-/// A quantity of a contact with three digits, a pressure in `unit`; "–" for a missing value and for
-/// the first word, which claims nothing.
+/// Three digits, and at most four decimals: seven characters.
+[[nodiscard]] std::string table_number(double value);
+
+/// A quantity of a contact as a table_number(), a pressure in `unit`; "–" for a missing value and
+/// for the first word, which claims nothing.
 [[nodiscard]] std::string format_quantity(const QuantityColumn& column,
                                           const ContactQuantities& contact,
                                           const PressureUnit& unit);

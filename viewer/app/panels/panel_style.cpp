@@ -58,6 +58,24 @@ void flush_right(const std::string& words) {
   ImGui::TextUnformatted(words.c_str());
 }
 
+void column_head(const std::string& words, std::string_view unit, const std::string& help,
+                 bool left) {
+  ImGui::TableNextColumn();
+  ImGui::BeginGroup();
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
+  left ? ImGui::TextUnformatted(words.c_str()) : flush_right(words);
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
+  flush_right(std::string(unit));
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  ImGui::EndGroup();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
+}
+
+float number_width(const std::string& head) {
+  return static_cast<float>(std::ceil(std::max(width_of(head), width_of("\u22120.0000"))));
+}
+
 void draw_text(ImDrawList& list, Vec2 place, ImU32 colour, const std::string& text, Align align) {
   if (align != Align::left) place.x -= (align == Align::middle ? 0.5 : 1) * width_of(text);
   list.AddText(to_imgui({std::round(place.x), std::round(place.y)}), colour, text.c_str());

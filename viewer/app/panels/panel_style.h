@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <string>
+#include <string_view>
 
 #include "pillarfield/status.h"
 #include "viewer/app/app_state.h"
@@ -36,6 +37,14 @@ inline constexpr Colour kWarningColour = colour_from(0xe69f00);
 
 /// Writes words at the right end of the room that is left.
 void flush_right(const std::string& words);
+
+/// The head of the next column of a table, flush right: words above their unit. `help` appears
+/// under the mouse.
+void column_head(const std::string& words, std::string_view unit, const std::string& help,
+                 bool left = false);
+
+/// Width of a column of numbers of at most seven digits below this head.
+[[nodiscard]] float number_width(const std::string& head);
 
 /// Alignment of a text to its position.
 enum class Align { left, middle, right };

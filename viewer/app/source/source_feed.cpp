@@ -60,12 +60,18 @@ void Loading::tell(const std::string& words) {
   wake_();
 }
 
+void LoadFollower::forget() {
+  load_ = {};
+  since_ = std::chrono::steady_clock::now().time_since_epoch();
+}
+
 void LoadFollower::take_field(AppState& state) {
   if (!follows_) return;
   const Skin& skin = state.source.player->info().skin;
   RenderSettings& settings = state.look.settings;
   if (quantity_ == settings.quantity && range_ != settings.range) follows_ = false;
   const ShownField& field = *state.source.field;
+  if (field.arrived && *field.arrived < since_) return;
   const auto load = load_.add(field.time_s, largest(Quantity::normal, field, skin));
   if (load && follows_ && !state.look.fit_each_field) {
     const float most = 1.2F * *load;
@@ -219,11 +225,13 @@ bool SourceFeed::attend_sensor() {
   LiveControl* const live = state_->source.player->live();
   if (live == nullptr) return false;
   const LiveStatus status = live->status();
+  if (std::exchange(live_tares_, status.tares) < status.tares) load_follower_.forget();
   const bool silent = status.health.since_frame_s > kSilentSeconds && !status.ended;
   if (std::exchange(live_messages_, status.messages) == status.messages || status.messages == 0) {
     return silent;
   }
   state_->window.notice = status.message;
+  state_->window.notice.is_failure = status.failed;
   return true;
 }
 

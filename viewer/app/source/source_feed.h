@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -52,10 +53,13 @@ class LoadFollower {
 
   /// Takes the field on display.
   void take_field(AppState& state);
+  /// Forgets the load of frames that arrived until now, which had another tare.
+  void forget();
 
  private:
   bool follows_;
   LoadRange load_;
+  std::chrono::nanoseconds since_{};  ///< arrival of the frames that count
   std::optional<Quantity> quantity_;  ///< shown when the range was last as it followed
   Range range_;
 };
@@ -113,6 +117,7 @@ class SourceFeed {
   bool beside_is_new_ = false;
   std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::uint64_t live_messages_ = 0;
+  std::uint64_t live_tares_ = 0;
   LoadFollower load_follower_;
   std::unique_ptr<Loading> loading_;  ///< last: its thread uses other members
 };

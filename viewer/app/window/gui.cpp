@@ -11,6 +11,7 @@
 #include "viewer/app/panels/widgets.h"
 #include "viewer/app/window/style.h"
 #include "viewer/render/imgui_point.h"
+#include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -21,6 +22,8 @@ constexpr double kStatus = 24;
 constexpr double kFoldedRow = 28;
 constexpr double kLineOfNames = 16;   ///< of named boxes, in the row
 constexpr double kShareOfRow = 0.12;  ///< of the window's height
+constexpr double kMostOfRow = 0.4;
+constexpr double kMostOfColumn = 0.6;  ///< of the window's width
 constexpr int kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
 bool has_curves(const AppState& state) {
@@ -29,6 +32,7 @@ bool has_curves(const AppState& state) {
 
 /// A panel of the column.
 struct Panel {
+  PanelKind kind = PanelKind::setting;
   const char* title = nullptr;
   bool (*has_contents)(const AppState& state) = nullptr;
   void (*draw)(const Command& command) = nullptr;
@@ -43,20 +47,27 @@ bool has_pins(const AppState& state) {
 }
 
 constexpr std::array kPanels{
-    Panel{"Sensor", [](const AppState& state) { return state.source.player->live() != nullptr; },
+    Panel{PanelKind::setting, "Sensor",
+          [](const AppState& state) { return state.source.player->live() != nullptr; },
           sensor_panel},
-    Panel{"View", always, view_panel},
-    Panel{"Selection", [](const AppState& state) { return state.marks.selection.has_value(); },
+    Panel{PanelKind::setting, "View", always, view_panel},
+    Panel{PanelKind::table, "Selection",
+          [](const AppState& state) { return state.marks.selection.has_value(); },
           [](const Command& command) { selection_panel(command.state); }},
-    Panel{"Boxes", [](const AppState& state) { return !state.marks.boxes.empty(); },
+    Panel{PanelKind::table, "Boxes",
+          [](const AppState& state) { return !state.marks.boxes.empty(); },
           [](const Command& command) { boxes_panel(command.state); },
           [](const AppState& state) { return state.marks.names_box; }},
-    Panel{"Contacts", [](const AppState& state) { return state.look.settings.contacts; },
+    Panel{PanelKind::table, "Contacts",
+          [](const AppState& state) { return state.look.settings.contacts; },
           [](const Command& command) { contacts_panel(command.state, command.place); }},
-    Panel{"Under the cursor", always, [](const Command& command) { hover_panel(command.state); }},
-    Panel{"Pillar", has_pins<true>, [](const Command& command) { pillar_panel(command.state); }},
-    Panel{"Sensel", has_pins<false>, [](const Command& command) { pillar_panel(command.state); }},
-    Panel{"Write", always, write_panel},
+    Panel{PanelKind::setting, "Under the cursor", always,
+          [](const Command& command) { hover_panel(command.state); }},
+    Panel{PanelKind::table, "Pillar", has_pins<true>,
+          [](const Command& command) { pillar_panel(command.state); }},
+    Panel{PanelKind::table, "Sensel", has_pins<false>,
+          [](const Command& command) { pillar_panel(command.state); }},
+    Panel{PanelKind::setting, "Write", always, write_panel},
 };
 
 /// Begins a fixed part of the window and draws its upper and left edge; ImGui::End() ends it.
@@ -78,7 +89,18 @@ void begin_part(const char* name, const Viewport& box, Theme theme, int flags = 
 void draw_column(const Command& command, const Viewport& box) {
   if (box.width < 1) return;
   begin_part("right", box, command.state.look.settings.theme);
-  draw_panels(command);
+  const double first = kColumn * command.state.look.settings.scale;
+  if (box.width < 2.25 * first) {
+    draw_panels(command);
+  } else {
+    ImGui::BeginChild("settings", to_imgui({first, 0}));
+    draw_panels(command, PanelKind::setting);
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("tables", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    draw_panels(command, PanelKind::table);
+    ImGui::EndChild();
+  }
   ImGui::End();
 }
 
@@ -110,11 +132,27 @@ void draw_row(const Command& command, const Viewport& box) {
 
 Sides sides_of(const AppState& state) {
   if (!state.window.show_panels || state.source.player == nullptr) return {};
-  if (!has_curves(state)) return {.column = true};
-  if (state.window.folds_curves) return {.column = true, .row_pixels = kFoldedRow};
-  return {.column = true,
-          .row_share = kShareOfRow,
-          .row_pixels = state.marks.boxes.empty() ? 0 : kLineOfNames};
+  const SkinSize skin = skin_size(state.source.player->info());
+  Sides sides{.column = true,
+              .aspect = skin.width_mm / skin.height_mm,
+              .pictures = state.source.beside == nullptr ? 1 : 2};
+  if (!has_curves(state)) return sides;
+  const bool folded = state.window.folds_curves;
+  sides.row_share = folded ? 0 : kShareOfRow;
+  sides.row_pixels = folded ? kFoldedRow : state.marks.boxes.empty() ? 0 : kLineOfNames;
+  return sides;
+}
+
+/// Width and height of the field that whole skins leave free.
+Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
+  if (!(sides.aspect > 0)) return {};
+  RenderSettings settings;
+  settings.scale = scale;
+  const Margins margins = margins_of(settings);
+  const double around = sides.pictures * (margins.left + margins.right) + margins.legend;
+  const double across = margins.top + margins.bottom;
+  return {field.width - around - sides.pictures * sides.aspect * (field.height - across),
+          field.height - across - (field.width - around) / (sides.pictures * sides.aspect)};
 }
 
 Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Sides& sides) {
@@ -124,9 +162,15 @@ Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Sid
   const double transport = std::min(std::round(kTransport * scale), high - 1 - status);
   const double above = high - status;
   // In a narrow window the column takes about a third, in a low one the row too.
-  const double column = sides.column ? std::round(std::min(kColumn * scale, 0.36 * wide)) : 0;
-  const double row =
-      std::round(std::min(sides.row_share * above + sides.row_pixels * scale, 0.4 * above));
+  double column = sides.column ? std::min(kColumn * scale, 0.36 * wide) : 0;
+  double row = std::min(sides.row_share * above + sides.row_pixels * scale, kMostOfRow * above);
+  const auto spare = [&] {
+    return spare_room({0, 0, wide - column, above - transport - row}, scale, sides);
+  };
+  column =
+      std::round(std::clamp(column + spare().x, column, std::max(column, kMostOfColumn * wide)));
+  if (sides.row_share > 0) row = std::clamp(row + spare().y, row, kMostOfRow * above);
+  row = std::round(row);
   const double middle = std::max(wide - column, 1.0);
   const double field = std::max(above - transport - row, 1.0);
   return {.field = {0, 0, middle, field},
@@ -142,9 +186,9 @@ int fixed_window_flags() {
          ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_NoBringToFrontOnFocus;
 }
 
-void draw_panels(const Command& command) {
+void draw_panels(const Command& command, std::optional<PanelKind> kind) {
   for (const Panel& panel : kPanels) {
-    if (!panel.has_contents(command.state)) continue;
+    if (!panel.has_contents(command.state) || panel.kind != kind.value_or(panel.kind)) continue;
     if (panel.unfolds != nullptr && panel.unfolds(command.state)) ImGui::SetNextItemOpen(true);
     ImGui::PushID(panel.title);
     if (section(panel.title)) panel.draw(command);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "viewer/app/input/shortcuts.h"
@@ -16,10 +18,13 @@ struct Screen {
 };
 
 /// Sides that are shown. The row has a share of the window's height and some nominal pixels more.
+/// Column and row take the room that the pictures of the whole skin leave.
 struct Sides {
   bool column = false;
   double row_share = 0;
   double row_pixels = 0;
+  double aspect = 0;  ///< width over height of the skin; 0: not known
+  int pictures = 1;   ///< side by side
 };
 [[nodiscard]] Sides sides_of(const AppState& state);
 
@@ -30,8 +35,12 @@ struct Sides {
 /// Flags of a fixed part of the window.
 [[nodiscard]] int fixed_window_flags();
 
-/// Draws the panels that have something to show into the current ImGui window.
-void draw_panels(const Command& command);
+/// In a wide column settings and tables stand side by side.
+enum class PanelKind : std::uint8_t { setting, table };
+
+/// Draws the panels, those of one kind or all, that have something to show into the current ImGui
+/// window.
+void draw_panels(const Command& command, std::optional<PanelKind> kind = {});
 
 /// Builds all of the window except the picture, in the current ImGui frame, between NewFrame() and
 /// Render().
