@@ -4,9 +4,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 
+#include "device/device_race.h"
 #include "device/device_state.h"
 #include "device/kernel_cache.h"
 #include "lanes/lane_plan.h"
@@ -254,7 +256,13 @@ const DeviceInfo& Device::info() const { return state().info; }
 Device Device::for_plan(const SolverPlan& plan) const {
   if (best_ == nullptr) return *this;
   const std::size_t most = is_whole(plan) ? kMostWholeQuadsOnHost : kMostQuadsOnHost;
-  return Device(quads(plan.skin) <= most ? std::make_shared<State>() : best_->opened());
+  const Device host(std::make_shared<State>());
+  if (quads(plan.skin) <= most) return host;
+  const std::array devices = {Device(best_->opened()), host};
+  if (devices[0].info().shares_memory) return devices[0];
+  const std::filesystem::path& cache = kernel_cache().directory;
+  const auto file = cache.empty() ? cache : cache / "soonest_devices";
+  return devices.at(soonest(devices, plan, file));
 }
 
 }  // namespace pillarfield

@@ -58,7 +58,9 @@ class Device {
   /// The device that solves the frames of a plan: this one, if it was named. Else the host for a
   /// skin of up to 16,384 pillars (or 2 x 2 sensels; 65,536 if it solves forces alone from 8-bit
   /// readings without any correction), without opening OpenCL, and the best OpenCL device for
-  /// others; the host if there is no such device. Throws Error in the cases of list_devices().
+  /// others; the host if there is no such device. Where the best has memory of its own, it and the
+  /// host solve some frames of the plan, and the quicker one is chosen; it is remembered beside
+  /// the kernels of PoCL for the next time. Throws Error in the cases of list_devices().
   [[nodiscard]] Device for_plan(const SolverPlan& plan) const;
 
   /// @cond internal
