@@ -20,7 +20,7 @@ class CMakeBuild(build_ext):
         subprocess.run(["cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                         f"-DPython_EXECUTABLE={sys.executable}",
                         "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=0",
-                        *(f"-DPILLARFIELD_{part}=OFF" for part in ("TESTS", "BENCH", "VIEWER"))],
+                        *(f"-DPILLARFIELD_{part}=OFF" for part in ("TESTS", "LABORATORY", "VIEWER"))],
                        check=True)
         subprocess.run(["cmake", "--build", build, "--target", "pillarfield_python"], check=True)
         (library,) = (build / "python/pillarfield").glob("_core*.so")

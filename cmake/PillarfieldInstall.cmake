@@ -37,7 +37,10 @@ install(FILES "${PROJECT_BINARY_DIR}/pillarfieldConfig.cmake"
 # be given another.
 set(pc_requires "")
 if(NOT BUILD_SHARED_LIBS)
-  set(pc_requires "Requires: OpenCL, hdf5, libzstd, zlib, minizip, libpng, tomlplusplus, fmt")
+  set(pc_requires "Requires: OpenCL, hdf5, libzstd, zlib, minizip, libpng, fmt")
+  if(tomlplusplus_DIR)
+    string(APPEND pc_requires ", tomlplusplus")
+  endif()
 endif()
 file(RELATIVE_PATH pc_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")

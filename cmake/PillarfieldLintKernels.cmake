@@ -51,8 +51,10 @@ foreach(lanes 2 4 8 16)
       -DPF_WHOLE=4 ${lint_whole_constants} ${stages} ${PROJECT_SOURCE_DIR}/kernels/all.h)
   endforeach()
 endforeach()
+set(lint_pack ${PROJECT_SOURCE_DIR}/kernels/frame/pack_results.cl)
+list(APPEND lint_commands COMMAND ${lint_compile} ${lint_pack})
 set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")
 add_custom_command(OUTPUT ${lint_stamp} ${lint_commands}
   COMMAND ${CMAKE_COMMAND} -E touch ${lint_stamp}
-  DEPENDS ${kernel_files} COMMENT "Linting the kernels" VERBATIM)
+  DEPENDS ${kernel_files} ${lint_pack} COMMENT "Linting the kernels" VERBATIM)
 add_custom_target(lint-kernels ALL DEPENDS ${lint_stamp})

@@ -65,7 +65,7 @@ class Ring {
         device_named(device), plan,
         Processor::Options{.frames_in_flight = frames_in_flight + lent}));
     for (int i = 0; i < frames_in_flight; ++i) {
-      vacant_.emplace_back(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+      frames().vacant.push_back(processor_->get()->frame_buffer());
     }
     if (!contacts) return;
     ContactOptions options;
@@ -77,16 +77,17 @@ class Ring {
     const FrameView frame = frame_of(readings);
     check(frame, plan_.skin, plan_.sensel_type, "Processor.submit");
     with_processor([&](Processor& processor) {
-      if (vacant_.empty()) {
+      std::deque<FrameBuffer>& vacant = frames().vacant;
+      if (vacant.empty()) {
         throw Error("Processor.submit", "all frames are in flight",
                     "receive() one first, or give more frames_in_flight");
       }
-      FrameBuffer& buffer = vacant_.front();
+      FrameBuffer& buffer = vacant.front();
       std::memcpy(buffer.bytes().data(), frame.data, buffer.bytes().size());
       std::vector<SenselBlock> blocks = blocks_of(missing);
       processor.submit(buffer.view());
-      flying_.push_back({std::move(buffer), time_s, std::move(blocks)});
-      vacant_.pop_front();
+      frames().flying.push_back({std::move(buffer), time_s, std::move(blocks)});
+      vacant.pop_front();
     });
   }
 
@@ -128,9 +129,9 @@ class Ring {
   }
 
   [[nodiscard]] std::size_t in_flight() {
-    std::size_t frames = 0;
-    with_processor([&](Processor&) { frames = flying_.size(); });
-    return frames;
+    std::size_t count = 0;
+    with_processor([&](Processor&) { count = frames().flying.size(); });
+    return count;
   }
 
   void close() {
@@ -138,7 +139,7 @@ class Ring {
     if (processor_->is_foreign()) return;
     const std::lock_guard alone(mutex_);
     processor_->reset();
-    flying_.clear();
+    frames_.reset();
   }
 
   [[nodiscard]] SolverPlan plan() const { return plan_; }  // A copy: set_tare() changes it.
@@ -149,6 +150,12 @@ class Ring {
     double time_s;
     std::vector<SenselBlock> missing;
   };
+  struct Frames {
+    std::deque<FrameBuffer> vacant;
+    std::deque<Flying> flying;
+  };
+
+  [[nodiscard]] Frames& frames() { return *frames_.get(); }
 
   template <class Call>
   void with_processor(Call call) {
@@ -169,9 +176,9 @@ class Ring {
   }
 
   Received deliver(Processor& processor, ForceFieldView forces) {
-    Flying flown = std::move(flying_.front());
-    flying_.pop_front();
-    vacant_.push_back(std::move(flown.buffer));
+    Flying flown = std::move(frames().flying.front());
+    frames().flying.pop_front();
+    frames().vacant.push_back(std::move(flown.buffer));
     const bool is_whole = flown.missing.empty();
     if (!is_whole) forces = missing_.without(forces, flown.missing);
     Received received;
@@ -194,8 +201,7 @@ class Ring {
   std::mutex mutex_;
   SolverPlan plan_;
   int lent_;
-  std::deque<FrameBuffer> vacant_;
-  std::deque<Flying> flying_;
+  ProcessBound<Frames> frames_{std::make_unique<Frames>()};
   /// Ends before the frames that it reads.
   std::optional<ProcessBound<Processor>> processor_;
   std::optional<ProcessBound<ContactTracker>> tracker_;

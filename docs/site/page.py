@@ -59,6 +59,12 @@ def convert_token(path, match):
     return match[0]
 
 
+def replayed(text):
+    """The first picture as the page hand.html, which docs/site/replay.py writes."""
+    return re.sub(r"!\[([^]]*)\]\(docs/pictures/hand\.png\)",
+                  r'\\htmlonly<iframe id="replay" src="hand.html" title="\1"></iframe>\\endhtmlonly', text)
+
+
 def is_code(lines):
     """Whether each line is within a fence or indented code."""
     in_fence = indented = False
@@ -107,4 +113,4 @@ if __name__ == "__main__":
     sys.stdout.reconfigure(encoding="utf-8")
     # Doxygen wants the title first; reports begin with a comment.
     text = re.sub(r"\A(<!--.*?-->\s*)+", "", source.read_text(encoding="utf-8"), flags=re.DOTALL)
-    sys.stdout.writelines(convert(source, text.splitlines(keepends=True)))
+    sys.stdout.write(replayed("".join(convert(source, text.splitlines(keepends=True)))))

@@ -25,9 +25,9 @@ constexpr std::size_t kFewestPlaces = 5;
 constexpr std::size_t kFewestVisits = 5;
 /// Largest misfit of the sums, relative.
 constexpr double kMostWeightMisfit = 0.15;
-/// Largest deviation of an exponent that is stored, relative: loads that differ by a factor of
-/// three are then wrong by a tenth.
-constexpr double kMostExponentDeviation = 0.1;
+/// Largest deviation of an exponent that counts as seen, relative. Rigid bases, of which gains may
+/// imitate another exponent, leave 0.1 and more, wrongly small by a factor of up to three.
+constexpr double kMostExponentDeviation = 0.05;
 constexpr int kWeightSamples = 48;
 
 /// The threshold of readings after the gain, without curve and power law.
@@ -250,15 +250,15 @@ WeightFit fit_weight(const std::vector<WeighedFrame>& frames, const WeighedArray
     return fit;
   }
   fit.fit(std::nullopt);
+  const double exponent = fit.response().exponent;
+  result.finds_exponent = fit.exponent_deviation() < kMostExponentDeviation * exponent &&
+                          exponent > kMinExponent && exponent < kMaxExponent;
+  if (!result.finds_exponent) {
+    fit = WeightFit(frames, array, before);
+    fit.fit(WeightFit::Exponent{before.exponent, WeightFit::kExponentSpread * before.exponent});
+  }
   result.exponent = fit.response().exponent;
   result.exponent_deviation = fit.exponent_deviation();
-  result.finds_exponent = result.exponent_deviation < kMostExponentDeviation * result.exponent &&
-                          result.exponent > kMinExponent && result.exponent < kMaxExponent;
-  if (!result.finds_exponent) {
-    const double unknown = std::hypot(result.exponent_deviation, result.exponent - before.exponent);
-    fit = WeightFit(frames, array, before);
-    fit.fit(WeightFit::Exponent{before.exponent, unknown});
-  }
   return fit;
 }
 
@@ -337,8 +337,9 @@ void report_weight(StepReport& report, const WeightResult& result) {
                  "% deviation of the total of 0.3 to 2 times the weight, anywhere");
   if (calibration.planes.effects.curve.empty()) {
     report.measure("exponent", result.exponent, "exponent",
-                   fmt::format("± {:.2g} of the load in the reading{}", result.exponent_deviation,
-                               result.finds_exponent ? "" : "; not stored"));
+                   result.finds_exponent ? fmt::format("± {:.2g} of the load in the reading",
+                                                       result.exponent_deviation)
+                                         : "not seen: it stays as it was");
     report.facts["exponent_deviation"] = result.exponent_deviation;
   }
   report.facts["exponent_stored"] = result.finds_exponent;
@@ -381,8 +382,8 @@ void report_weight(StepReport& report, const WeightResult& result) {
       result.frames_saturated, result.frames_unreadable, result.frames_apart));
   if (calibration.planes.effects.curve.empty() && !result.finds_exponent) {
     report.notes.emplace_back(
-        "The pressures are too alike to find the response: it stays as it was. Turn the weight "
-        "onto another face, or give a second weight");
+        "The weight presses too much alike to show the exponent: the response stays as it was, and "
+        "other weights may be far off. Roll a second weight, or turn this one onto another face");
   }
   report.add_residual(calibration.planes.effects);
 }

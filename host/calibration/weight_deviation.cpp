@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/quantile.h"
 #include "calibration/weight_fit.h"
 
 namespace pillarfield {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kLeastLoad = 0.3;
 constexpr double kMostLoad = 2;
 constexpr double kLeastBase = 0.7;
-constexpr double kMostBase = 1.2;
+constexpr double kMostBase = 1.4;
 constexpr int kBodiesPerDraw = 64;
 
 /// A part of a body's load on a sensel.
@@ -21,12 +22,17 @@ struct LoadPart {
   std::size_t sensel;
   double share;
   double log_reading;  ///< relative to the reference
+  double noise;        ///< deviation, relative to the share
+  bool is_lost;        ///< below the threshold
 };
 
 /// Bodies like the weight in a frame, elsewhere.
 class OtherBodies {
  public:
-  explicit OtherBodies(const WeightFit& fit) : fit_(fit), array_(fit.array()) {}
+  explicit OtherBodies(const WeightFit& fit)
+      : fit_(fit),
+        array_(fit.array()),
+        heaviest_n_(std::ranges::max(fit.frames(), {}, &WeighedFrame::weight_n).weight_n) {}
 
   [[nodiscard]] double uniform() { return distribution_(random_); }
   [[nodiscard]] double normal() { return normal_(random_); }
@@ -52,7 +58,8 @@ class OtherBodies {
     const double row = uniform() * (array_.rows - 1 - base * (bottom - top));
     const double col = uniform() * (array_.cols - 1 - base * (right - left));
     const double load = kLeastLoad * std::pow(kMostLoad / kLeastLoad, uniform());
-    const double log_pressure = std::log(load / (base * base)) / fit_.response().exponent;
+    const double log_pressure =
+        std::log(load * heaviest_n_ / (frame.weight_n * base * base)) / fit_.response().exponent;
     parts.clear();
     double sum = 0;
     for (const auto& [i, reading] : frame.readings) {
@@ -66,7 +73,11 @@ class OtherBodies {
       const double corrected = std::exp(fit_.log_gains()[i]) * reading;
       const double share = fit_.response().at(corrected).load;
       const double log_reading = std::log(corrected / fit_.response().reference) + log_pressure;
-      parts.push_back({at_row * array_.cols + at_col, share, log_reading});
+      const double size = fit_.response().reference * std::exp(log_reading);
+      // A wider base has more sensels, each with less of the noise.
+      const double noise = fit_.response().exponent * array_.noise[i] / (size * base);
+      parts.push_back(
+          {at_row * array_.cols + at_col, share, log_reading, noise, size < array_.threshold});
       sum += share;
     }
     for (LoadPart& part : parts) part.share /= sum;
@@ -81,6 +92,7 @@ class OtherBodies {
 
   const WeightFit& fit_;
   const WeighedArray& array_;
+  double heaviest_n_;
   std::mt19937_64 random_{1};
   std::uniform_real_distribution<double> distribution_;
   std::normal_distribution<double> normal_;
@@ -93,7 +105,7 @@ WeightDeviations deviations_of(const WeightFit& fit, int samples) {
   const std::size_t count = fit.log_gains().size();
   WeightDeviations result;
   result.gains.assign(count, 0);
-  double totals = 0;
+  std::vector<double> totals;
   double elements = 0;
   std::vector<double> independent(count + 2);
   std::vector<LoadPart> parts;
@@ -105,19 +117,20 @@ WeightDeviations deviations_of(const WeightFit& fit, int samples) {
     }
     for (int body = 0; body < kBodiesPerDraw; ++body) {
       bodies.draw(parts);
-      double total = -errors.log_counts_per_newton;
+      double total = 0;
+      double variance = fit.misfit() * fit.misfit();
       for (const LoadPart& part : parts) {
         const double error = fit.response().exponent * errors.log_gains[part.sensel] +
-                             errors.exponent * part.log_reading;
-        total += part.share * error;
-        const double element = error - errors.log_counts_per_newton;
-        elements += part.share * element * element / (samples * kBodiesPerDraw);
+                             errors.exponent * part.log_reading - errors.log_counts_per_newton;
+        if (!part.is_lost) total += part.share * std::exp(error);
+        variance += part.share * part.share * part.noise * part.noise;
+        elements += part.share * error * error / (samples * kBodiesPerDraw);
       }
-      totals += total * total / (samples * kBodiesPerDraw);
+      totals.push_back(std::abs(total - 1 + std::sqrt(variance) * bodies.normal()));
     }
   }
   for (double& gain : result.gains) gain = std::sqrt(gain);
-  result.total = std::hypot(std::sqrt(totals), fit.misfit());
+  result.total = quantile(totals, 0.95) / 1.96;
   result.element = std::hypot(std::sqrt(elements), fit.misfit());
   return result;
 }

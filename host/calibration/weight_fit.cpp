@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <utility>
 
 #include "base/quantile.h"
@@ -10,12 +9,12 @@
 namespace pillarfield {
 namespace {
 
-/// Standard deviations before the frames are seen: of a logarithmic gain, and of the logarithm of
-/// the exponent.
+/// Standard deviation of a logarithmic gain before the frames are seen.
 constexpr double kGainSpread = 0.25;
 constexpr double kLeastGainSpread = 0.01;
 constexpr double kMostGainSpread = 0.5;
-constexpr double kExponentSpread = 0.3;
+/// Least ratio of two weights whose sums tell the exponent from which a fit starts.
+constexpr double kOtherWeight = 1.2;
 /// Largest change of a step, and of the exponent's logarithm in all.
 constexpr double kMostExponentStep = 0.15;
 constexpr double kMostExponentChange = 0.9;
@@ -25,9 +24,11 @@ constexpr double kAccurateExponent = 1e-3;
 constexpr double kAccurateGain = 5e-3;
 /// Least relative misfit, common to the frames at a place: sensels are no exact squares.
 constexpr double kLeastMisfit = 1e-3;
-/// Part of the sums' error that may follow the exponent's slopes, relative: noise that bends at
-/// the rim of a contact, errors of tares. Simulated pads show 1e-4.
-constexpr double kAlongExponent = 1.5e-4;
+/// Part of the sums' error that may follow the exponent's slopes, relative: errors of tares, noise
+/// that bends at the rim of a contact.
+constexpr double kAlongExponent = 1e-4;
+/// Relative error of the variance of the noise.
+constexpr double kNoiseError = 0.3;
 /// Relative error of the load on missing sensels, taken from those beside them.
 constexpr double kGuessError = 0.3;
 /// Tukey's biweight leaves out residuals beyond this many deviations.
@@ -69,23 +70,22 @@ WeightFit::WeightFit(std::span<const WeighedFrame> frames, WeighedArray array,
       response_(std::move(response)),
       first_exponent_(response_.exponent),
       begins_(1, 0),
-      touched_(array_.noise.size(), false),
       x_(array_.noise.size(), 0.0),
       spread_(kGainSpread),
       residuals_(frames.size()),
       noise_squares_(frames.size()),
       exponent_slopes_(frames.size()),
+      noise_by_exponent_(frames.size()),
+      exponent_noise_(frames.size()),
       weights_(frames.size()) {
   for (const WeighedFrame& frame : frames) {
     begins_.push_back(begins_.back() + frame.readings.size());
     const auto [first, last] = std::ranges::minmax(
         frame.readings, {}, [&](const WeighedReading& each) { return place(each.sensel); });
-    for (const auto& [i, reading] : frame.readings) {
-      if (reading > array_.threshold) touched_[i] = true;
-    }
     reach_ = std::max(reach_, place(last.sensel) - place(first.sensel));
   }
   slopes_.resize(begins_.back());
+  noise_slopes_.resize(begins_.back());
 }
 
 /// The place of a sensel in the equations: along the shorter side, so that contacts are narrow.
@@ -94,34 +94,47 @@ std::size_t WeightFit::place(std::uint32_t sensel) const {
   return std::size_t{sensel % array_.cols} * array_.rows + sensel / array_.cols;
 }
 
-/// Residuals of log(sum of V / weight), and their slopes in x and in the exponent.
+/// Residuals of log(sum of V / weight), their slopes in x and in the exponent, and half the slopes
+/// of the variance that the noise gives them.
 void WeightFit::linearise() {
   std::vector<double> gains(x_.size());
   std::ranges::transform(x_, gains.begin(), [](double x) { return std::exp(x); });
   for (std::size_t t = 0; t < frames_.size(); ++t) {
     double sum = 0;
-    double noise = 0;
-    double exponent_slope = 0;
-    double* slope = &slopes_[begins_[t]];
+    double slope = 0;
+    NoiseSums noise;
+    std::size_t at = begins_[t];
     for (const auto& [i, raw] : frames_[t].readings) {
       const double reading = gains[i] * raw;
       const auto [load, rise] = response_.at(reading);
       const double copies = array_.copies[i];
-      *slope++ = copies * rise;
-      sum += copies * (load + array_.zone(i, raw));
       const double sigma = gains[i] * array_.noise[i];
-      // The slope of a reading within the noise is that at the noise.
-      const bool quiet = std::abs(reading) < sigma;
-      noise += squared(copies * (quiet ? response_.at(sigma).slope : rise / reading * sigma));
-      if (load != 0) {
-        exponent_slope += copies * load * std::log(std::abs(reading) / response_.reference);
-      }
+      // A reading within the noise has the slopes at the noise.
+      const double size = std::max({std::abs(reading), sigma, 1e-6});
+      const WeightResponse::Point noisy = response_.at(size);
+      const double log_reading = std::log(size / response_.reference);
+      const double square = squared(copies * noisy.slope * sigma / size);
+      const double by_exponent = noisy.load / noisy.slope + log_reading;
+      slopes_[at] = copies * rise;
+      noise_slopes_[at++] = square * noisy.slope / noisy.load;
+      sum += copies * (load + array_.zone(i, raw));
+      slope += copies * load * log_reading;
+      noise.square += square;
+      noise.by_exponent += square * by_exponent;
+      noise.by_exponent_twice += square * squared(by_exponent);
     }
     sum = std::max(sum, 1e-9);
-    for (std::size_t i = begins_[t]; i < begins_[t + 1]; ++i) slopes_[i] /= sum;
+    for (std::size_t i = begins_[t]; i < at; ++i) {
+      slopes_[i] /= sum;
+      noise_slopes_[i] = noise_slopes_[i] / squared(sum) - slopes_[i] * noise.square / squared(sum);
+    }
+    slope /= sum;
     residuals_[t] = std::log(sum / frames_[t].weight_n);
-    noise_squares_[t] = noise / squared(sum);
-    exponent_slopes_[t] = exponent_slope / sum;
+    exponent_slopes_[t] = slope;
+    noise_squares_[t] = noise.square / squared(sum);
+    noise_by_exponent_[t] = noise.by_exponent / squared(sum) - slope * noise_squares_[t];
+    exponent_noise_[t] = noise.by_exponent_twice / squared(sum) -
+                         slope * (2 * noise_by_exponent_[t] + slope * noise_squares_[t]);
   }
 }
 
@@ -177,7 +190,9 @@ WeightFit::Equations WeightFit::equations() const {
     if (weight == 0) continue;
     const double residual = residuals_[t] - log_k_;
     const std::array<double, 2> shared = {exponent_slopes_[t], -1};
-    for (std::size_t s = 0; s < 2; ++s) all.shared_right.at(s) -= weight * shared.at(s) * residual;
+    // Noise is in the slopes too: residual and slope have in common what is subtracted.
+    all.shared_right[0] -= weight * (shared[0] * residual - noise_by_exponent_[t]);
+    all.shared_right[1] += weight * residual;
     all.shared[0] += weight * squared(shared[0]);
     all.shared[1] += weight * shared[0] * shared[1];
     all.shared[2] += weight;
@@ -188,7 +203,7 @@ WeightFit::Equations WeightFit::equations() const {
     for (std::size_t a = 0; a < readings.size(); ++a) {
       const std::size_t at = places[a];
       const double weighed = weight * slope[a];
-      all.right[at] -= weighed * residual;
+      all.right[at] -= weighed * residual - weight * noise_slopes_[begins_[t] + a];
       for (std::size_t s = 0; s < 2; ++s) all.beside.at(s)[at] += weighed * shared.at(s);
       for (std::size_t b = 0; b <= a; ++b) {
         const std::size_t other = places[b];
@@ -241,29 +256,50 @@ void WeightFit::settle(int steps) {
   weigh();
 }
 
-/// The spread from sensel to sensel, of which the gains that the frames determine are samples.
+/// The spread from sensel to sensel: without gains the sums vary from place to place by it and by
+/// their noise.
 void WeightFit::estimate_spread() {
-  constexpr int kDraws = 32;
-  const Equations all = equations();
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> normal;
-  std::vector<double> variances(x_.size(), 0);
-  std::vector<double> independent(x_.size());
-  for (int draw = 0; draw < kDraws; ++draw) {
-    for (double& value : independent) value = normal(random);
-    const std::vector<double> errors = all.factor.spread(independent);
-    for (std::size_t at = 0; at < errors.size(); ++at) {
-      variances[at] += squared(errors[at]) / kDraws;
-    }
-  }
+  std::vector<double> slopes(x_.size(), 0);
+  double slope_squares = 0;
+  double sum = 0;
   double squares = 0;
   double count = 0;
-  for (std::uint32_t i = 0; i < x_.size(); ++i) {
-    if (!touched_[i]) continue;
-    squares += squared(x_[i]) + variances[place(i)];
+  for (std::size_t t = 0; t < frames_.size(); ++t) {
+    if (weights_[t] == 0) continue;
+    double bare = residuals_[t];
+    const double* slope = &slopes_[begins_[t]];
+    for (const WeighedReading& each : frames_[t].readings) {
+      bare -= *slope * x_[each.sensel];
+      slopes[each.sensel] += *slope;
+      slope_squares += squared(*slope++);
+    }
+    sum += bare;
+    squares += squared(bare) - noise_squares_[t];
     ++count;
   }
-  spread_ = std::clamp(std::sqrt(squares / count), kLeastGainSpread, kMostGainSpread);
+  const double of_sums = squares - squared(sum) / count;
+  const double of_one = slope_squares - product_of(slopes, slopes) / count;
+  const double found = of_one > 0 ? std::sqrt(std::max(0.0, of_sums) / of_one) : 0;
+  spread_ = std::clamp(found, kLeastGainSpread, kMostGainSpread);
+}
+
+/// Variance of the exponent from the information of the frames, of which their noise makes a part
+/// that says nothing.
+double WeightFit::exponent_variance(double information) const {
+  const double unknown = squared(kExponentSpread * response_.exponent);
+  double own = 0;
+  double shift = 0;
+  double weights = 0;
+  for (std::size_t t = 0; t < frames_.size(); ++t) {
+    own += weights_[t] * exponent_noise_[t];
+    shift += weights_[t] * noise_by_exponent_[t];
+    weights += weights_[t];
+  }
+  const double left = information - own;
+  if (!(left > 0)) return unknown;
+  const double variance = information / squared(left) + squared(kNoiseError * shift / left) +
+                          squared(kAlongExponent) * weights / left;
+  return std::min(variance, unknown);
 }
 
 /// The posterior at the fit.
@@ -274,17 +310,29 @@ void WeightFit::state_deviations() {
   const double ee = all.shared[0] - product_of(all.beside[0], responses_[0]);
   const double ek = all.shared[1] - product_of(all.beside[0], responses_[1]);
   const double kk = all.shared[2] - product_of(all.beside[1], responses_[1]);
-  const double information = ee - squared(ek) / kk;
-  double variance = 1 / information;
-  if (known_) {
-    variance = squared(known_->deviation);
-  } else {
-    variance += std::min(squared(kAlongExponent) * all.shared[2] / information,
-                         squared(kExponentSpread * response_.exponent));
-  }
+  const double variance =
+      known_ ? squared(known_->deviation) : exponent_variance(ee - squared(ek) / kk);
   // log k follows the exponent by -ek/kk.
   covariance_ = {variance, -ek / kk * variance, squared(ek / kk) * variance + 1 / kk};
   exponent_deviation_ = std::sqrt(variance);
+}
+
+/// The exponent by which the typical sums of the lightest and the heaviest weight differ as these
+/// do: with another one the frames of one of them would be outliers. That before for one weight.
+double WeightFit::start_exponent() const {
+  const auto [light, heavy] = std::ranges::minmax(frames_, {}, &WeighedFrame::weight_n);
+  const double ratio = std::log(heavy.weight_n / light.weight_n);
+  if (ratio < std::log(kOtherWeight)) return first_exponent_;
+  const auto typical = [&](double weight_n) {
+    std::vector<double> residuals;
+    for (std::size_t t = 0; t < frames_.size(); ++t) {
+      if (frames_[t].weight_n == weight_n) residuals.push_back(residuals_[t]);
+    }
+    return median(residuals);
+  };
+  const double of_sums = ratio + typical(heavy.weight_n) - typical(light.weight_n);
+  const double change = std::log(ratio / std::max(of_sums, 1e-3 * ratio));
+  return first_exponent_ * std::exp(std::clamp(change, -kMostExponentChange, kMostExponentChange));
 }
 
 void WeightFit::fit(std::optional<Exponent> known) {
@@ -292,10 +340,10 @@ void WeightFit::fit(std::optional<Exponent> known) {
   linearise();
   estimate_misfit();
   first_misfit_ = misfit_;
+  response_.exponent = known ? known->value : start_exponent();
   known_ = Exponent{response_.exponent, 0};
   settle(2);
   known_ = known;
-  if (known) response_.exponent = known->value;
   settle(kSteps);
   for (int round = 0; round < 2; ++round) {
     estimate_spread();

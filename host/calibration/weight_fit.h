@@ -61,6 +61,9 @@ struct WeighedArray {
 /// per newton, by Gauss-Newton steps with robust weights of the frames.
 class WeightFit {
  public:
+  /// Standard deviation of the logarithm of the exponent before the frames are seen.
+  static constexpr double kExponentSpread = 0.4;
+
   WeightFit(std::span<const WeighedFrame> frames, WeighedArray array, WeightResponse response);
 
   /// Fits all, or with an exponent and its known deviation the rest.
@@ -102,15 +105,24 @@ class WeightFit {
     std::array<double, 3> shared{};  ///< exponent², exponent · log k, (log k)²
   };
 
+  /// Sums over a frame of the variances of V by noise.
+  struct NoiseSums {
+    double square = 0;
+    double by_exponent = 0;        ///< times d log(deviation) / d exponent
+    double by_exponent_twice = 0;  ///< times its square
+  };
+
   void linearise();
   void estimate_misfit();
   void weigh();
   [[nodiscard]] double step();
   void settle(int steps);
+  [[nodiscard]] double start_exponent() const;
   void estimate_spread();
   void state_deviations();
   [[nodiscard]] Equations equations() const;
   [[nodiscard]] double variance(std::size_t frame) const;
+  [[nodiscard]] double exponent_variance(double information) const;
   [[nodiscard]] std::size_t place(std::uint32_t sensel) const;
 
   std::span<const WeighedFrame> frames_;
@@ -119,8 +131,7 @@ class WeightFit {
   double first_exponent_;
   std::optional<Exponent> known_;
   std::vector<std::size_t> begins_;
-  std::vector<bool> touched_;  ///< sensels that read above the threshold
-  std::size_t reach_ = 0;      ///< of a frame, in places
+  std::size_t reach_ = 0;  ///< of a frame, in places
   std::vector<double> x_;
   double log_k_ = 0;
   double misfit_ = 0;
@@ -129,9 +140,12 @@ class WeightFit {
   double exponent_deviation_ = 0;
   // At x_: one for each reading, then one for each frame.
   std::vector<double> slopes_;
+  std::vector<double> noise_slopes_;  ///< half the slopes of noise_squares_ in x
   std::vector<double> residuals_;
-  std::vector<double> noise_squares_;
+  std::vector<double> noise_squares_;  ///< variance of a residual by noise
   std::vector<double> exponent_slopes_;
+  std::vector<double> noise_by_exponent_;  ///< half the slope of noise_squares_ in the exponent
+  std::vector<double> exponent_noise_;     ///< variance of exponent_slopes_ by noise
   std::vector<double> weights_;
   // The posterior, after fit().
   std::optional<Equations> posterior_;
@@ -139,10 +153,10 @@ class WeightFit {
   std::array<double, 3> covariance_{};            ///< of the shared ones, in their order
 };
 
-/// Relative deviations of loads of 0.3 to 2 times the weight, on bases of 0.5 to 1.2 times the
+/// Relative deviations of loads of 0.3 to 2 times the weight, on bases of 0.7 to 1.4 times the
 /// length, anywhere on the array.
 struct WeightDeviations {
-  double total = 0;
+  double total = 0;           ///< in a frame, with its noise and what lies below the threshold
   double element = 0;         ///< of a sensel's load, weighted by the load
   std::vector<double> gains;  ///< of each sensel
 };

@@ -59,6 +59,7 @@ struct StreamOptions : PrintOptions {
   std::optional<double> rate_hz;  ///< of a replayed file, or of the sensor
   bool repeat = false;
   bool summary = false;  ///< measures whether the solver keeps up with rate_hz
+  bool newest = false;   ///< of the frames that wait, the newest alone
   std::uint32_t serial_baud = 2'000'000;
   std::vector<std::string> sinks;
   std::vector<std::string> allowed_origins;  ///< of web pages

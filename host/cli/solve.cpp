@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -55,9 +56,17 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
   return planned_contact_file(file);
 }
 
+/// The frames in contact, and the one of the largest normal force.
+struct LoadSummary {
+  std::uint64_t frames = 0;  ///< in contact
+  double largest_n = 0;      ///< sum over the frame
+  double at_s = 0;           ///< its time
+};
+
 struct SolveSummary {
   PipelineStatistics done;
   RegionCount regions;
+  LoadSummary load;
   double startup_seconds = 0;  ///< opening the files and the device, compiling
   double seconds = 0;          ///< reading, solving and writing, which overlap
 };
@@ -79,20 +88,32 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
 
 constexpr int kFramesInFlight = 3;
 
-/// Counts regions and shows the progress.
+/// Counts regions, finds the frame of the largest force and shows the progress.
 class Counter final : public ForceSink {
  public:
   Counter(std::uint64_t frames, bool quiet) : progress_("Solving", frames, quiet) {}
 
   void append(const SolvedFrame& frame) override {
+    const std::uint64_t in_contact = regions_.in_contact();
     regions_.add(frame.forces.status);
     progress_.show(++frames_);
+    if (regions_.in_contact() == in_contact) return;
+    ++load_.frames;
+    double normal_n = 0;
+    for (const float normal : frame.forces.normal) {
+      if (std::isfinite(normal)) normal_n += normal;
+    }
+    if (normal_n <= load_.largest_n) return;
+    load_.largest_n = normal_n;
+    load_.at_s = frame.time_s;
   }
   [[nodiscard]] const RegionCount& regions() const { return regions_; }
+  [[nodiscard]] const LoadSummary& load() const { return load_; }
 
  private:
   Progress progress_;
   RegionCount regions_;
+  LoadSummary load_;
   std::uint64_t frames_ = 0;
 };
 
@@ -121,6 +142,9 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
     json["sensel_cols"] = plan.skin.cols;
     json["in_contact"] = summary.regions.in_contact();
   }
+  json["frames_in_contact"] = summary.load.frames;
+  json["largest_normal_n"] = summary.load.largest_n;
+  json["largest_at_s"] = summary.load.at_s;
   json["saturated"] = summary.regions.saturated;
   json["inconsistent"] = summary.regions.inconsistent;
   json["startup_seconds"] = summary.startup_seconds;
@@ -135,6 +159,25 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Devic
   fmt::print("{}\n", json_text(json));
 }
 
+/// Sentences on contacts and the largest force, and the next command.
+std::string story_of(const SolveOptions& options, const SolveSummary& summary) {
+  const LoadSummary& load = summary.load;
+  if (load.frames == 0) return "Nothing touches in any frame\n";
+  std::string contacts;
+  if (!options.contacts_file.empty()) {
+    contacts = fmt::format(", {}, at most {} at once", counted(summary.done.contacts, "contact"),
+                           summary.done.most_contacts);
+  }
+  std::string story =
+      fmt::format("Contact in {} of {}{}; largest normal force {:.4g} N in all, at {:.4g} s\n",
+                  grouped(load.frames), counted(summary.done.frames, "frame"), contacts,
+                  load.largest_n, load.at_s);
+  if (is_hdf5_name(options.output)) {
+    story += fmt::format("Look at it: pillarfield-viewer {}\n", printable(options.output));
+  }
+  return story;
+}
+
 void print_text(const SolveOptions& options, const SolverPlan& plan, const Device& solver,
                 const SolveSummary& summary) {
   const RegionCount& regions = summary.regions;
@@ -145,6 +188,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Devic
   fmt::print("Solved {} of {} x {} {} on {} ({}, {})\n", counted(summary.done.frames, "frame"),
              plan.skin.element_rows(), plan.skin.element_cols(), name, device.name, device.type,
              device.shares_memory ? "zero copy" : "staged");
+  fmt::print("{}", story_of(options, summary));
   fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million {}/s\n",
              summary.seconds, rounded(per_second(frames, summary.seconds)),
              per_second(elements, summary.seconds) / 1e6, name);
@@ -281,6 +325,7 @@ void solve_series(SolveOptions options, const std::vector<std::filesystem::path>
     const Job job = {options, *source, device, plan, range, counter, check};
     solve_frames(job, table, summary);
     summary.regions = counter.regions();
+    summary.load = counter.load();
   }
   summary.seconds = watch.seconds() - summary.startup_seconds;
   if (!source->has_truth()) print_about(options.input, "warning", check.warnings());

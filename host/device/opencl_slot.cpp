@@ -88,8 +88,9 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
                         settings.paths.skip_idle, calibration.planes());
   if (slot.tiles_across > 0) tiles_ = {slot.tiles_across, slot.tiles_down};
   layout_ = slot.layout;
-  memory_ = settings.shares_memory ? shared_memory(device.context, slot.results)
-                                   : staged_memory(device.context, queue_, plan, slot.results);
+  memory_ = settings.transfers == nullptr
+                ? shared_memory(device.context, slot.results)
+                : staged_memory(device, queue_, plan, slot.results, *settings.transfers);
   if (padded_sensels(plan.skin) != plan.skin.sensels()) {
     padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
   }
@@ -196,14 +197,22 @@ void OpenClSlot::solve(const std::optional<Curvature>& bent, const single_precis
   }
 }
 
-void OpenClSlot::wait() { queue_.finish(); }
+void OpenClSlot::wait() {
+  queue_.finish();
+  if (memory_->fetch_rest(queue_)) queue_.finish();
+  memory_->unpack();
+}
 
 bool OpenClSlot::is_done() {
   if (done_() == nullptr) {
     queue_.enqueueMarkerWithWaitList(nullptr, &done_);
     queue_.flush();
   }
-  return done_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;
+  if (done_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) return false;
+  if (!memory_->fetch_rest(queue_)) return true;
+  done_ = {};
+  queue_.flush();
+  return false;
 }
 
 }  // namespace pillarfield

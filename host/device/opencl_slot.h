@@ -40,8 +40,8 @@ class DeviceCalibration {
 struct SlotSettings {
   cl::Program program;
   int lanes = 1;
-  bool shares_memory = false;
   SpeedPaths paths;
+  Transfers* transfers = nullptr;  ///< of a device with its own memory; null if it is shared
 };
 
 /// One frame in flight on an OpenCL device: a queue of its own, a kernel with its arguments, and

@@ -30,6 +30,7 @@ namespace pillarfield {
 namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
+constexpr std::size_t kMostUnpackingThreads = 8;  ///< they wait for the host's memory
 constexpr const char* kSubmit = "Processor::submit";
 constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
 
@@ -198,7 +199,10 @@ struct Processor::State {
     settings.lanes = block_lanes(wanted_lanes, quad_cols(skin));
     settings.paths = paths;
     settings.program = device.state().program(kernel_source(plan, settings.lanes, settings.paths));
-    settings.shares_memory = shares_memory;
+    if (!shares_memory) {
+      settings.transfers = &transfers.emplace(
+          std::min<std::size_t>(threads_beside(device.state()), kMostUnpackingThreads));
+    }
     for (int i = 0; i < count; ++i) {
       slots.push_back(
           std::make_shared<OpenClSlot>(device.state(), plan, settings, calibration, order));
@@ -248,6 +252,7 @@ struct Processor::State {
   std::unique_ptr<ThreadPool> pool;   ///< of the host, for large frames
   DeviceCalibration calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
+  std::optional<Transfers> transfers;  ///< of a device with its own memory; outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
   std::optional<DriftFollower> drift;          ///< of a followed baseline
   std::optional<ContactStage> contacts;        ///< of the estimator `contact`
@@ -319,6 +324,17 @@ void Processor::State::submit(const FrameView& frame) {
 void Processor::submit(const FrameView& frame) {
   check(frame, state_->skin, state_->sensel_type, kSubmit);
   state_->submit(frame);
+}
+
+FrameBuffer Processor::frame_buffer() {
+  State& state = *state_;
+  const Skin& skin = state.skin;
+  if (!state.transfers) return {state.sensel_type, skin.rows, skin.cols};
+  auto memory = with_opencl_errors(state.device.info().name, [&] {
+    return state.transfers->frames.add(state.device.state().context,
+                                       skin.sensels() * size_of(state.sensel_type));
+  });
+  return {state.sensel_type, skin.rows, skin.cols, std::move(memory)};
 }
 
 ForceFieldView Processor::receive() {

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
+#include "base/thread_pool.h"
+#include "device/device_state.h"
 #include "device/opencl.h"
 #include "lanes/frame_memory.h"
 #include "pillarfield/frame.h"
@@ -14,6 +18,26 @@ struct DeviceFrame {
   std::uint64_t row_stride = 0;  ///< readings
 };
 
+/// Frames in pinned memory, which the driver copies from directly.
+class PinnedFrames {
+ public:
+  /// Memory of a new frame.
+  [[nodiscard]] std::shared_ptr<std::byte[]> add(const cl::Context& context, std::size_t bytes);
+  /// True if the frame is the whole of one that add() made.
+  [[nodiscard]] bool hold(const FrameView& frame) const;
+
+ private:
+  std::vector<std::weak_ptr<std::byte[]>> frames_;
+};
+
+/// What all slots of a device with its own memory share.
+struct Transfers {
+  explicit Transfers(std::size_t threads) : pool(threads) {}
+
+  PinnedFrames frames;
+  ThreadPool pool;  ///< unpacks results
+};
+
 /// Transfers one frame to the device and its result back. The device owns the memory between
 /// upload() and download(), the host otherwise.
 class SlotMemory : public ResultMemory {
@@ -24,6 +48,16 @@ class SlotMemory : public ResultMemory {
 
   /// Starts the transfer of the results to the host.
   virtual void download(const cl::CommandQueue& queue) = 0;
+
+  /// After the commands of download(): starts to fetch results that it left out; false if there are
+  /// none.
+  [[nodiscard]] virtual bool fetch_rest(const cl::CommandQueue& queue) {
+    static_cast<void>(queue);
+    return false;
+  }
+
+  /// After all commands: puts the results into their planes.
+  virtual void unpack() {}
 
   /// Clears the flags of idle blocks while no command runs; what the host reads stays.
   virtual void clear_flags(const cl::CommandQueue& queue) {
@@ -48,9 +82,10 @@ class SlotMemory : public ResultMemory {
 /// Zero copy: the kernel reads the caller's memory and writes memory that the caller reads.
 std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const ResultLayout& layout);
 
-/// Copies through pinned memory of the driver: one copy by the host and one by the device in each
-/// direction.
-std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan, const ResultLayout& layout);
+/// Copies through pinned memory of the driver: frames, but those in `transfers.frames`, once by the
+/// host and once by the device; results as PackedResults does.
+std::unique_ptr<SlotMemory> staged_memory(Device::State& device, const cl::CommandQueue& queue,
+                                          const SolverPlan& plan, const ResultLayout& layout,
+                                          Transfers& transfers);
 
 }  // namespace pillarfield

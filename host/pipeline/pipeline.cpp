@@ -24,7 +24,8 @@ struct Pipeline::State {
                   "give 1 or more");
     }
     for (int i = 0; i < options.frames_in_flight; ++i) {
-      frames.emplace_back(stream.sensel_type(), stream.skin());
+      frames.emplace_back(processor.frame_buffer());
+      check(frames.back().buffer.view(), stream.skin(), stream.sensel_type(), "pipeline");
     }
   }
 

@@ -5,26 +5,33 @@
 #include <cstring>
 #include <new>
 #include <type_traits>
+#include <utility>
 
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
-constexpr std::align_val_t kPage{4096};
+std::shared_ptr<std::byte[]> memory_of_frame(std::size_t bytes) {
+  constexpr std::align_val_t kPage{4096};
+  return {static_cast<std::byte*>(::operator new[](bytes, kPage)),
+          [](std::byte* memory) { ::operator delete[](memory, kPage); }};
+}
 
 }  // namespace
 
 FrameBuffer::FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols)
+    : FrameBuffer(type, rows, cols, memory_of_frame(std::size_t{rows} * cols * size_of(type))) {}
+
+FrameBuffer::FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols,
+                         std::shared_ptr<std::byte[]> memory)
     : type_(type),
       rows_(rows),
       cols_(cols),
       size_(std::size_t{rows} * cols * size_of(type)),
-      data_(static_cast<std::byte*>(::operator new[](size_, kPage))) {
+      data_(std::move(memory)) {
   std::memset(data_.get(), 0, size_);
 }
-
-void FrameBuffer::Free::operator()(std::byte* memory) const { ::operator delete[](memory, kPage); }
 
 FrameView FrameBuffer::view() const { return {data_.get(), type_, rows_, cols_, cols_}; }
 

@@ -6,7 +6,7 @@ set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
 list(PREPEND CMAKE_PREFIX_PATH "${PILLARFIELD_LIBRARIES}")
 set(HDF5_ROOT "${PILLARFIELD_LIBRARIES}")
 set(HDF5_USE_STATIC_LIBRARIES ON)
-set(system /usr/lib/${CMAKE_HOST_SYSTEM_PROCESSOR}-linux-gnu)
+set(system /usr/lib/${CMAKE_SYSTEM_PROCESSOR}-linux-gnu)
 set(OpenCL_LIBRARY ${system}/libOpenCL.so CACHE FILEPATH "")
 set(Vulkan_LIBRARY ${system}/libvulkan.so CACHE FILEPATH "")
 
@@ -44,7 +44,7 @@ function(add_further_modules)
     target_include_directories(${module} SYSTEM PRIVATE ${headers} "${PILLARFIELD_LIBRARIES}/python/usr/include")
     target_link_libraries(${module} PRIVATE pillarfield_pipeline pillarfield_streams pillarfield_device fmt::fmt)
     set_target_properties(${module} PROPERTIES PREFIX "" OUTPUT_NAME _core
-      SUFFIX ".cpython-${version}-${CMAKE_HOST_SYSTEM_PROCESSOR}-linux-gnu.so" CXX_VISIBILITY_PRESET hidden
+      SUFFIX ".cpython-${version}-${CMAKE_SYSTEM_PROCESSOR}-linux-gnu.so" CXX_VISIBILITY_PRESET hidden
       LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/python/pillarfield")
     list(APPEND modules ${module})
   endforeach()

@@ -2,12 +2,15 @@
 
 import json
 import os
+import pty
 import signal
 import socket
 import stat
 import struct
 import subprocess
+import threading
 import time
+import tty
 import unittest
 
 import h5py
@@ -89,6 +92,44 @@ class StreamTest(CommandTest):
         with h5py.File(actual) as a, h5py.File(expected) as b:
             for plane in ("shear_x", "shear_y", "normal", "status"):
                 np.testing.assert_array_equal(a["force"][plane][:], b["force"][plane][:])
+
+
+class SerialSearch(StreamTest):
+    def board(self, readings, name="ttyUSB0"):
+        """A serial device in the folder that sends these readings as frames of a FlexiTac board."""
+        board, line = pty.openpty()
+        tty.setraw(line)
+        os.set_blocking(board, False)
+        (self.folder / name).symlink_to(os.ttyname(line))
+        ends = threading.Event()
+
+        def send():
+            while not ends.wait(0.005):
+                try:
+                    os.write(board, b"\xaa\x55" + bytes(readings) if readings else b"hello\n")
+                except BlockingIOError:
+                    pass
+
+        sender = threading.Thread(target=send)
+        sender.start()
+        self.addCleanup(lambda: (ends.set(), sender.join(), os.close(board), os.close(line)))
+
+    def test_a_board_is_found_with_its_size(self):
+        self.board(None, "ttyUSB0")
+        readings = list(range(96)) * 4
+        self.board(readings, "ttyUSB1")
+        copy = self.folder / "copy.h5"
+        process = self.started(f"serial:{self.folder}/ttyUSB*", "--frames", 5, "--record", copy, "-q")
+        error = process.communicate(timeout=PATIENCE_S)[1]
+        self.assertEqual(process.returncode, 0, error)
+        self.assertRegex(error, r"found a FlexiTac board on .*ttyUSB1, 384 readings a frame: 16 x 24 is assumed")
+        with h5py.File(copy) as file:
+            np.testing.assert_array_equal(file["frames/raw"][0].ravel(), readings)
+
+    def test_devices_without_a_board_are_named(self):
+        self.board(None)
+        self.assert_fails("stream", f"serial:{self.folder}/tty*", "-q", names=["ttyUSB0 sends other bytes", "baud"])
+        self.assert_fails("stream", f"serial:{self.folder}/none*", "-q", names=["no device is", "plug"])
 
 
 class Replay(StreamTest):
@@ -292,6 +333,21 @@ class FirstFrames(StreamTest):
         for words, names in ((("--to", "foo:9"), ("foo:9", "shm:NAME")), (("--to", "udp:1.2.3.4:x"), ("'x'",)),
                              (("--to", "web:nowhere:80"), ("nowhere",)), (("--relay", "foo"), ("shm:NAME",))):
             self.assert_fails("stream", silent, *words, names=names)
+
+    def test_of_frames_that_wait_the_newest_is_solved(self):
+        copy = self.folder / "copy.h5"
+        frames = b"".join(packet(number % 50, number) for number in range(300))
+        process = self.started("-", "--newest", "--record", copy, "--json", stdin=subprocess.PIPE)
+        process.stdin.buffer.write(frames)
+        process.stdin.flush()
+        out, errors = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual(process.returncode, 0, errors)
+        summary = json.loads(out.splitlines()[-1])["summary"]
+        self.assertLess(summary["solved"], 300)
+        self.assertEqual((summary["frames"] + summary["lost"], summary["frames"]), (300, summary["solved"]))
+        with h5py.File(copy) as file:
+            self.assertEqual(file["frames/raw"][-1].max(), 299 % 50)
+        self.assert_fails("stream", self.recording, "--newest", names=["--newest", "live"])
 
     def test_bytes_without_packets_are_named(self):
         device, terminal = os.openpty()

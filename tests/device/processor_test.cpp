@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <thread>
 
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
@@ -315,6 +316,32 @@ TEST(Processor, StagedFramesMayChangeAfterSubmit) {
   processor.submit(frame.view());
   std::memset(frame.bytes().data(), 7, frame.bytes().size());
   expect_same_bits(processor.receive(), expected.view());
+}
+
+TEST(Processor, FrameBuffersAreSolvedInPlaceAndMayOutliveIt) {
+  for (const Memory memory : {Memory::automatic, Memory::staged}) {
+    for (const std::uint32_t cols : {94U, 7U}) {  // 7: sensels of the last pillars are missing
+      const SolverPlan plan = bare_plan(32, cols, SenselType::u16);
+      std::vector<FrameBuffer> frames;
+      {
+        Processor processor(test_device(), plan, {.memory = memory});
+        for (int i = 0; i < 2; ++i) frames.push_back(processor.frame_buffer());
+        EXPECT_TRUE(
+            std::ranges::all_of(frames[0].bytes(), [](auto at) { return at == std::byte{}; }));
+        for (std::uint32_t seed = 0; seed < 6; seed += 2) {
+          const std::array given = {RandomFrame(plan, 0, seed), RandomFrame(plan, 0, seed + 1)};
+          for (std::size_t i = 0; i < 2; ++i) {
+            copy_readings(given.at(i).view(), frames[i].bytes().data());
+            processor.submit(frames[i].view());
+          }
+          for (const RandomFrame& frame : given) {
+            expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
+          }
+        }
+      }
+      std::jthread([&] { frames.clear(); }).join();
+    }
+  }
 }
 
 TEST(Processor, SharedMemoryIsReadInPlace) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <optional>
 
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
@@ -141,6 +143,57 @@ INSTANTIATE_TEST_SUITE_P(FurtherPaths, SpeedPathTest,
                          testing::Values(SpeedPath{SenselType::u8, 1},
                                          SpeedPath{SenselType::f32, 16}),
                          name_of_path);
+
+/// Frames of which few, all, or no results change, so that results travel as expected groups, with
+/// a second read, and as whole planes; three in flight.
+void expect_host_bits_of_packed_results(const SolverPlan& plan) {
+  HostReference host(plan);
+  Processor processor(test_device(), plan, {.memory = Memory::staged, .frames_in_flight = 3});
+  MovingContact contact(plan, 9);
+  const FrameBuffer idle(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  const RandomFrame dense[] = {{plan, 0, 1}, {plan, 3, 2}};
+  const FrameBuffer still = contact.next();
+  std::deque<FrameBuffer> moving;
+  std::deque<FrameView> frames;
+  for (std::size_t i = 0; i < 54; ++i) {
+    const std::size_t phase = i % 18;  // six frames of each slot
+    FrameView frame = dense[i % 2].view();
+    if (phase < 6) frame = moving.emplace_back(contact.next()).view();
+    if (phase >= 12) frame = i % 36 < 18 ? idle.view() : still.view();
+    processor.submit(frame);
+    frames.push_back(frame);
+    if (processor.in_flight() < 3) continue;
+    SCOPED_TRACE(i);
+    std::optional<ForceFieldView> forces;
+    while (i % 2 == 0 && !forces) forces = processor.try_receive();
+    if (!forces) forces = processor.receive();
+    expect_same_planes(*forces, host.solve(frames.front()));
+    if (testing::Test::HasFatalFailure()) return;
+    frames.pop_front();
+  }
+}
+
+TEST(PackedResults, HaveTheBitsOfTheHost) {
+  for (const SkinLayout layout : {SkinLayout::pillars, SkinLayout::sensels}) {
+    for (const auto& [rows, cols] : {std::pair{121U, 195U}, {300U, 6U}}) {
+      SolverPlan plan = bare_plan(rows, cols, SenselType::u8);
+      plan.skin.threshold_counts = 3;
+      plan.skin.layout = layout;
+      plan.uncertainty = true;
+      plan.noise_counts = 0.7;
+      plan.angles = layout == SkinLayout::pillars;
+      plan.calibration.mask.assign(plan.skin.sensels(), kGood);
+      plan.calibration.mask[7] = plan.calibration.mask[900] = kMissing;
+      expect_host_bits_of_packed_results(plan);
+      if (!plan.angles) continue;
+      plan.estimator = Estimator::contact;  // which resolves pillars in the planes received
+      expect_host_bits_of_packed_results(plan);
+      plan.calibration.effects.pillar_leak = {0.02, 0.005};
+      plan.calibration.effects.arm_mm = 0.4;
+      expect_host_bits_of_packed_results(plan);
+    }
+  }
+}
 
 /// Idle blocks are skipped, by the host always: a value written into their results stays.
 TEST(SpeedPaths, AnIdleBlockIsNotWrittenAgain) {

@@ -63,7 +63,7 @@ int noted_fsync(int descriptor) { return note_sync(descriptor, SYS_fsync); }
 int noted_fdatasync(int descriptor) { return note_sync(descriptor, SYS_fdatasync); }
 int noted_rename(const char* from, const char* to) {
   disk_calls().emplace_back("rename");
-  return static_cast<int>(syscall(SYS_rename, from, to));
+  return static_cast<int>(syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
 }
 int noted_renameat2(int from_folder, const char* from, int to_folder, const char* to,
                     unsigned flags) {

@@ -9,11 +9,11 @@ SOURCE = os.environ["PILLARFIELD_SOURCE"]
 
 # At most so many lines of code, and files of any kind.
 LIMITS = {
-    "core": 107800,
+    "core": 108800,
     "viewer": 21050,
     "laboratory": 7050,
-    "all": 135900,
-    "tests": 40600,
+    "all": 137000,
+    "tests": 41200,
     "files": 1320,
 }
 

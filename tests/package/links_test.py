@@ -53,6 +53,9 @@ class Links(unittest.TestCase):
         menu = re.findall(r"@ref ([\w-]+)", (SOURCE / "docs/site/layout.xml").read_text())
         self.assertEqual(sorted(["index", *menu]), sorted(page.page_name(path) for path in page.PAGES))
 
+    def test_the_first_page_has_a_replay(self):
+        self.assertIn('src="hand.html"', page.replayed(page.MAIN.read_text()))
+
     def test_named_files_exist(self):
         """Paths in these pages, `host/io/*.h` and `host/io/file.{h,cpp}` among them."""
         folders = "|".join(path.name for path in SOURCE.iterdir() if path.is_dir())

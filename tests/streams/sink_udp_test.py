@@ -13,7 +13,7 @@ QUANTITIES = {"shear_x_n": ("force", "shear_x"), "shear_y_n": ("force", "shear_y
               "centre_of_pressure_x_mm": ("centre_mm", "x"),
               "centre_of_pressure_y_mm": ("centre_mm", "y")}
 
-KNOWN = ("friction", "friction_deviation", "slip_margin", "slipping_share", "time_to_slip_s",
+KNOWN = ("friction", "slip", "friction_deviation", "slip_margin", "slipping_share", "time_to_slip_s",
          "time_to_slip_low_s", "time_to_slip_high_s", "slip_within_0_1_s", "slip_within_0_3_s",
          "slip_within_1_s")
 

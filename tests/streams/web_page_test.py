@@ -1,5 +1,6 @@
 """The page of the sink web in a real Chromium, where one is installed."""
 
+import pathlib
 import re
 import sys
 import time
@@ -9,6 +10,9 @@ import h5py
 import numpy as np
 from browser import PROGRAM, Browser
 from sink_process import SinkTest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs/site"))
+import replay  # noqa: E402
 
 
 class PageTest(SinkTest):
@@ -71,6 +75,43 @@ class PageTest(SinkTest):
         self.assertEqual(reds, sorted(reds))
         self.assertGreater(len(set(reds)), 20)
         self.assertEqual(page.value("performance.getEntriesByType('resource').length"), 0)
+
+    def test_ambiguous_pillars_are_hatched_and_no_others(self):
+        page = self.open_page()
+        # The share of orange pixels in the middle of each cell, far from arrows of other cells.
+        cells = self.wait(page, """draw(performance.now());
+          [...picture.status].filter(bits => (bits & 80) === 16).length > 5 && [...picture.status].map((bits, i) => {
+            const {rows, cols} = picture, width = field.width / cols, height = field.height / rows;
+            const {data} = field.getContext("2d").getImageData((i % cols + 0.25) * width,
+                (Math.floor(i / cols) + 0.25) * height, width / 2, height / 2);
+            let orange = 0;
+            for (let at = 0; at < data.length; at += 4) {
+              orange += data[at] > 1.45 * data[at + 1] && data[at + 1] > 1.8 * data[at + 2];
+            }
+            return [bits, orange / data.length];
+          })""")
+        hatched = [share > 0.02 for _, share in cells]
+        self.assertEqual(hatched, [bits & 80 == 16 for bits, _ in cells])
+
+    def test_a_replay_needs_no_server(self):
+        replay.save(self.url, self.scene, self.folder / "replay")
+        self.url = f"file://{self.folder}/replay.html"
+        page = self.open_page()
+        # The second round of forty frames.
+        self.wait(page, "picture.sequence > 60 && element('state').textContent === 'recorded'")
+
+    def test_words_and_width(self):
+        page = self.open_page()
+        text = self.wait(page, """Object.values(picture.contacts).forEach((each, i) => each.slip = i % 2 + 2);
+          drawTotals();
+          Object.keys(picture.contacts).length > 1 && element("contacts").textContent""")
+        for word in ("normal N", "P(slip) 0.3 s", "all", "partial", "sliding"):
+            self.assertIn(word, text)
+        for width, height in ((390, 844), (1280, 720), (1920, 1080)):
+            self.browser.call("Emulation.setDeviceMetricsOverride", page.session, width=width, height=height,
+                              deviceScaleFactor=1, mobile=False)
+            self.wait(page, f"innerWidth === {width} && document.documentElement.scrollWidth <= {width}"
+                            " && field.width > 200")
 
 
 if __name__ == "__main__":

@@ -72,8 +72,8 @@ void add_stream(CLI::App& parent, Work& work) {
       ->add_option(
           "SOURCE", options->source,
           "- (packets on standard input), shm:NAME, udp:ADDRESS:PORT, serial:DEVICE (of a FlexiTac "
-          "board 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'), or a scene or file "
-          "of frames, replayed at its own pace")
+          "board 'serial:DEVICE?protocol=flexitac&rows=16&cols=32', or serial:auto, which finds "
+          "it), or a scene or file of frames, replayed at its own pace")
       ->required()
       ->type_name("SOURCE")
       ->group("Input");
@@ -81,6 +81,9 @@ void add_stream(CLI::App& parent, Work& work) {
       input.number("--rate", options->rate_hz, "HZ",
                    "Frames per second of a replayed file [its own], or of the sensor", 0.01, 1e5);
   input.flag("--repeat", options->repeat, "Replay a file again and again");
+  input.flag(
+      "--newest", options->newest,
+      "Where frames of a live source wait, solve the newest alone; the others count as lost");
   input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
               100'000'000);
   add_plain_data(command, options->plan.read, false);

@@ -25,6 +25,10 @@ namespace {
 
 std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   if (!is_live_source(options.source)) {
+    if (options.newest) {
+      throw Error("--newest", "it is for live sources, and this is a file",
+                  "leave it out; --summary drops the late frames of a file");
+    }
     return replayed_file(options.source, frame_options(options.plan), options.rate_hz,
                          options.repeat, options.summary, options.quiet);
   }
@@ -36,6 +40,7 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   LiveSourceOptions live;
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
+  live.newest = options.newest;
   if (options.seconds || options.most_idle_s) {
     live.most_wait =
         nanoseconds_of(std::min(options.seconds.value_or(1e9), options.most_idle_s.value_or(1e9)));

@@ -45,11 +45,16 @@ void copy_readings(const FrameView& frame, std::byte* to);
 
 /// One frame of readings that owns its memory. Its rows are dense, its readings start at zero, and
 /// its memory starts on a page boundary, so that a device that shares the host's memory reads it in
-/// place.
+/// place. For a device with memory of its own see Processor::frame_buffer().
 class FrameBuffer {
  public:
   /// Allocates `rows` x `cols` readings.
   FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols);
+  /// Takes `memory` for as many readings, aligned to their type, and sets them to zero.
+  FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols,
+              std::shared_ptr<std::byte[]> memory);
+  FrameBuffer(FrameBuffer&&) noexcept = default;
+  FrameBuffer& operator=(FrameBuffer&&) noexcept = default;
 
   [[nodiscard]] FrameView view() const;
   [[nodiscard]] std::span<std::byte> bytes() { return {data_.get(), size_}; }
@@ -66,14 +71,11 @@ class FrameBuffer {
   }
 
  private:
-  struct Free {
-    void operator()(std::byte* memory) const;
-  };
   SenselType type_;
   std::uint32_t rows_;
   std::uint32_t cols_;
   std::size_t size_;
-  std::unique_ptr<std::byte[], Free> data_;
+  std::shared_ptr<std::byte[]> data_;
 };
 
 }  // namespace pillarfield

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pillarfield/calibration.h"
@@ -18,6 +19,7 @@ namespace pillarfield {
 /// A buffer for one frame of a stream, and that frame.
 struct StreamedFrame {
   StreamedFrame(SenselType type, const Skin& skin) : buffer(type, skin.rows, skin.cols) {}
+  explicit StreamedFrame(FrameBuffer memory) : buffer(std::move(memory)) {}
 
   FrameBuffer buffer;  ///< for streams that copy their readings
   FrameView readings;  ///< view of `buffer` or of the stream's memory

@@ -36,12 +36,16 @@ struct LiveSourceOptions {
   /// Time after which an Error ends the wait for the first frame; unset: the wait has no end.
   std::optional<std::chrono::nanoseconds> most_wait = {};
   std::uint32_t serial_baud = 2'000'000;  ///< of `serial:`
+  /// Only the newest of the frames that wait is delivered: the others are dropped and count in
+  /// StreamHealth::lost and overrun. For a program that is slower than its sensor.
+  bool newest = false;
 };
 
 /// True if `source` names a live source: `-` (packets on standard input), `shm:NAME` (a ring in
 /// shared memory), `udp:ADDRESS:PORT`, or `serial:DEVICE` (packets) with
-/// `?protocol=flexitac&rows=ROWS&cols=COLS` for a FlexiTac board (docs/streams.md); also one
-/// misspelt, unless a file has this name: open_live_source() names the right one.
+/// `?protocol=flexitac&rows=ROWS&cols=COLS` for a FlexiTac board, and `serial:auto`, which finds
+/// one (docs/streams.md); also one misspelt, unless a file has this name: open_live_source() names
+/// the right one.
 [[nodiscard]] bool is_live_source(std::string_view source);
 
 /// Opens a live source and waits for its first frame, or as many bytes of packets as one has, which

@@ -146,8 +146,16 @@ class Processor {
 
   /// Starts to solve a frame of the plan's size and type, with any row stride. With shared memory
   /// the caller must not change the frame until it is received; with staged memory it may change at
-  /// once. Throws Error if all slots are in flight or pinned, or the frame does not fit the plan.
+  /// once, unless it lies in a frame_buffer(). Throws Error if all slots are in flight or pinned,
+  /// or the frame does not fit the plan.
   void submit(const FrameView& frame);
+
+  /// A frame of the plan in memory that the device reads: submit() of its view() copies nothing.
+  /// With staged memory that is pinned memory of the driver, so hold only as many as are in flight,
+  /// and one more to fill. It must not change between submit() and receive(). It may be destroyed
+  /// after the processor and in any thread, but not while its frame is in flight. Throws Error if
+  /// the device has no such memory left.
+  [[nodiscard]] FrameBuffer frame_buffer();
 
   /// Waits for the oldest frame in flight and returns its forces. The view stays valid until
   /// submit() reuses its slot, that is for as many further frames as there are slots that are not

@@ -25,17 +25,18 @@ struct WeightResult {
   std::size_t frames_at_edge = 0;     ///< left out: on sensels beside the edge
   std::size_t frames_apart = 0;       ///< left out: far from the others, or disagree after the fit
 
-  double exponent = 1;            ///< of the load in the reading, as fitted
+  double exponent = 1;            ///< of the load in the reading: found, or that before
   double exponent_deviation = 0;  ///< of it
-  bool finds_exponent = false;    ///< whether it is stored; else the response stays as it was
+  bool finds_exponent = false;    ///< whether it is seen and stored
 
   double gain_spread = 0;     ///< of the visited sensels' gains, relative to those before
   double gain_deviation = 0;  ///< of a visited sensel's gain, relative, root mean square
   /// Deviation of an unvisited sensel's gain, relative: the spread between sensels.
   double unvisited_deviation = 0;
-  double misfit = 0;           ///< of the sum of a frame beyond noise, relative
-  double misfit_before = 0;    ///< the same with gains and response as before
-  double total_deviation = 0;  ///< of the total of 0.3 to 2 times the weight anywhere, relative
+  double misfit = 0;         ///< of the sum of a frame beyond noise, relative
+  double misfit_before = 0;  ///< the same with gains and response as before
+  /// Of the total of 0.3 to 2 times the heaviest weight anywhere, relative: 95 % lie within 1.96.
+  double total_deviation = 0;
 };
 
 /// Finds gains, a power law and counts per newton from a known weight that is placed or rolled

@@ -11,9 +11,6 @@ namespace pillarfield {
 namespace {
 
 constexpr std::size_t kLeastSpace = 1 << 16;
-constexpr std::size_t kMarkBytes = 2;
-constexpr std::byte kFirstMark{0xAA};
-constexpr std::byte kSecondMark{0x55};
 
 PillarfieldPacket header_of(const FrameShape& shape, std::uint64_t sequence) {
   PillarfieldPacket header = {};
@@ -54,11 +51,6 @@ void FlexitacParser::commit(std::size_t bytes, std::chrono::nanoseconds arrived)
   reads_.push_back({end_, arrived});
 }
 
-bool FlexitacParser::is_mark(std::uint64_t place) const {
-  const std::byte* const bytes = &buffer_[place - begin_];
-  return bytes[0] == kFirstMark && bytes[1] == kSecondMark;
-}
-
 bool FlexitacParser::next(Packet& packet) {
   while (ready_ == 0 && looked_ + kMarkBytes <= end_) look_at(looked_++);
   if (ready_ == 0) return false;
@@ -67,7 +59,7 @@ bool FlexitacParser::next(Packet& packet) {
 }
 
 void FlexitacParser::look_at(std::uint64_t place) {
-  const bool mark = is_mark(place);
+  const bool mark = is_mark(&buffer_[place - begin_]);
   std::uint8_t& chain = chains_[place % frame_bytes_];
   if (!mark) {
     if (chain > 1) clean_since_ = place + 1;

@@ -43,6 +43,11 @@ class FlexitacParser final : public ByteParser {
   [[nodiscard]] std::string complaint() const override;
 
   static constexpr std::uint8_t kProof = 4;
+  static constexpr std::size_t kMarkBytes = 2;
+  /// True if the two bytes are the marks of a frame.
+  static bool is_mark(const std::byte* bytes) {
+    return bytes[0] == std::byte{0xAA} && bytes[1] == std::byte{0x55};
+  }
 
  private:
   /// Bytes that arrived together.
@@ -51,7 +56,6 @@ class FlexitacParser final : public ByteParser {
     std::chrono::nanoseconds arrived{0};
   };
 
-  [[nodiscard]] bool is_mark(std::uint64_t place) const;
   void look_at(std::uint64_t place);
   void measure_spacing(std::uint64_t mark);
   void find_step(std::uint64_t mark, std::uint8_t marks);

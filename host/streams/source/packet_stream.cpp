@@ -89,13 +89,14 @@ bool FirstPackets::add(const Packet& packet, const StoredSkin& stated) {
 class PacketStream final : public FrameStream {
  public:
   PacketStream(std::unique_ptr<PacketSource> source, FirstPackets& first, PacketOrder order,
-               Skin skin, bool mirrors, Calibration calibration)
+               Skin skin, bool mirrors, const LiveSourceOptions& options)
       : source_(std::move(source)),
         first_(first.take()),
         assembler_(first.shape(), order),
         skin_(std::move(skin)),
         mirrors_(mirrors),
-        calibration_(std::move(calibration)) {
+        newest_(options.newest),
+        calibration_(options.calibration) {
     assembler_.set_counts({.invalid = first.invalid()});
   }
 
@@ -107,6 +108,7 @@ class PacketStream final : public FrameStream {
 
  private:
   bool pop(StreamedFrame& frame);
+  [[nodiscard]] Arrival next_of_all(StreamedFrame& frame, nanoseconds timeout);
   [[nodiscard]] Arrival receive(Packet& packet, nanoseconds timeout);
 
   std::unique_ptr<PacketSource> source_;
@@ -115,6 +117,8 @@ class PacketStream final : public FrameStream {
   FrameAssembler assembler_;
   Skin skin_;
   bool mirrors_;  ///< falling readings
+  bool newest_;   ///< LiveSourceOptions::newest
+  std::uint64_t dropped_ = 0;
   Calibration calibration_;
 };
 
@@ -122,7 +126,9 @@ StreamHealth PacketStream::health() const {
   StreamHealth health = assembler_.health(steady_now());
   const PacketSource::Counts counts = source_->counts();
   health.invalid += counts.invalid;
-  health.overrun += counts.overrun;
+  health.overrun += counts.overrun + dropped_;
+  health.lost += dropped_;
+  health.frames -= dropped_;
   const std::optional<FrameShape>& other = assembler_.other() ? assembler_.other() : counts.other;
   if (other) health.mismatch = mismatch_words(*other, assembler_.shape());
   return health;
@@ -146,6 +152,13 @@ bool PacketStream::pop(StreamedFrame& frame) {
 }
 
 Arrival PacketStream::next(StreamedFrame& frame, nanoseconds timeout) {
+  const Arrival arrival = next_of_all(frame, timeout);
+  if (!newest_ || arrival != Arrival::arrived) return arrival;
+  while (next_of_all(frame, 0ns) == Arrival::arrived) ++dropped_;
+  return arrival;
+}
+
+Arrival PacketStream::next_of_all(StreamedFrame& frame, nanoseconds timeout) {
   constexpr int kMostPackets = 4096;  // of a sensor that is faster than this loop
   const nanoseconds until = steady_now() + std::clamp<nanoseconds>(timeout, 0ns, 24h);
   Packet packet;
@@ -240,7 +253,7 @@ std::unique_ptr<FrameStream> open_packet_stream(const std::string& name,
   source->prepare(first.shape());
   const bool mirrors = options.read.falling && !first.stated().falling;
   return std::make_unique<PacketStream>(std::move(source), first, order, std::move(skin), mirrors,
-                                        options.calibration);
+                                        options);
 }
 
 }  // namespace pillarfield

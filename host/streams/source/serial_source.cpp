@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -28,6 +29,7 @@
 #include "streams/source/flexitac_parser.h"
 #include "streams/source/packet_parser.h"
 #include "streams/source/packet_source.h"
+#include "streams/source/serial_search.h"
 
 namespace pillarfield {
 namespace {
@@ -235,11 +237,41 @@ Arrival SerialSource::receive(Packet& packet, std::chrono::nanoseconds timeout) 
   return Arrival::arrived;
 }
 
+/// The address of the board that find_board() finds; unset if the user gave up.
+std::optional<SerialAddress> found_address(const std::string& pattern,
+                                           const LiveSourceOptions& options) {
+  const auto board = find_board(pattern, options, [&](const std::string& device) {
+    return open_serial_device(device, options.serial_baud);
+  });
+  if (!board) return std::nullopt;
+  const bool is_known =
+      options.size && std::size_t{options.size->rows} * options.size->cols == board->readings;
+  const std::optional<FrameSize> size = is_known ? options.size : likely_size(board->readings);
+  const std::string other =
+      fmt::format("'serial:{}?protocol=flexitac&rows=ROWS&cols=COLS'", printable(board->device));
+  if (!size) {
+    throw Error(printable("serial:" + pattern),
+                fmt::format("frames on {} have {} readings, which is no rows x columns",
+                            printable(board->device), board->readings),
+                "give " + other);
+  }
+  if (options.say) {
+    options.say(fmt::format("found a FlexiTac board on {}, {} readings a frame: {} x {} {}",
+                            printable(board->device), board->readings, size->rows, size->cols,
+                            is_known ? "as stated" : "is assumed; else give " + other));
+  }
+  return serial_address(
+      fmt::format("{}?protocol=flexitac&rows={}&cols={}", board->device, size->rows, size->cols));
+}
+
 std::unique_ptr<FrameStream> open_serial(const std::string& rest,
                                          const LiveSourceOptions& options) {
   const std::string name = printable("serial:" + rest);
-  SerialAddress address = serial_address(rest);
-  const int opened = open_serial_device(address.device, options.serial_baud);
+  const bool searches = rest == "auto" || rest.find('*') != std::string::npos;
+  std::optional<SerialAddress> address =
+      searches ? found_address(rest, options) : serial_address(rest);
+  if (!address) return nullptr;
+  const int opened = open_serial_device(address->device, options.serial_baud);
   if (opened < 0) {
     throw Error(
         name,
@@ -247,14 +279,15 @@ std::unique_ptr<FrameStream> open_serial(const std::string& rest,
         "give a serial device that you may read, for instance serial:/dev/ttyACM0");
   }
   return open_packet_stream(
-      name, std::make_unique<SerialSource>(std::move(address), options.serial_baud, opened),
+      name, std::make_unique<SerialSource>(std::move(*address), options.serial_baud, opened),
       PacketOrder::kept, options);
 }
 
 }  // namespace
 
 LiveSourceKind serial_kind() {
-  return {"serial:", "serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]", open_serial};
+  return {"serial:", "serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS] or serial:auto",
+          open_serial};
 }
 
 }  // namespace pillarfield

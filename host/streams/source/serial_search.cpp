@@ -1,0 +1,125 @@
+#include "streams/source/serial_search.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "pillarfield/printable.h"
+#include "streams/source/byte_source.h"
+#include "streams/source/flexitac_parser.h"
+
+namespace pillarfield {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::array kUsbLines = {"/dev/ttyUSB*", "/dev/ttyACM*"};
+
+std::vector<std::string> devices_of(const std::string& pattern) {
+  std::vector<std::string> devices;
+  const auto add = [&](const char* names) {
+    glob_t found = {};
+    if (glob(names, 0, nullptr, &found) == 0) {
+      devices.insert(devices.end(), found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    }
+    globfree(&found);
+  };
+  if (pattern == "auto") {
+    for (const char* const names : kUsbLines) add(names);
+  } else {
+    add(pattern.c_str());
+  }
+  return devices;
+}
+
+/// Readings of the frames that arrive within a second, or words on what arrived instead.
+struct Heard {
+  std::size_t readings = 0;
+  std::string words = {};
+};
+
+Heard listen(int line, const std::function<bool()>& stop) {
+  constexpr std::size_t kMostBytes = 1 << 18;
+  std::vector<std::byte> bytes(kMostBytes);
+  std::size_t size = 0;
+  const auto until = steady_now() + 1s;
+  while (size < kMostBytes && steady_now() < until && !(stop && stop())) {
+    const BytesRead read = read_bytes(line, std::span(bytes).subspan(size), 50ms);
+    if (read.ended) break;
+    size += read.bytes;
+    if (const auto distance = mark_distance(std::span(bytes).first(size))) {
+      return {.readings = *distance - FlexitacParser::kMarkBytes};
+    }
+  }
+  return {.words = size == 0 ? "is silent" : "sends other bytes"};
+}
+
+}  // namespace
+
+std::optional<std::size_t> mark_distance(std::span<const std::byte> bytes) {
+  constexpr std::size_t kFirst = 4;  // marks that may begin the frames; a reading may look like one
+  constexpr std::size_t kLeast = 5;
+  std::vector<std::size_t> marks;
+  for (std::size_t at = 0; at + 1 < bytes.size(); ++at) {
+    if (FlexitacParser::is_mark(&bytes[at])) marks.push_back(at);
+  }
+  std::optional<std::size_t> shortest;
+  for (std::size_t first = 0; first < std::min(kFirst, marks.size()); ++first) {
+    for (std::size_t second = first + 1; second < marks.size(); ++second) {
+      const std::size_t distance = marks[second] - marks[first];
+      if (shortest && distance >= *shortest) break;
+      std::size_t count = 1;
+      std::size_t at = marks[second];
+      for (; at + 1 < bytes.size() && FlexitacParser::is_mark(&bytes[at]); at += distance) ++count;
+      if (at + 1 >= bytes.size() && count >= kLeast) shortest = distance;
+    }
+  }
+  return shortest;
+}
+
+std::optional<FrameSize> likely_size(std::size_t readings) {
+  for (auto rows = static_cast<std::size_t>(std::sqrt(static_cast<double>(readings))); rows >= 2;
+       --rows) {
+    if (readings % rows != 0) continue;
+    return FrameSize{static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(readings / rows)};
+  }
+  return std::nullopt;
+}
+
+std::optional<FoundBoard> find_board(const std::string& pattern, const LiveSourceOptions& options,
+                                     const std::function<int(const std::string&)>& open) {
+  const std::string name = printable("serial:" + pattern);
+  const std::vector<std::string> devices = devices_of(pattern);
+  if (devices.empty()) {
+    throw Error(name,
+                fmt::format("no device is {}", pattern == "auto"
+                                                   ? fmt::format("{}", fmt::join(kUsbLines, " or "))
+                                                   : printable(pattern)),
+                "plug the board in, or give serial:DEVICE");
+  }
+  std::string heard;
+  for (const std::string& device : devices) {
+    const int line = open(device);
+    const Heard here =
+        line < 0 ? Heard{.words = fmt::format("cannot be opened: {}", std::strerror(errno))}
+                 : listen(line, options.stop);
+    if (line >= 0) close(line);
+    if (here.readings > 0) return FoundBoard{device, here.readings};
+    if (options.stop && options.stop()) return std::nullopt;
+    heard += fmt::format("{}{} {}", heard.empty() ? "" : ", ", printable(device), here.words);
+  }
+  throw Error(
+      name, fmt::format("no frames of a FlexiTac board at {} baud: {}", options.serial_baud, heard),
+      "switch the board on, check the baud rate, or give serial:DEVICE for packets");
+}
+
+}  // namespace pillarfield
