@@ -24,8 +24,9 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
       const uint pillar = pillar_at(centre + (vec2(i, j) / samples - 0.5) * pillars);
       const uint status = status_of(pillar);
       flags |= status;
-      if (!is_usable(status)) continue;
-      sum += value_of(pillar, status);
+      const float value = value_of(pillar, status);
+      if (kQuantity == kDifference ? value < 0.0 : !is_usable(status)) continue;
+      sum += value;
       count += 1.0;
     }
   }
@@ -61,7 +62,8 @@ void main() {
       ? mean_value(place, max(abs(dFdx(place)), abs(dFdy(place))), status)
       : value_of(pillar, status);
 
-  const uint special = special_of(status);
+  uint special = special_of(status);
+  if (kQuantity == kDifference && special == kIdle && value >= 0.0) special = kMapped;
   const uint entry = special != kMapped ? kFirstSpecial + special : entry_of(value);
   colour = colour_of_word(colours.entries[entry].x);
   if (special == kMapped && is_ambiguous(status) && scene.shown.x != 0u && on_hatch()) {

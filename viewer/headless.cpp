@@ -185,6 +185,10 @@ std::vector<Viewport> places_of(const Options& options, const Shown& shown,
 Pixels draw(HeadlessRenderer& headless, FieldProducer& producer, std::uint64_t frame,
             const RenderSettings& settings, const Viewport& place) {
   ShownField field = producer.produce(std::min(frame, producer.info().frames - 1));
+  const bool knows_truth = producer.info().has_truth;
+  if (settings.quantity == Quantity::difference && knows_truth) {
+    add_difference(field, producer.open_truth);
+  }
   if (settings.contacts) {
     field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
   }

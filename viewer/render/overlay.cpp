@@ -86,6 +86,51 @@ void draw_absent(const Canvas& canvas, const SourceInfo& source, const Ground& g
   canvas.list.PopClipRect();
 }
 
+/// Black or white, whichever is seen better.
+ImU32 ink_on(const Colour& ground) {
+  const int light = 3 * ground.red + 6 * ground.green + ground.blue;
+  return light > 1400 ? IM_COL32(0, 0, 0, 255) : IM_COL32(255, 255, 255, 255);
+}
+
+/// The values of elements, where these have room for figures; below arrows and centres of pressure.
+void write_values(const Canvas& canvas, const ShownField& field, const SourceInfo& source,
+                  const TopView& view, const Viewport& plot) {
+  const RenderSettings& settings = canvas.settings;
+  const QuantityInfo& info = info_of(settings.quantity);
+  const ImVec2 most = Canvas::size_of(info.scale == Scale::diverging ? "\u22120.0000" : "0.0000");
+  const auto [row_mm, col_mm] = source.skin.element_pitch_mm();
+  const bool marked = settings.arrows || settings.contacts;
+  const double width = col_mm * view.pixels_per_mm;
+  const double height = row_mm * view.pixels_per_mm;
+  if (info.scale == Scale::classes || !is_available(settings.quantity, source) ||
+      width < most.x + 4 * canvas.unit() || height < most.y + 2 * canvas.unit()) {
+    return;
+  }
+  canvas.list.PushClipRect(to_imgui({plot.x, plot.y}),
+                           to_imgui({plot.x + plot.width, plot.y + plot.height}));
+  const auto [first_row, first_col, rows, cols] = cells_in_sight(source, settings, plot, 1);
+  for (std::uint32_t i = 0; i < rows * cols; ++i) {
+    const std::uint32_t row = first_row + i / cols;
+    const std::uint32_t col = first_col + i % cols;
+    const std::size_t element = std::size_t{row} * source.skin.element_cols() + col;
+    const auto special = special_of(settings.quantity, field.forces.status[element]);
+    const float value = value_of(settings.quantity, field, source.skin, row, col);
+    if (std::isnan(value) || special.value_or(Special::idle) != Special::idle) continue;
+    const std::string words = settings.units.number(info.dimension, static_cast<double>(value));
+    const ImVec2 size = Canvas::size_of(words);
+    const double left = (col - 0.5 * source.skin.element_cols()) * width -
+                        view.centre_mm.x * view.pixels_per_mm + plot.x + 0.5 * plot.width;
+    const double top = (row - 0.5 * source.skin.element_rows()) * height +
+                       view.centre_mm.y * view.pixels_per_mm + plot.y + 0.5 * plot.height;
+    const double free = height - size.y;
+    const std::size_t entry = entry_of(value, settings.range, info.scale);
+    canvas.text(left + 0.5 * (width - size.x),
+                top + (marked ? free - 2 * canvas.unit() : 0.5 * free), words,
+                ink_on(table_of(settings.map)[entry]));
+  }
+  canvas.list.PopClipRect();
+}
+
 /// Name and time above the plot.
 void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo& source,
                  const Layout& layout) {
@@ -372,6 +417,8 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
                       dark ? IM_COL32(232, 236, 241, 255) : IM_COL32(22, 26, 32, 255),
                       dark ? IM_COL32(150, 158, 170, 255) : IM_COL32(96, 104, 116, 255)};
   draw_absent(canvas, source, Ground(&field, source, settings, layout.plot));
+  const auto* const top = std::get_if<TopView>(&settings.view);
+  if (settings.legend && top != nullptr) write_values(canvas, field, source, *top, layout.plot);
   if (settings.contacts && field.contacts != nullptr) {
     draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts,
                        Ground(&field, source, settings, layout.plot));
@@ -379,7 +426,7 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
   if (settings.legend) {
     canvas.rectangle(layout.plot, canvas.faint_colour);
     write_title(canvas, field, source, layout);
-    if (const auto* top = std::get_if<TopView>(&settings.view)) {
+    if (top != nullptr) {
       write_axes(canvas, *top, layout);
     } else {
       write_triad(canvas, source, layout);

@@ -34,6 +34,8 @@ uint plane_of(const ShownField& field, std::span<const Value> plane) {
   return static_cast<uint>((first - field.pages.data()) / 4);
 }
 
+}  // namespace
+
 shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& settings,
                              const Viewport& plot, uint block) {
   const uint rows = source.skin.element_rows();
@@ -64,8 +66,6 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
   };
   return {row_begin, col_begin, cells(row_begin, row_end), cells(col_begin, col_end)};
 }
-
-}  // namespace
 
 SkinSize skin_size(const SourceInfo& source) {
   const auto [row_mm, col_mm] = source.skin.element_pitch_mm();

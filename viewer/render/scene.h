@@ -18,6 +18,10 @@ namespace pillarfield::viewer {
 /// The smaller pitch of the elements, mm: what arrows and pixels of one are measured by.
 [[nodiscard]] double arrow_pitch_mm(const SourceInfo& source);
 
+/// First row and column of the cells of `block` x `block` elements in sight, and their numbers.
+[[nodiscard]] shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& settings,
+                                           const Viewport& plot, shader::uint block);
+
 /// Size of the skin's sheet, mm.
 [[nodiscard]] SkinSize skin_size(const SourceInfo& source);
 

@@ -30,6 +30,7 @@ struct SourceInfo {
   bool has_readings = false;  ///< ShownField::raw has data
   bool has_angles = false;    ///< magnitude, theta and phi; of every source with pillars
   bool has_uncertainty = false;
+  bool has_truth = false;             ///< FieldProducer::open_truth, but of a truth
   std::string solver;                 ///< solver_words(), "zero copy"; from a force file its solver
   ContactOptions contacts = {};       ///< for contacts found here
   std::vector<std::string> warnings;  ///< one sentence each
@@ -74,6 +75,9 @@ class FieldProducer {
  private:
   std::optional<FieldContacts> found_contacts_;
 };
+
+/// Sets the difference of a field to the true forces of its frame.
+void add_difference(ShownField& field, const FieldProducer::Opener& open_truth);
 
 /// "direct on DEVICE"; without pillars, which alone have an estimator, "DEVICE".
 [[nodiscard]] std::string solver_words(SkinLayout layout, const std::string& estimator,

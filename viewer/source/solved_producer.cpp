@@ -100,6 +100,7 @@ SourceInfo truth_info(SourceInfo info) {
   info.calibration = std::move(absent);
   info.has_readings = false;
   info.has_uncertainty = false;
+  info.has_truth = false;
   info.solver = "true forces";
   info.warnings.clear();
   info.notes.clear();

@@ -14,7 +14,7 @@ RenderSettings suited_to(const SourceInfo& source, RenderSettings settings) {
 Margins margins_of(const RenderSettings& settings) {
   if (!settings.legend) return {};
   const double unit = settings.scale;
-  return {50 * unit, 22 * unit, 10 * unit, 26 * unit, std::round(134 * unit)};
+  return {50 * unit, 22 * unit, 10 * unit, 26 * unit, std::round(140 * unit)};
 }
 
 Layout layout_of(double width, double height, const RenderSettings& settings) {

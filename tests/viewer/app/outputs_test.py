@@ -76,15 +76,17 @@ class Outputs(unittest.TestCase):
 
     def test_two_sources_share_a_picture(self):
         pictures = []
-        for name, beside in (("one", ()), ("truth", ("--truth",)), ("same", ("ball.toml",))):
+        for name, beside in (("one", ()), ("truth", ("--truth",)), ("same", ("ball.toml",)),
+                             ("difference", ("--layer", "difference"))):
             ended = self.view("ball.toml", *beside, "--size", "642x240", "--png", f"new/{name}.png")
             if "Vulkan" in ended.stderr:
                 self.skipTest(ended.stderr)
             self.assertEqual(ended.returncode, 0, ended)
             pictures.append((self.folder / f"new/{name}.png").read_bytes())
             self.assertEqual(struct.unpack(">II", pictures[-1][16:24]), (642, 240))
-        self.assertEqual(len(set(pictures)), 3)
+        self.assertEqual(len(set(pictures)), 4)
         self.assert_refused("forces.h5", "--truth", "--png", "x.png", says="are not known")
+        self.assert_refused("forces.h5", "--layer", "difference", "--png", "x.png", says="true forces")
 
     @unittest.skipUnless(shutil.which("ffprobe"), "ffprobe is not installed")
     def test_slow_motion(self):

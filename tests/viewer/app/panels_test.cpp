@@ -115,8 +115,8 @@ std::set<std::string> available(const SourceInfo& source) {
 TEST(QuantitiesOfSensels, AreThoseOfNormalForce) {
   SourceInfo source = FakeProducer(SkinLayout::sensels).info();
   EXPECT_EQ(available(source),
-            (std::set<std::string>{"normal", "pressure", "status", "uncertainty"}));
-  source.has_uncertainty = false;
+            (std::set<std::string>{"difference", "normal", "pressure", "status", "uncertainty"}));
+  source.has_uncertainty = source.has_truth = false;
   EXPECT_EQ(available(source), (std::set<std::string>{"normal", "pressure", "status"}));
   EXPECT_EQ(available(FakeProducer().info()).size(), static_cast<std::size_t>(kQuantities));
 }

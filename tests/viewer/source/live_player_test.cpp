@@ -156,6 +156,23 @@ TEST(LivePlayer, ContactsComeWhenAskedFor) {
   EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0.5F);
 }
 
+TEST(LivePlayer, TellsATareThatIsRefusedFromOneThatIsInsistedOn) {
+  LiveFixture live;
+  const auto tare = [&](std::uint64_t message) {
+    live.player->live()->tare();
+    LiveFixture::wait_until([&] {
+      live.send(200);
+      return live.status().messages == message;
+    });
+    return live.status();
+  };
+  live.send(200);
+  EXPECT_TRUE(tare(1).failed);
+  EXPECT_EQ(live.status().tares, 0U);
+  EXPECT_FALSE(tare(2).failed);
+  EXPECT_EQ(live.status().tares, 1U);
+}
+
 TEST(LivePlayer, ASensorMayStopAndEnd) {
   LiveFixture live;
   live.send(100);

@@ -252,6 +252,25 @@ TEST(SceneProducer, OpensAgainAndHasATruth) {
   EXPECT_NEAR(solved.normal, expected.normal, 0.05 * expected.normal);
   EXPECT_FALSE(truth->info().has_readings);
   EXPECT_FALSE(truth->open_truth);
+  EXPECT_TRUE(producer->info().has_truth);
+  EXPECT_FALSE(truth->info().has_truth);
+  ShownField field = producer->produce(2);
+  add_difference(field, producer->open_truth);
+  const ShownField exact = truth->produce(2);
+  double most = 0;
+  for (std::size_t i = 0; i < field.difference->size(); ++i) {
+    const float found = (*field.difference)[i];
+    const double expected_n = std::hypot(field.forces.shear_x[i] - exact.forces.shear_x[i],
+                                         field.forces.shear_y[i] - exact.forces.shear_y[i],
+                                         field.forces.normal[i] - exact.forces.normal[i]);
+    if (((field.forces.status[i] | exact.forces.status[i]) & status::kLoaded) == 0) {
+      EXPECT_EQ(found, -1);
+    } else {
+      EXPECT_NEAR(found, expected_n, 1e-6);
+    }
+    most = std::max(most, expected_n);
+  }
+  EXPECT_GT(most, 0) << "pillars at the edge are not solved exactly";
 }
 
 TEST(ForceFileProducer, ShowsWhatTheFileHasAndAngles) {

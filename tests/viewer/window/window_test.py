@@ -44,7 +44,7 @@ class KeyTest(WindowTest):
     def test_keys_change_what_is_seen(self):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20)
         before = self.shoot("opened")
-        for key in ("2", "a", "k", "v", "b", "w", "t", "i", "Tab", "Right", "question", "Escape"):
+        for key in ("2", "e", "a", "k", "v", "b", "w", "t", "i", "Tab", "Right", "question", "Escape"):
             before = self.act("key_" + key, lambda key=key: window.key(key), before)
         window.key("space")
         self.wait_for_motion()

@@ -25,6 +25,12 @@ View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
   return fit_top(place.skin(), layout.plot);
 }
 
+/// Adds what the quantity needs to the field on display.
+void complete_field(AppState& state) {
+  if (state.look.settings.quantity != Quantity::difference || !state.source.field) return;
+  if (state.source.open_truth) add_difference(*state.source.field, state.source.open_truth);
+}
+
 }  // namespace
 
 void show_quantity(AppState& state, Quantity quantity) {
@@ -37,6 +43,7 @@ void show_quantity(AppState& state, Quantity quantity) {
   const bool same_scale = info_of(settings.quantity).scale == info.scale;
   remembered(state) = settings.range;
   settings.quantity = quantity;
+  complete_field(state);
   if (!same_scale) settings.map = default_map(info.scale);
   if (const auto& range = remembered(state); range && !state.look.fit_each_field) {
     settings.range = *range;
@@ -188,6 +195,7 @@ void change_speed(AppState& state, int steps) {
 
 void take_field(AppState& state, ShownField field) {
   state.source.field = std::move(field);
+  complete_field(state);
   if (state.look.fit_each_field) fit_range(state);
 }
 

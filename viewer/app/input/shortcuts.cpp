@@ -151,6 +151,7 @@ constexpr std::array kShortcuts{
     shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
     shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
+    shows<Quantity::difference>(plain(GLFW_KEY_E), "E", "difference to the true forces"),
 
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows",
              toggle_of_pillars<&RenderSettings::arrows>, with_pillars},

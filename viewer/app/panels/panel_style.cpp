@@ -63,7 +63,11 @@ void column_head(const std::string& words, std::string_view unit, const std::str
   ImGui::TableNextColumn();
   ImGui::BeginGroup();
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
-  left ? ImGui::TextUnformatted(words.c_str()) : flush_right(words);
+  if (left) {
+    ImGui::TextUnformatted(words.c_str());
+  } else {
+    flush_right(words);
+  }
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
   flush_right(std::string(unit));
   ImGui::PopStyleColor();

@@ -80,25 +80,31 @@ void draw_readings(const PanelStyle& style, const AppState& state, const PillarV
   draw_reading_bars(*ImGui::GetWindowDrawList(), {box.x, box.y}, bars, full, colour, style);
 }
 
-/// The readings and the direction, side by side if they fit.
-void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
-                                 const PillarValues& values, ImU32 colour) {
-  constexpr double kLeast = 130;
-  constexpr double kMost = 190;
-  double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (state.source.field->raw.data == nullptr) {
-    faint_text(style, "The source has no readings.");
-  } else {
-    draw_readings(style, state, values, colour);
-    const double gap = 16 * style.unit;
-    const double beside = width - kReadingBarsSize.x * style.unit - gap;
-    if (beside >= kLeast * style.unit) {
-      ImGui::SameLine(0, static_cast<float>(gap));
-      width = beside;
+/// Adds the quantity of the heat map unless another line shows it.
+void add_mapped(std::vector<ShownValue>& lines, const AppState& state, PillarIndex pillar) {
+  const Quantity quantity = state.look.settings.quantity;
+  const Skin& skin = state.source.player->info().skin;
+  const bool elsewhere = quantity == Quantity::pressure && !skin.has_pillars();
+  const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
+                    quantity == Quantity::pressure || quantity == Quantity::difference;
+  if (!adds || elsewhere) return;
+  const QuantityInfo info = info_of(quantity);
+  const double value = value_of(quantity, *state.source.field, skin, pillar.row, pillar.col);
+  lines.push_back(state.look.settings.units.readout(info.title, info.dimension, value));
+}
+
+/// Force and direction of an element.
+std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& values,
+                                 PillarIndex pillar) {
+  std::vector<ShownValue> lines =
+      shown_forces(values, state.source.player->info().skin, state.look.settings.units);
+  if (values.has_pillars) {
+    for (const ShownValue& value : shown_direction(values, state.look.settings.units)) {
+      lines.push_back(value);
     }
   }
-  readouts(style, shown_direction(values, state.look.settings.units),
-           std::min(width, kMost * style.unit));
+  add_mapped(lines, state, pillar);
+  return lines;
 }
 
 bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
@@ -126,45 +132,18 @@ void pillar_panel(AppState& state) {
       style, format_pillar(pin.pillar),
       format_place(state.source.field->forces, pin.pillar, pitch_mm, state.look.settings.units));
   status_line(style, state, pin.pillar, values.status);
-  if (!values.has_pillars) {
-    if (state.source.field->raw.data != nullptr) faint_text(style, format_readings(values).c_str());
-    leave_gap(style, 2);
-    return value_table(
-        style, shown_forces(values, state.source.player->info().skin, state.look.settings.units));
+  if (state.source.field->raw.data == nullptr) {
+    faint_text(style, "The source has no readings.");
+  } else if (values.has_pillars) {
+    draw_readings(style, state, values, colour);
+  } else {
+    faint_text(style, format_readings(values).c_str());
   }
-  leave_gap(style, 4);
-  draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);
-  value_table(style, shown_components(values, state.look.settings.units));
+  value_table(style, lines_of(state, values, pin.pillar));
 }
 
 namespace {
-
-/// Adds the quantity of the heat map unless another line shows it.
-void add_mapped(std::vector<ShownValue>& lines, const AppState& state) {
-  const Quantity quantity = state.look.settings.quantity;
-  const Skin& skin = state.source.player->info().skin;
-  const bool elsewhere = quantity == Quantity::pressure && !skin.has_pillars();
-  const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
-                    quantity == Quantity::pressure;
-  if (!adds || elsewhere) return;
-  const QuantityInfo info = info_of(quantity);
-  const double value = value_of(quantity, *state.source.field, skin, state.marks.hovered->row,
-                                state.marks.hovered->col);
-  lines.push_back(state.look.settings.units.readout(info.title, info.dimension, value));
-}
-
-std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& values) {
-  std::vector<ShownValue> lines =
-      shown_forces(values, state.source.player->info().skin, state.look.settings.units);
-  if (values.has_pillars) {
-    for (const ShownValue& value : shown_direction(values, state.look.settings.units)) {
-      lines.push_back(value);
-    }
-  }
-  add_mapped(lines, state);
-  return lines;
-}
 
 /// The same place in the second source, if it has one.
 void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pillar) {
@@ -197,7 +176,7 @@ void hover_panel(const AppState& state) {
   }
   if (values.status == 0) return show_beside(style, state, pillar);
   leave_gap(style, 2);
-  value_table(style, lines_of(state, values));
+  value_table(style, lines_of(state, values, pillar));
   show_beside(style, state, pillar);
 }
 

@@ -213,24 +213,6 @@ void value_table(const PanelStyle& style, std::span<const ShownValue> values) {
   ImGui::PopStyleVar();
 }
 
-void readouts(const PanelStyle& style, std::span<const ShownValue> values, double width) {
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, to_imgui({0, style.unit}));
-  ImGui::BeginGroup();
-  const double right = static_cast<double>(ImGui::GetCursorPosX()) + width;
-  for (const ShownValue& shown : values) {
-    const std::string value = with_unit(shown.value, shown.unit);
-    faint(style, shown.label);
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(static_cast<float>(right - width_of(value)));
-    ImGui::TextUnformatted(value.c_str());
-    ImGui::SetCursorPosX(static_cast<float>(right - width_of(shown.range)));
-    faint(style, shown.range);
-    leave_gap(style, 12);
-  }
-  ImGui::EndGroup();
-  ImGui::PopStyleVar();
-}
-
 double value_table_width(const PanelStyle& style) {
   return (kLabelWidth + kValueWidth + kGap + kRangeWidth) * style.unit;
 }

@@ -48,10 +48,6 @@ void question(ImDrawList& list, const ImVec2& middle, float side, unsigned colou
 /// columns.
 void value_table(const PanelStyle& style, std::span<const ShownValue> values);
 
-/// Two lines for each value, `width` wide: label and value with its unit; below, flush right, the
-/// deviation or interval.
-void readouts(const PanelStyle& style, std::span<const ShownValue> values, double width);
-
 /// Width of a table, pixels.
 [[nodiscard]] double value_table_width(const PanelStyle& style);
 

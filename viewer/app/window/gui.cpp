@@ -90,7 +90,7 @@ void draw_column(const Command& command, const Viewport& box) {
   if (box.width < 1) return;
   begin_part("right", box, command.state.look.settings.theme);
   const double first = kColumn * command.state.look.settings.scale;
-  if (box.width < 2.25 * first) {
+  if (box.width < 2.6 * first) {
     draw_panels(command);
   } else {
     ImGui::BeginChild("settings", to_imgui({first, 0}));
@@ -128,6 +128,18 @@ void draw_row(const Command& command, const Viewport& box) {
   ImGui::End();
 }
 
+/// Width and height of the field that whole skins leave free.
+Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
+  if (!(sides.aspect > 0)) return {};
+  RenderSettings settings;
+  settings.scale = scale;
+  const Margins margins = margins_of(settings);
+  const double around = sides.pictures * (margins.left + margins.right) + margins.legend;
+  const double across = margins.top + margins.bottom;
+  return {field.width - around - sides.pictures * sides.aspect * (field.height - across),
+          field.height - across - (field.width - around) / (sides.pictures * sides.aspect)};
+}
+
 }  // namespace
 
 Sides sides_of(const AppState& state) {
@@ -141,18 +153,6 @@ Sides sides_of(const AppState& state) {
   sides.row_share = folded ? 0 : kShareOfRow;
   sides.row_pixels = folded ? kFoldedRow : state.marks.boxes.empty() ? 0 : kLineOfNames;
   return sides;
-}
-
-/// Width and height of the field that whole skins leave free.
-Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
-  if (!(sides.aspect > 0)) return {};
-  RenderSettings settings;
-  settings.scale = scale;
-  const Margins margins = margins_of(settings);
-  const double around = sides.pictures * (margins.left + margins.right) + margins.legend;
-  const double across = margins.top + margins.bottom;
-  return {field.width - around - sides.pictures * sides.aspect * (field.height - across),
-          field.height - across - (field.width - around) / (sides.pictures * sides.aspect)};
 }
 
 Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Sides& sides) {
