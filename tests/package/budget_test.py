@@ -9,10 +9,10 @@ SOURCE = os.environ["PILLARFIELD_SOURCE"]
 
 # At most so many lines of code, and files of any kind.
 LIMITS = {
-    "core": 108800,
+    "core": 109300,
     "viewer": 21400,
     "laboratory": 7050,
-    "all": 137000,
+    "all": 137600,
     "tests": 41200,
     "files": 1330,
 }
