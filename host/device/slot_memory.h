@@ -30,7 +30,7 @@ class PinnedFrames {
   std::vector<std::weak_ptr<std::byte[]>> frames_;
 };
 
-/// What all slots of a device with its own memory share.
+/// Shared by all slots of a device with its own memory.
 struct Transfers {
   explicit Transfers(std::size_t threads) : pool(threads) {}
 

@@ -71,7 +71,7 @@ def live(source: str, *, skin: Optional[_core.Skin] = None, serial_baud: int = 2
     """Opens a live source and waits for its first frame; Ctrl+C gives up.
 
     source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', 'serial:DEVICE?protocol=flexitac&rows=16&cols=32'
-        of a FlexiTac board, or '-' for standard input
+        of a FlexiTac board, 'serial:auto', which finds one, or '-' for standard input
     skin: constants of the skin; rows and columns come from the frames, and what it does not state from
         the sensor, if that states it; by default each sensel is by itself
     serial_baud: of 'serial:'
@@ -85,7 +85,7 @@ def live(source: str, *, skin: Optional[_core.Skin] = None, serial_baud: int = 2
     >>> import pillarfield as pf
     >>> pf.live("press.h5")
     Traceback (most recent call last):
-    pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS]
+    pillarfield.Error: press.h5: it is not a live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE[?protocol=flexitac&rows=ROWS&cols=COLS] or serial:auto
     """
     return LiveSource(source, skin=skin, serial_baud=serial_baud, layout=layout, pitch_mm=pitch_mm,
                       falling=falling, timeout=timeout)

@@ -224,22 +224,22 @@ TEST(WeightCalibration, WithoutOtherPressuresTheResponseStays) {
 /// The lighter weight has fewer frames, whose sums are no outliers.
 TEST(WeightCalibration, TwoWeightsDetermineTheResponse) {
   for (const double power : {1.0, 0.65}) {
-    WeighedPad::Model model = pad_model(3, power);
+    WeighedPad::Model model = pad_model(4, power);
     model.spread = 0.05;
     WeighedPad pad(9, model);
     WeightFinder finder(pad.skin(), pad.tared());
     for (const double share : {1.0, 0.4}) {
-      Body body = round_body(3);
+      Body body = round_body(4);
       body.weight_n = share * kWeightN;
       finder.begin(body.weight_n, "weight.h5");
-      roll(pad, finder, body, 0, share < 1 ? 300 : 700);
+      roll(pad, finder, body, 0, share < 1 ? 100 : 700);
     }
     const WeightResult result = finder.result();
     EXPECT_TRUE(result.finds_exponent);
     EXPECT_NEAR(result.exponent, 1 / power, 0.02);
-    EXPECT_GE(result.frames_used, 950U);
+    EXPECT_GE(result.frames_used, 760U);
     const std::vector<double> errors = errors_of_others(pad, result.calibration, 200);
-    EXPECT_GE(share_within(errors, 1.96 * result.total_deviation), 0.9) << power;
+    EXPECT_GE(share_within(errors, 1.96 * result.total_deviation), 0.85) << power;
     EXPECT_GE(share_within(errors, 0.08), 0.9) << power;
   }
 }

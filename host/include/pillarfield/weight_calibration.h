@@ -35,7 +35,7 @@ struct WeightResult {
   double unvisited_deviation = 0;
   double misfit = 0;         ///< of the sum of a frame beyond noise, relative
   double misfit_before = 0;  ///< the same with gains and response as before
-  /// Of the total of 0.3 to 2 times the heaviest weight anywhere, relative: 95 % lie within 1.96.
+  /// For totals of 0.3 to 2 times the heaviest weight anywhere, relative: 95 % lie within 1.96.
   double total_deviation = 0;
 };
 
