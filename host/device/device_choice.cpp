@@ -256,7 +256,7 @@ const DeviceInfo& Device::info() const { return state().info; }
 Device Device::for_plan(const SolverPlan& plan) const {
   if (best_ == nullptr) return *this;
   const std::size_t most = is_whole(plan) ? kMostWholeQuadsOnHost : kMostQuadsOnHost;
-  const Device host(std::make_shared<State>());
+  Device host(std::make_shared<State>());
   if (quads(plan.skin) <= most) return host;
   const std::array devices = {Device(best_->opened()), host};
   if (devices[0].info().shares_memory) return devices[0];

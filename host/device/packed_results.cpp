@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "pillarfield/status.h"
 
@@ -17,8 +18,8 @@ constexpr std::size_t kIndexBytes = 16;
 }  // namespace
 
 PackedResults::PackedResults(Device::State& device, const cl::CommandQueue& queue,
-                             const ResultLayout& layout, const cl::Buffer& results,
-                             std::byte* pages, ThreadPool& pool)
+                             const ResultLayout& layout, cl::Buffer results, std::byte* pages,
+                             ThreadPool& pool)
     : layout_(layout),
       planes_(layout.status / layout.plane_bytes),
       pillars_(std::size_t{layout.rows} * layout.cols),
@@ -26,7 +27,7 @@ PackedResults::PackedResults(Device::State& device, const cl::CommandQueue& queu
       group_bytes_(kIndexBytes + kGroupPillars * (planes_ * sizeof(float) + 1)),
       pages_(pages),
       pool_(pool),
-      results_(results),
+      results_(std::move(results)),
       sent_(device.context, CL_MEM_READ_WRITE, layout.bytes),
       packed_(device.context, CL_MEM_READ_WRITE, kCountBytes + groups_ * group_bytes_),
       packed_on_host_(device.context, queue, kCountBytes + groups_ * group_bytes_),

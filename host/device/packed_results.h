@@ -23,7 +23,7 @@ class PackedResults {
  public:
   /// Sets `pages` to zero; they, `results` and `pool` must outlive it.
   PackedResults(Device::State& device, const cl::CommandQueue& queue, const ResultLayout& layout,
-                const cl::Buffer& results, std::byte* pages, ThreadPool& pool);
+                cl::Buffer results, std::byte* pages, ThreadPool& pool);
 
   /// Starts the transfer, behind the solve.
   void download(const cl::CommandQueue& queue);

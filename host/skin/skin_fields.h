@@ -41,7 +41,7 @@ inline constexpr NumberField kThresholdFactor = {"threshold_factor", 0, kMaxThre
 /// The numbers of a power law.
 struct PowerLawField {
   NumberField number;
-  double PowerLaw::*member;
+  double PowerLaw::*member = nullptr;
 };
 inline constexpr PowerLawField kPowerLawFields[] = {
     {{"power_law_exponent", kMinExponent, kMaxExponent}, &PowerLaw::exponent},

@@ -32,13 +32,13 @@ struct ContactColumn {
   const char* name = "";  ///< with its unit: "shear_x_n"
   const char* unit = "";  ///< "N", "mm", ...; empty for plain numbers
   const char* help = "";  ///< "force to the right"
-  ColumnKind kind = ColumnKind::count;
   double (*get)(const Row&) = nullptr;
   void (*set)(Row&, double) = nullptr;    ///< accepts any number: the file may be damaged
   const char* (*word)(double) = nullptr;  ///< only for ColumnKind::word
-  bool optional = false;                  ///< absent from files of earlier versions
-  bool of_pillars = false;                ///< does not exist without them
   LiveColumn live = {};
+  ColumnKind kind = ColumnKind::count;
+  bool optional = false;    ///< absent from files of earlier versions
+  bool of_pillars = false;  ///< does not exist without them
 };
 
 /// The columns id, parent, number, first_time_s, age_s.
