@@ -235,7 +235,7 @@ TEST(SensorEffects, AnInfiniteReadingBehindWiresMakesNoOtherIdle) {
         processor.submit(frame.view());
         results.emplace_back(processor.receive());
       }
-      EXPECT_EQ(results[0].status[4 * 24], status::kUsable);
+      EXPECT_EQ(results[0].status[std::size_t{4} * 24], status::kUsable);
       expect_same_bits(results[1].view(), results[0].view());
     }
   }
