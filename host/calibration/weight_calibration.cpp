@@ -25,8 +25,8 @@ constexpr std::size_t kFewestPlaces = 5;
 constexpr std::size_t kFewestVisits = 5;
 /// Largest misfit of the sums, relative.
 constexpr double kMostWeightMisfit = 0.15;
-/// Largest deviation of an exponent that counts as seen, relative. Rigid bases, of which gains may
-/// imitate another exponent, leave 0.1 and more, wrongly small by a factor of up to three.
+/// Largest deviation of an exponent that counts as seen, relative. A rigid base, whose
+/// gains may imitate another exponent, leaves 0.1 and more, too small by a factor of up to three.
 constexpr double kMostExponentDeviation = 0.05;
 constexpr int kWeightSamples = 48;
 

@@ -283,7 +283,7 @@ void WeightFit::estimate_spread() {
   spread_ = std::clamp(found, kLeastGainSpread, kMostGainSpread);
 }
 
-/// Variance of the exponent from the information of the frames, of which their noise makes a part
+/// Variance of the exponent from the information of the frames, part of which is their noise
 /// that says nothing.
 double WeightFit::exponent_variance(double information) const {
   const double unknown = squared(kExponentSpread * response_.exponent);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -28,7 +30,9 @@
 #include "pillarfield/reading_check.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/solve_range.h"
+#include "pillarfield/status.h"
 #include "pillarfield/tuning.h"
+#include "skin/status_word.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -88,6 +92,22 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
 
 constexpr int kFramesInFlight = 3;
 
+/// Sum of the normal forces of loaded pillars, N; most words of the status have none.
+double loaded_normal_n(const ForceFieldView& forces) {
+  double sum = 0;
+  const std::size_t elements = forces.status.size();
+  for (std::size_t first = 0; first < elements; first += kWordBytes) {
+    const std::size_t end = std::min(first + kWordBytes, elements);
+    std::uint64_t word = 0;
+    std::memcpy(&word, &forces.status[first], end - first);
+    if ((word & kEachByte * status::kLoaded) == 0) continue;
+    for (std::size_t i = first; i < end; ++i) {
+      if (std::isfinite(forces.normal[i])) sum += static_cast<double>(forces.normal[i]);
+    }
+  }
+  return sum;
+}
+
 /// Counts regions, finds the frame of the largest force and shows the progress.
 class Counter final : public ForceSink {
  public:
@@ -99,10 +119,8 @@ class Counter final : public ForceSink {
     progress_.show(++frames_);
     if (regions_.in_contact() == in_contact) return;
     ++load_.frames;
-    double normal_n = 0;
-    for (const float normal : frame.forces.normal) {
-      if (std::isfinite(normal)) normal_n += normal;
-    }
+    const double normal_n =
+        frame.contacts != nullptr ? frame.contacts->total.normal_n : loaded_normal_n(frame.forces);
     if (normal_n <= load_.largest_n) return;
     load_.largest_n = normal_n;
     load_.at_s = frame.time_s;

@@ -191,8 +191,8 @@ std::vector<std::string> ReadingCheck::warnings() const {
     };
     sentences.push_back(fmt::format(
         "The readings' noise is about {:.2g} counts, and {:.3g} is stated: deviations and "
-        "intervals "
-        "are too narrow. Give --noise {:.2g} (in Python noise_counts=), or take the tare anew.",
+        "intervals are too narrow. Give --noise {:.2g} (in Python noise_counts=), or take the tare "
+        "again.",
         alone(*noise), alone(noise_), alone(*noise)));
   }
   if (share >= kCovered) {

@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(FurtherPaths, SpeedPathTest,
                                          SpeedPath{SenselType::f32, 16}),
                          name_of_path);
 
-/// Frames of which few, all, or no results change, so that results travel as expected groups, with
+/// Frames that change few, all, or no results, so that results travel as expected groups, with
 /// a second read, and as whole planes; three in flight.
 void expect_host_bits_of_packed_results(const SolverPlan& plan) {
   HostReference host(plan);
