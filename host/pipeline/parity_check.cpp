@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "pillarfield/calibration.h"
+#include "pillarfield/error.h"
 #include "pillarfield/reading_check.h"
 #include "pillarfield/recording.h"
 #include "skin/raw_reading.h"
@@ -15,11 +17,10 @@ namespace pillarfield {
 namespace {
 
 constexpr std::uint64_t kMostPillars = 2048;  // of a frame
-constexpr double kInside = 4;       // distance from the ends of the range, deviations of a reading
-constexpr double kClearly = 1.4;    // times what is stated
-constexpr double kMedian = 0.6745;  // of the magnitude, deviations
-constexpr double kLight = 64;       // least mean V^2 of a pillar, variances of a reading,
-constexpr double kHeavy = 1000;     // and the one from which on it tells gains
+constexpr double kInside = 4;     // distance from the ends of the range, deviations of a reading
+constexpr double kClearly = 1.4;  // times what is stated
+constexpr double kLight = 64;     // least mean V^2 of a pillar, variances of a reading,
+constexpr double kHeavy = 1000;   // and the one from which on it tells gains
 
 /// Standard deviation of a reading, counts, if the plan states one, else zero.
 double stated_noise_of(const SolverPlan& plan) {
@@ -34,7 +35,9 @@ bool is_linear(const SolverPlan& plan) {
          !effects.memory && plan.calibration.bend_x.empty();
 }
 
-double squared(double value) { return value * value; }
+double square_of(const std::array<float, 4>& v) {
+  return std::inner_product(v.begin(), v.end(), v.begin(), 0.0);
+}
 
 double parity_of(const std::array<float, 4>& v) {
   return double{v[0]} - double{v[1]} - double{v[2]} + double{v[3]};
@@ -49,7 +52,6 @@ float value_at(const std::vector<float>& plane, std::size_t sensel, float otherw
 ParityCheck::ParityCheck(const SolverPlan& plan)
     : plan_(plan),
       noise_(plan.skin.has_pillars() ? stated_noise_of(plan) : 0),
-      parity_unit_(plan.sensel_type == SenselType::f32 ? noise_ / 4 : 1),
       judges_loads_(is_linear(plan)) {}
 
 void ParityCheck::add(const FrameView& readings, bool follows) {
@@ -76,13 +78,15 @@ void ParityCheck::add(const FrameView& readings, bool follows) {
       const std::uint64_t sensel = at_row * readings.cols + at_col;
       now[k] = raw_reading(readings, at_row, at_col);
       if (is_first) tares_[i][k] = value_at(planes.tare, sensel, 0);
-      load[k] = (now[k] - tares_[i][k]) * value_at(planes.gain, sensel, 1) +
-                value_at(planes.dead_zone, sensel, 0);
+      load[k] = (now[k] - tares_[i][k]) * value_at(planes.gain, sensel, 1);
+      if (load[k] > usable) load[k] += value_at(planes.dead_zone, sensel, 0);
       is_whole = is_whole && is_good(planes, sensel) && now[k] < most;  // false for NaN
     }
     const auto [lowest, highest] = std::ranges::minmax(load);
-    if (is_whole && !is_first && follows) count_change(now, earlier_[i]);
-    if (is_whole && judges_loads_ && lowest > usable) add_load(load, i);
+    if (is_whole && !is_first && follows) compare(now, earlier_[i], i);
+    if (is_whole && judges_loads_ && lowest > usable) {
+      keep(loads_, {parity_of(load), square_of(load), double{lowest}, i});
+    }
     for (std::size_t k = 0; k < now.size() && highest <= usable; ++k) {
       tares_[i][k] += rate * (now[k] - tares_[i][k]);
     }
@@ -90,100 +94,70 @@ void ParityCheck::add(const FrameView& readings, bool follows) {
   }
 }
 
-/// Counts the change of the parity of a pillar whose load stayed: its noise alone, since gains,
+/// Keeps the change of the parity of a pillar whose load stayed: its noise alone, since gains,
 /// tares and loads cancel. The three other sums of the four changes, each with the noise of the
 /// parity and independent of it, tell the load.
-void ParityCheck::count_change(const std::array<float, 4>& now,
-                               const std::array<float, 4>& before) {
+void ParityCheck::compare(const std::array<float, 4>& now, const std::array<float, 4>& before,
+                          std::size_t pillar) {
   constexpr double kSteady = 16;  // largest change of a sum, deviations of a reading
   std::array<float, 4> change{};
   for (std::size_t k = 0; k < now.size(); ++k) change[k] = now[k] - before[k];
   const auto [a, b, c, d] = change;
   const float moved =
       std::max({std::abs(a + b + c + d), std::abs(a + b - c - d), std::abs(a - b + c - d)});
-  const float lowest = std::min(std::ranges::min(now), std::ranges::min(before));
-  if (!(moved <= kSteady * noise_ && lowest > kInside * noise_)) return;  // NaN too
-  const double units = std::abs(parity_of(change)) / parity_unit_;
-  const auto last = static_cast<double>(changes_.size() - 1);
-  ++changes_[static_cast<std::size_t>(std::round(std::min(units, last)))];
+  const double lowest = std::min(std::ranges::min(now), std::ranges::min(before));
+  if (moved <= kSteady * noise_) keep(changes_, {parity_of(change), 0, lowest, pillar});
 }
 
-/// Keeps a pillar's parity; of many every other one, again and again.
-void ParityCheck::add_load(const std::array<float, 4>& load, std::size_t pillar) {
-  constexpr std::size_t kMostLoads = std::size_t{1} << 17U;
-  if (loads_seen_++ % load_step_ != 0) return;
-  double square = 0;
-  for (const float v : load) square += double{v} * double{v};
-  loads_.push_back({parity_of(load), square, double{std::ranges::min(load)}, pillar});
-  if (loads_.size() < kMostLoads) return;
-  for (std::size_t i = 0; i < kMostLoads / 2; ++i) loads_[i] = loads_[2 * i];
-  loads_.resize(kMostLoads / 2);
-  load_step_ *= 2;
+/// Keeps the last ones.
+void ParityCheck::keep(std::vector<Sample>& samples, const Sample& sample) {
+  constexpr std::size_t kMost = std::size_t{1} << 19U;
+  if (samples.size() < kMost) return samples.push_back(sample);
+  samples[seen_++ % kMost] = sample;
 }
 
-/// Standard deviation of a reading by the median of the changes; zero if there are too few.
-double ParityCheck::noise_of_changes() const {
-  constexpr std::uint64_t kFewChanges = 500;
-  std::uint64_t changes = 0;
-  for (const std::uint64_t count : changes_) changes += count;
-  if (changes < kFewChanges) return 0;
-  double before = 0;
-  std::size_t bin = 0;
-  const double half = 0.5 * static_cast<double>(changes);
-  while (before + static_cast<double>(changes_[bin]) < half) {
-    before += static_cast<double>(changes_[bin++]);
-  }
-  const double low = bin == 0 ? 0 : static_cast<double>(bin) - 0.5;
-  const double high = static_cast<double>(bin) + 0.5;
-  const double median = low + (high - low) * (half - before) / static_cast<double>(changes_[bin]);
-  return median * parity_unit_ / (kMedian * std::sqrt(8.0));
-}
-
-/// Means of parity^2 and of the sum of V^2 over the pillars with a mean V^2 in (least, most],
+/// Means of parity^2 and of the sum of V^2 over the samples with a mean V^2 in [least, most),
 /// variances of the noise, without outliers such as stuck sensels; zero if there are too few.
-ParityCheck::Load ParityCheck::mean_of(double noise, double least, double most) const {
-  constexpr std::size_t kFewLoads = 300;
+ParityCheck::Sample ParityCheck::mean_of(const std::vector<Sample>& samples, double noise,
+                                         double least, double most) {
+  constexpr std::size_t kFewSamples = 300;
   constexpr std::size_t kFewPillars = 12;
-  constexpr double kOutlier = 5;  // deviations
-  std::vector<Load> loads;
-  for (const Load& load : loads_) {
-    const double variances = load.square / (4 * noise * noise);
-    if (load.lowest > kInside * noise && variances > least && variances <= most) {
-      loads.push_back(load);
-    }
-  }
+  constexpr double kOutlier = 7.4;  // medians of |parity|: 5 deviations
+  std::vector<Sample> chosen;
   std::set<std::size_t> pillars;
-  for (const Load& load : loads) pillars.insert(load.pillar);
-  if (loads.size() < kFewLoads || pillars.size() < kFewPillars) return {};
-  const auto middle = loads.begin() + static_cast<std::ptrdiff_t>(loads.size() / 2);
-  std::ranges::nth_element(loads, middle, {}, [](const Load& at) { return std::abs(at.parity); });
-  const double limit = kOutlier * std::max(std::abs(middle->parity) / kMedian, 2 * noise);
-  Load sum;
+  for (const Sample& sample : samples) {
+    const double variances = sample.square / (4 * noise * noise);
+    if (sample.lowest <= kInside * noise || variances < least || variances >= most) continue;
+    chosen.push_back(sample);
+    pillars.insert(sample.pillar);
+  }
+  if (chosen.size() < kFewSamples || pillars.size() < kFewPillars) return {};
+  const auto middle = chosen.begin() + static_cast<std::ptrdiff_t>(chosen.size() / 2);
+  std::ranges::nth_element(chosen, middle, {},
+                           [](const Sample& at) { return std::abs(at.parity); });
+  const double limit = std::max(kOutlier * std::abs(middle->parity), 10 * noise);
+  Sample mean;
   double count = 0;
-  for (const Load& load : loads) {
-    if (std::abs(load.parity) > limit) continue;
-    sum.parity += load.parity * load.parity;
-    sum.square += load.square;
+  for (const Sample& sample : chosen) {
+    if (std::abs(sample.parity) > limit) continue;
+    mean.parity += sample.parity * sample.parity;
+    mean.square += sample.square;
     ++count;
   }
-  return {sum.parity / count, sum.square / count, 0, pillars.size()};
+  mean.parity /= count;
+  mean.square /= count;
+  return mean;
 }
 
 ParityCheck::Found ParityCheck::found() const {
   constexpr double kLeastGainError = 0.015;
-  constexpr double kSurely = 1;  // deviation
-  const double steady = noise_of_changes();
+  const double steady = std::sqrt(mean_of(changes_, noise_, 0, HUGE_VAL).parity / 8);
   const double noise = std::max(steady, noise_);
-  const Load light = mean_of(noise, kLight, kHeavy);
-  const Load heavy = mean_of(noise, kHeavy, HUGE_VAL);
-  const bool is_split = light.square > 0;
-  const double none = is_split ? light.parity : 4 * noise * noise;
-  const double rise = heavy.parity - none;
-  // Drift and gains stay from frame to frame: each pillar is one sample.
-  const double variance = 2 * (squared(heavy.parity) / static_cast<double>(heavy.pillar) +
-                               (is_split ? squared(none) / static_cast<double>(light.pillar) : 0));
-  const bool rises = heavy.square > 0 && rise > kSurely * std::sqrt(variance);
-  const double gains = rises ? rise / (heavy.square - light.square) : 0;
+  const Sample light = mean_of(loads_, noise, kLight, kHeavy);
+  const Sample heavy = mean_of(loads_, noise, kHeavy, HUGE_VAL);
+  const double none = light.square > 0 ? light.parity : 4 * noise * noise;
+  const double rise = std::max(heavy.parity - none, 0.0);
+  const double gains = rise > 0 ? rise / (heavy.square - light.square) : 0;
   const double loaded = std::sqrt(std::max(light.parity - gains * light.square, 0.0)) / 2;
   Found found;
   found.noise = std::max(steady, loaded);
@@ -202,25 +176,20 @@ double ParityCheck::without_rounding(double noise) const {
 
 std::vector<std::string> ParityCheck::warnings(bool allowed_for) const {
   const Found found = this->found();
+  const char* const end = allowed_for ? "allow for it" : "are too narrow";
   std::vector<std::string> sentences;
   if (found.noise > 0) {
-    const double noise = without_rounding(found.noise);
     sentences.push_back(fmt::format(
-        "The readings' noise{} is about {:.2g} counts, and {:.3g} is stated: {}",
-        found.is_drift ? " with the drift of single sensels under load" : "", noise,
-        without_rounding(noise_),
-        allowed_for
-            ? fmt::format("deviations and intervals are for {:.2g}.", noise)
-            : fmt::format("deviations and intervals are too narrow. Give --noise {:.2g} (in "
-                          "Python noise_counts=), or take the tare again.",
-                          noise)));
+        "The readings' noise{} is about {:.2g} counts, and {:.3g} is stated: deviations and "
+        "intervals {}. Give --noise (in Python noise_counts=), or take the tare again.",
+        found.is_drift ? ", with the drift or missing tare of single sensels," : "",
+        without_rounding(found.noise), without_rounding(noise_), end));
   }
   if (found.gain_error > 0) {
     sentences.push_back(
         fmt::format("Gains are off by about {:.2g} %, by the parity of loaded pillars: deviations "
-                    "and intervals "
-                    "{}. 'pillarfield calibrate equilibrate' measures them.",
-                    100 * found.gain_error, allowed_for ? "allow for it" : "are too narrow"));
+                    "and intervals {}. 'pillarfield calibrate equilibrate' measures gains.",
+                    100 * found.gain_error, end));
   }
   return sentences;
 }
@@ -229,7 +198,7 @@ std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source)
   constexpr std::uint64_t kMostSensels = std::uint64_t{1} << 25U;
   constexpr std::uint64_t kMostFrames = 4096;  // behind a followed baseline: from the first on
   const std::uint64_t pairs =
-      std::clamp<std::uint64_t>(kMostSensels / plan.skin.sensels(), 64, 1024);
+      std::clamp<std::uint64_t>(kMostSensels / plan.skin.sensels(), 32, 128);
   ParityCheck check(plan);
   if (!(check.stated_noise() > 0)) return {};
   const bool all = plan.baseline_rate.has_value();
@@ -238,7 +207,11 @@ std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source)
   FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   for (std::uint64_t first = 0; first < frames; first += step) {
     for (std::uint64_t i = first; i < std::min({first + 2, first + step, frames}); ++i) {
-      source.read(i, frame);
+      try {
+        source.read(i, frame);
+      } catch (const Error&) {
+        continue;  // a damaged frame, which is reported where it is solved
+      }
       check.add(frame.view(), all || i > first);
     }
   }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,28 +36,27 @@ class ParityCheck {
   [[nodiscard]] std::vector<std::string> warnings(bool allowed_for) const;
 
  private:
-  /// A pillar whose sensels are all usable.
-  struct Load {
-    double parity = 0;       ///< V1 + V3 - V2 - V4, counts; of a mean its square
-    double square = 0;       ///< sum of V^2, counts^2
-    double lowest = 0;       ///< V, counts
-    std::size_t pillar = 0;  ///< of a mean the number of pillars
+  /// A pillar whose sensels are all usable, or its change from frame to frame.
+  struct Sample {
+    double parity = 0;  ///< V1 + V3 - V2 - V4, counts; of a mean its square
+    double square = 0;  ///< sum of V^2, counts^2
+    double lowest = 0;  ///< V, counts
+    std::size_t pillar = 0;
   };
-  void count_change(const std::array<float, 4>& now, const std::array<float, 4>& before);
-  void add_load(const std::array<float, 4>& load, std::size_t pillar);
-  [[nodiscard]] double noise_of_changes() const;
-  [[nodiscard]] Load mean_of(double noise, double least, double most) const;
+  void compare(const std::array<float, 4>& now, const std::array<float, 4>& before,
+               std::size_t pillar);
+  void keep(std::vector<Sample>& samples, const Sample& sample);
+  [[nodiscard]] static Sample mean_of(const std::vector<Sample>& samples, double noise,
+                                      double least, double most);
 
   const SolverPlan& plan_;
   double noise_;
-  double parity_unit_;  ///< of `changes_`, counts
   bool judges_loads_;
   std::vector<std::array<float, 4>> earlier_;  ///< readings of sampled pillars, the frame before
   std::vector<std::array<float, 4>> tares_;    ///< theirs, which may follow a drift
-  std::array<std::uint64_t, 256> changes_{};   ///< numbers of changes of parity, by size
-  std::vector<Load> loads_;
-  std::size_t loads_seen_ = 0;
-  std::size_t load_step_ = 1;  ///< one of so many is kept
+  std::vector<Sample> changes_;
+  std::vector<Sample> loads_;
+  std::size_t seen_ = 0;
 };
 
 }  // namespace pillarfield

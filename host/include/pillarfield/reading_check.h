@@ -23,8 +23,8 @@ inline constexpr double kCovered = 0.8;
 
 /// Raises the noise and the error of gains that a plan states to what its frames show by the parity
 /// of pillars, where that is clearly more, and returns a sentence about each
-/// (docs/derivations/uncertainty.md, section 5). Reads 128 to 2048 of the frames, spread over all; with a
-/// followed baseline up to 4096 in their order.
+/// (docs/derivations/uncertainty.md, section 5). Reads 64 to 256 of the frames, spread over all, or
+/// with a followed baseline the first 4096.
 [[nodiscard]] std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source);
 
 class ParityCheck;
