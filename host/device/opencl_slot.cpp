@@ -93,7 +93,11 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
                 ? shared_memory(device.context, slot.results)
                 : staged_memory(device, queue_, plan, slot.results, *settings.transfers);
   if (padded_sensels(plan.skin) != plan.skin.sensels()) {
-    padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
+    const std::uint32_t rows = padded_rows(plan.skin);
+    const std::uint32_t cols = padded_cols(plan.skin);
+    padded_ = settings.transfers == nullptr
+                  ? FrameBuffer(plan.sensel_type, rows, cols)
+                  : settings.transfers->frames.add(device.context, plan.sensel_type, rows, cols);
   }
   make_kernels(plan, settings, calibration);
 }
