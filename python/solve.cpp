@@ -166,12 +166,22 @@ void solve_to_file(Frames& frames, const SolverPlan& plan, const std::string& so
   sink->finish();
 }
 
+std::vector<std::string> allow_for_frames(SolverPlan& plan, Frames& frames) {
+  const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(frames.alone);
+  return allow_for_errors(plan, *frames.source);
+}
+
 }  // namespace
 
 void bind_solve(py::module_& module) {
   constexpr const char* kText =
       "Solves all frames: planes of forces, 'times' and, if wanted, 'contacts' of each frame; and "
       "'warnings' about their readings.";
+  module.def(
+      "allow_for_errors", &allow_for_frames, py::arg("plan"), py::arg("source"),
+      "Raises the noise and the error of gains that the plan states to what the frames show; "
+      "returns a sentence about each.");
   module.def("solve_source", &solve_source, py::arg("source"), py::arg("plan"), py::arg("contacts"),
              py::arg("device"), kText);
   module.def("solve_iterator", &solve_iterator, py::arg("frames"), py::arg("plan"),

@@ -322,7 +322,8 @@ void solve_series(SolveOptions options, const std::vector<std::filesystem::path>
     throw Error(options.input, "has " + counted(source->frames(), "frame"),
                 fmt::format("give --frames within 1:{}", source->frames()));
   }
-  const SolverPlan plan = plan_of(options, *source);
+  SolverPlan plan = plan_of(options, *source);
+  print_about(options.input, "warning", allow_for_errors(plan, *source));
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device).for_plan(plan);
   RangeOptions range;

@@ -3,31 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/status.h"
+#include "pipeline/parity_check.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr double kNearlyAll = 0.95;
 constexpr double kHardlyAny = 0.01;
-
-float reading_at(const FrameView& readings, std::size_t index) {
-  if (readings.type == SenselType::u8)
-    return static_cast<const std::uint8_t*>(readings.data)[index];
-  if (readings.type == SenselType::u16) {
-    return static_cast<const std::uint16_t*>(readings.data)[index];
-  }
-  return static_cast<const float*>(readings.data)[index];
-}
-
-/// Standard deviation of a reading, counts, if the plan states one, else zero.
-double stated_noise(const SolverPlan& plan) {
-  const bool is_stated = plan.noise_counts || !plan.calibration.noise.empty();
-  return is_stated ? reading_noise_n(plan) * plan.skin.counts_per_newton : 0;
-}
 
 }  // namespace
 
@@ -50,8 +36,7 @@ std::string coverage_words(double share, bool has_tare, SkinLayout layout) {
 ReadingCheck::ReadingCheck(const SolverPlan& plan)
     : plan_(plan),
       present_(plan.skin.elements() - count_absent_elements(plan.calibration, plan.skin)),
-      noise_(plan.skin.has_pillars() ? stated_noise(plan) : 0),
-      parity_unit_(plan.sensel_type == SenselType::f32 ? noise_ / 4 : 1) {}
+      parity_(std::make_shared<ParityCheck>(plan)) {}
 
 void ReadingCheck::append(const SolvedFrame& frame) {
   const std::uint64_t touched = count_in_contact(frame.forces.status);
@@ -65,68 +50,7 @@ void ReadingCheck::append(const SolvedFrame& frame) {
   const bool is_nearly_idle =
       static_cast<double>(touched) <= kHardlyAny * static_cast<double>(present_);
   if (is_nearly_idle && frame.readings.data != nullptr) look_at(frame.readings);
-  if (noise_ > 0 && frame.readings.data != nullptr) compare_with_earlier(frame.readings);
-}
-
-/// Counts the changes of parity, V1 + V3 - V2 - V4, of pillars whose load stayed: its noise alone,
-/// since gains, tares and loads cancel. The three other sums of the four changes, each with the
-/// noise of the parity and independent of it, tell the load.
-void ReadingCheck::compare_with_earlier(const FrameView& readings) {
-  constexpr std::uint64_t kMostPillars = 2048;  // of a frame
-  constexpr double kSteady = 16;                // largest change of a sum, deviations of a reading
-  constexpr double kInside = 4;                 // distance from the ends of the range, likewise
-  const std::uint64_t pillars = plan_.skin.elements();
-  const std::uint64_t step = (pillars + kMostPillars - 1) / kMostPillars;
-  const bool is_first = earlier_.empty();
-  earlier_.resize((pillars + step - 1) / step);
-  const auto least = static_cast<float>(kInside * noise_);
-  const auto most = static_cast<float>(plan_.skin.full_scale_counts.value_or(1e30)) - least;
-  for (std::size_t i = 0; i < earlier_.size(); ++i) {
-    const std::uint64_t row = i * step / plan_.skin.pillar_cols();
-    const std::uint64_t col = i * step % plan_.skin.pillar_cols();
-    std::array<float, 4> now{};
-    std::array<float, 4> change{};
-    bool usable = !is_first;
-    for (std::size_t k = 0; k < now.size(); ++k) {
-      const std::uint64_t at_row = 2 * row + k / 2;
-      const std::uint64_t at_col = 2 * col + k % 2;
-      now[k] = reading_at(readings, at_row * readings.row_stride + at_col);
-      change[k] = now[k] - earlier_[i][k];
-      usable = usable && is_good(plan_.calibration, at_row * readings.cols + at_col) &&
-               std::min(now[k], earlier_[i][k]) > least && std::max(now[k], earlier_[i][k]) < most;
-    }
-    earlier_[i] = now;
-    const auto [a, b, c, d] = change;
-    const float moved =
-        std::max({std::abs(a + b + c + d), std::abs(a + b - c - d), std::abs(a - b + c - d)});
-    if (!usable || !(moved <= kSteady * noise_)) continue;  // NaN too
-    const double units = std::abs(a - b - c + d) / parity_unit_;
-    const auto last = static_cast<double>(parity_changes_.size() - 1);
-    ++parity_changes_[static_cast<std::size_t>(std::round(std::min(units, last)))];
-  }
-}
-
-/// Standard deviation of a reading by the median of the changes; unset if it is not clearly larger
-/// than stated.
-std::optional<double> ReadingCheck::measured_noise() const {
-  constexpr std::uint64_t kFewChanges = 500;
-  constexpr double kClearly = 1.4;
-  constexpr double kMedian = 0.6745;  // of the magnitude, deviations
-  std::uint64_t changes = 0;
-  for (const std::uint64_t count : parity_changes_) changes += count;
-  if (changes < kFewChanges) return std::nullopt;
-  double before = 0;
-  std::size_t bin = 0;
-  const double half = 0.5 * static_cast<double>(changes);
-  while (before + static_cast<double>(parity_changes_[bin]) < half) {
-    before += static_cast<double>(parity_changes_[bin++]);
-  }
-  const double low = bin == 0 ? 0 : static_cast<double>(bin) - 0.5;
-  const double high = static_cast<double>(bin) + 0.5;
-  const double median =
-      low + (high - low) * (half - before) / static_cast<double>(parity_changes_[bin]);
-  const double noise = median * parity_unit_ / (kMedian * std::sqrt(8.0));
-  return noise > kClearly * noise_ ? std::optional(noise) : std::nullopt;
+  if (frame.readings.data != nullptr) parity_->add(frame.readings);
 }
 
 void ReadingCheck::look_at(const FrameView& readings) {
@@ -184,17 +108,7 @@ std::vector<std::string> ReadingCheck::warnings() const {
         "'pillarfield doctor' counts lost and repeated frames.",
         sunken_frames_, frames_));
   }
-  if (const std::optional<double> noise = measured_noise()) {
-    const double rounding = plan_.sensel_type == SenselType::f32 ? 0 : 1.0 / 12;
-    const auto alone = [&](double sigma) {
-      return std::sqrt(std::max(sigma * sigma - rounding, 0.0));
-    };
-    sentences.push_back(fmt::format(
-        "The readings' noise is about {:.2g} counts, and {:.3g} is stated: deviations and "
-        "intervals are too narrow. Give --noise {:.2g} (in Python noise_counts=), or take the tare "
-        "again.",
-        alone(*noise), alone(noise_), alone(*noise)));
-  }
+  for (std::string& sentence : parity_->warnings(false)) sentences.push_back(std::move(sentence));
   if (share >= kCovered) {
     sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));
   }

@@ -119,6 +119,7 @@ def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 
     source = frames if isinstance(frames, Recording) else Recording(frames)
     plan = _core.plan_of(source, source.skin, calibration=_calibration_of(calibration) or source.calibration,
                          **settings)
+    warn(_core.allow_for_errors(plan, source))
     name = os.path.basename(frames) if isinstance(frames, (str, os.PathLike)) else "recording"
     _core.solve_to_file(source, plan, name, output, first, len(source) if end is None else end, warm_up,
                         contacts, device, overwrite)
@@ -170,6 +171,7 @@ def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any,
     plan = _core.plan_of(source, skin, calibration=calibration, **options)
     if plan.skin.layout == "pillars" != source.skin.layout:
         warn(_core.layout_warnings(plan.skin) + _core.size_warnings(source.skin.rows, source.skin.cols))
+    warn(_core.allow_for_errors(plan, source))
     planes = _core.solve_source(source, plan, contacts, device)
     return _field_of(planes, plan, source.has_truth or "scene" in options)
 

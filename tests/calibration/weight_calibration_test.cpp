@@ -134,6 +134,31 @@ TEST(WeightCalibration, GainsAreAsFarOffAsTheyAreSaidToBe) {
   EXPECT_LT(deviation, 0.6 * 0.16);
 }
 
+/// Noise is in the slopes of the sums too: unless it is subtracted, strong noise shrinks the gains,
+/// and a rigid base that presses always alike seems to show the exponent.
+TEST(WeightCalibration, StrongNoiseIsNoInformation) {
+  double found_by_truth = 0;
+  double truth_squares = 0;
+  for (const std::uint64_t seed : {31U, 32U, 33U, 34U}) {
+    WeighedPad::Model model = pad_model(2.5);
+    model.noise = 4;
+    WeighedPad pad(seed, model);
+    const WeightResult result = calibrate(pad, pad.tared(), round_body(2.5), 0.2, 1500);
+    for (std::size_t i = 0; i < result.visited.size(); ++i) {
+      if (result.visited[i] == 0) continue;
+      const double truth = -0.8 * std::log(pad.sensitivity()[i]);
+      found_by_truth += std::log(double{result.calibration.planes.gain[i]}) * truth;
+      truth_squares += truth * truth;
+    }
+  }
+  EXPECT_GT(found_by_truth / truth_squares, 0.355);  // 0.324 without the subtraction
+  WeighedPad::Model model = pad_model(2.5);
+  model.noise = 1.5;
+  model.counts_at_newton /= 2;
+  WeighedPad pad(31, model);
+  EXPECT_FALSE(calibrate(pad, pad.tared(), round_body(2.5), 0, 1500).finds_exponent);
+}
+
 TEST(WeightCalibration, WhatWasNotVisitedSaysSo) {
   WeighedPad pad(5, pad_model(2.5));
   WeightFinder finder(pad.skin(), pad.tared());

@@ -406,6 +406,36 @@ class Warnings(unittest.TestCase):
         self.assertFalse(is_told(steady[:5], 2), "too few changes")
         self.assertFalse(is_told(steady, 2, layout="sensels"))
 
+    def test_deviations_allow_for_errors_that_frames_show(self):
+        random = np.random.default_rng(4)
+        load = np.kron(np.geomspace(6, 120, 400).reshape(20, 20), np.ones((2, 2)))
+        idle = random.normal(20, 0.5, (100, 40, 40)).astype(np.float32)
+        skin = pf.Skin(40, 40, layout="pillars", counts_per_newton=320)
+        tare = pf.calibrate.tare(idle, skin=skin)
+        for noise, gain, drift, words in ((0.5, 0, 0, ""), (1.2, 0, 0, "noise is about 1.2"),
+                                          (0.5, 0.04, 0, "Gains are off by about"), (0.5, 0, 2, "drift of single")):
+            off = drift * random.normal(size=load.shape)
+            raw = 20 + off + load * random.normal(1, gain, load.shape) + random.normal(0, noise, (60, 40, 40))
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                forces = pf.solve(raw.astype(np.float32), calibration=tare, skin=skin, outputs=["uncertainty"])
+            told = " ".join(str(warning.message) for warning in caught)
+            self.assertTrue(words in told and (words or "off" not in told and "stated" not in told), told)
+            self.assertEqual("Gains" in told, gain > 0, told)
+            error = np.abs(forces.normal - load[::2, ::2] / 320)
+            self.assertGreater((error < 1.96 * forces.uncertainty.normal).mean(), 0.9, words)
+            if not words:
+                self.assertLess((error < 1.96 * forces.uncertainty.normal).mean(), 0.97)
+            self.assertEqual("intervals are for 1.2" in told, noise > 1)
+            again = self.warnings_of(iter(raw.astype(np.float32)), calibration=tare, skin=skin)
+            self.assertEqual(words in again and "too narrow" in again, bool(words), again)
+        # A drift before the touch is followed, so the readings of the touch are as far off as stated.
+        free = 20 + random.normal(size=load.shape) + random.normal(0, 0.5, (300, 40, 40))
+        raw = (free + load * (np.arange(300) > 250)[:, None, None]).astype(np.float32)
+        options = {"calibration": tare, "skin": skin, "rate_hz": 100, "threshold_counts": 8}
+        self.assertIn("drift of single", self.warnings_of(raw, **options))
+        self.assertNotIn("stated", self.warnings_of(raw, baseline_time_s=0.3, **options))
+
     def test_several_files_are_one_source(self):
         frames = RANDOM.integers(100, 120, (3, 8, 12)).astype(np.uint8)
         files = [WORK / f"{number}.npy" for number in (9, 10, 11)]

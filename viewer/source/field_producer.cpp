@@ -142,6 +142,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   plan.frame_interval_s = 1 / info.rate_hz;
   apply(options.settings, plan);
   plan = shown_plan(std::move(plan));
+  std::ranges::move(allow_for_errors(plan, *source), std::back_inserter(info.warnings));
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);
   describe(info, plan, processor);

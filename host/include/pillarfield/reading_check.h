@@ -1,13 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "pillarfield/force_sink.h"
+#include "pillarfield/recording.h"
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
@@ -21,9 +21,17 @@ inline constexpr double kCovered = 0.8;
 /// The sentence for a user where contact covers this share of the array.
 [[nodiscard]] std::string coverage_words(double share, bool has_tare, SkinLayout layout);
 
+/// Raises the noise and the error of gains that a plan states to what its frames show by the parity
+/// of pillars, where that is clearly more, and returns a sentence about each
+/// (docs/derivations/uncertainty.md, section 5). Reads 128 to 2048 of the frames, spread over all; with a
+/// followed baseline up to 4096 in their order.
+[[nodiscard]] std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source);
+
+class ParityCheck;
+
 /// Notices solved frames whose readings were probably not what the plan takes them for: no tare,
 /// readings that fall under load, a threshold above all readings, frames without readings, more
-/// noise than is stated.
+/// noise than is stated, gains that are off.
 class ReadingCheck final : public ForceSink {
  public:
   /// `plan` must outlive the check.
@@ -47,8 +55,6 @@ class ReadingCheck final : public ForceSink {
   [[nodiscard]] Counts count(const FrameView& readings) const;
   void look_at(const FrameView& readings);
   void warn_of_no_contact(std::vector<std::string>& sentences) const;
-  void compare_with_earlier(const FrameView& readings);
-  [[nodiscard]] std::optional<double> measured_noise() const;
 
   const SolverPlan& plan_;
   std::uint64_t present_ = 0;  ///< pillars of a frame that have sensels
@@ -58,12 +64,7 @@ class ReadingCheck final : public ForceSink {
   std::uint64_t sunken_frames_ = 0;  ///< nearly all sensels read less than their tare
   std::uint64_t sensels_seen_ = 0;
   Counts most_;
-  /// Readings of sampled pillars in the frame before, and how far their parity changed from frame
-  /// to frame: numbers of changes of so many `parity_unit_`, counts.
-  double noise_;  ///< stated standard deviation of a reading, counts; zero: none
-  double parity_unit_;
-  std::vector<std::array<float, 4>> earlier_;
-  std::array<std::uint64_t, 256> parity_changes_{};
+  std::shared_ptr<ParityCheck> parity_;
 };
 
 }  // namespace pillarfield
