@@ -137,27 +137,33 @@ PF_INLINE void write_sensels(Block block, Input input, Output output) {
 
 #ifdef PF_PILLARS
 
-/* Solves a block with these linear readings. */
-PF_INLINE Solution solve_linear(Pillar linear, Block block, Input input) {
-  const Pillar pillar = corrected_block(linear, block, input);
+PF_INLINE Solution solve_corrected(Pillar pillar, Block block, Input input) {
   return solve_pillar(pillar, noise_of(block, input), input.calibration.stages);
 }
 
 /* Solves a block. Most blocks have no missing and no saturated sensel; constant false masks let the
- * compiler drop half of the code for them. */
+ * compiler drop half of the code for them. In C++ they are told apart after the corrections: of two
+ * copies of these g++ makes slower code. */
 PF_INLINE Solution solve_block(Block block, Input input) {
-  const Pillar linear = linear_block(block, input);
+#ifdef __cplusplus
+#define PF_CORRECTED(pillar) (pillar)
+  const Pillar pillar = corrected_block(linear_block(block, input), block, input);
+#else
+#define PF_CORRECTED(pillar) corrected_block(pillar, block, input)
+  const Pillar pillar = linear_block(block, input);
+#endif
 #if !defined(PF_SCALAR) && \
     (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE) || defined(PF_WIRES))
-  const Mask invalid = is_invalid(linear.s1) || is_invalid(linear.s2) || is_invalid(linear.s3) ||
-                       is_invalid(linear.s4);
+  const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
+                       is_invalid(pillar.s4);
   if (!any_lane(invalid)) {
-    const Pillar valid = {valid_sensel(linear.s1), valid_sensel(linear.s2), valid_sensel(linear.s3),
-                          valid_sensel(linear.s4)};
-    return solve_linear(valid, block, input);
+    const Pillar valid = {valid_sensel(pillar.s1), valid_sensel(pillar.s2), valid_sensel(pillar.s3),
+                          valid_sensel(pillar.s4)};
+    return solve_corrected(PF_CORRECTED(valid), block, input);
   }
 #endif
-  return solve_linear(linear, block, input);
+  return solve_corrected(PF_CORRECTED(pillar), block, input);
+#undef PF_CORRECTED
 }
 
 #define PF_STORE(name, unit, value)                                   \
