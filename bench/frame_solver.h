@@ -1,18 +1,25 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bench/frames.h"
+#include "pillarfield/contact_tracker.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
 
 namespace pillarfield::bench {
 
-/// Solves a series of frames with all slots of a processor in flight. `frames` must outlive it.
+/// Solves a series of frames with all slots of a processor in flight. A device with its own memory
+/// gets them in Processor::frame_buffer()s. `frames` must outlive it.
 class FrameSolver {
  public:
   FrameSolver(const Device& device, const SolverPlan& plan, const Frames& frames,
               const Processor::Options& options = {}, const ProcessorTuning& tuning = {});
+
+  /// From now on `tracker`, which must outlive it, tracks the contacts of each result while the
+  /// next frame is being solved.
+  void track(ContactTracker& tracker) { tracker_ = &tracker; }
 
   /// Solves the next `frames` frames.
   void run(int frames);
@@ -28,8 +35,11 @@ class FrameSolver {
 
   const Frames* frames_;
   int most_in_flight_;
+  std::vector<FrameBuffer> pinned_;  ///< copies of all frames: a slot gets another one each time
   Processor processor_;
+  ContactTracker* tracker_ = nullptr;
   std::size_t submitted_ = 0;
+  std::size_t received_ = 0;
 };
 
 }  // namespace pillarfield::bench

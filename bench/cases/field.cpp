@@ -40,35 +40,6 @@ ContactOptions contact_options(const SolverPlan& plan) {
   return options;
 }
 
-/// Solves frames and tracks the contacts of each result while the next frame is being solved.
-class TrackingSolver {
- public:
-  TrackingSolver(const Device& device, const SolverPlan& plan, const Frames& frames)
-      : frames_(&frames),
-        processor_(device, plan),
-        tracker_(plan.skin.pillar_pitch_mm(), contact_options(plan)) {}
-
-  void run(int frames) {
-    for (int i = 0; i < frames; ++i) {
-      if (processor_.in_flight() == Processor::Options{}.frames_in_flight) receive();
-      processor_.submit((*frames_)[submitted_++]);
-    }
-    while (processor_.in_flight() > 0) receive();
-  }
-
- private:
-  void receive() {
-    const ForceFieldView forces = processor_.receive();
-    tracker_.update(forces, static_cast<double>(received_++), processor_.contacts());
-  }
-
-  const Frames* frames_;
-  Processor processor_;
-  ContactTracker tracker_;
-  std::size_t submitted_ = 0;
-  std::size_t received_ = 0;
-};
-
 struct Method {
   const char* name;
   Estimator estimator;
@@ -100,16 +71,11 @@ Measurement time_field(const Session& session, const Method& method,
   const Frames& frames = contacts.frames();
   FrameSolver direct(session.solver, contacts.plan(), frames);
   FrameSolver solver(session.solver, plan, frames);
-  TrackingSolver tracking(session.solver, plan, frames);
+  ContactTracker tracker(plan.skin.pillar_pitch_mm(), contact_options(plan));
+  if (method.contacts) solver.track(tracker);
   InterleavedTiming timing;
   const std::size_t direct_entry = timing.add([&](int count) { direct.run(count); });
-  const std::size_t entry = timing.add([&](int count) {
-    if (method.contacts) {
-      tracking.run(count);
-    } else {
-      solver.run(count);
-    }
-  });
+  const std::size_t entry = timing.add([&](int count) { solver.run(count); });
   timing.run(session.length);
   Measurement measured = measurement_of(timing, entry, plan);
   measured.counters["over_direct"] = timing.ratio(entry, direct_entry);

@@ -12,7 +12,8 @@ namespace {
 
 /// Global and local size of a launch. With several lanes, a work-item solves a band of rows.
 /// Several bands per compute unit balance the load; each is a work-group of its own, because
-/// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row.
+/// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row,
+/// and those of a group a tile of wires (PF_TILE_ITEMS).
 struct Launch {
   Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
     constexpr std::size_t kGroup = 64;
@@ -86,13 +87,17 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
   local_ = solve.local;
   const SlotLayout slot(plan, {settings.lanes, global_[1], settings.lanes > 1},
                         settings.paths.skip_idle, calibration.planes());
-  if (slot.tiles_across > 0) tiles_ = {slot.tiles_across, slot.tiles_down};
+  if (slot.tiles_across > 0) tiles_ = {slot.tiles_across * local_.get()[0], slot.tiles_down};
   layout_ = slot.layout;
   memory_ = settings.transfers == nullptr
                 ? shared_memory(device.context, slot.results)
                 : staged_memory(device, queue_, plan, slot.results, *settings.transfers);
   if (padded_sensels(plan.skin) != plan.skin.sensels()) {
-    padded_.emplace(plan.sensel_type, padded_rows(plan.skin), padded_cols(plan.skin));
+    const std::uint32_t rows = padded_rows(plan.skin);
+    const std::uint32_t cols = padded_cols(plan.skin);
+    padded_ = settings.transfers == nullptr
+                  ? FrameBuffer(plan.sensel_type, rows, cols)
+                  : settings.transfers->frames.add(device.context, plan.sensel_type, rows, cols);
   }
   make_kernels(plan, settings, calibration);
 }
@@ -182,7 +187,7 @@ void OpenClSlot::solve(const std::optional<Curvature>& bent, const single_precis
   }
   // Tares and activation thresholds may change from frame to frame.
   if (wires_() != nullptr) {
-    launch(wires_, tiles_, {1, 1}, &before);
+    launch(wires_, tiles_, local_, &before);
     before.clear();
   }
   if (!order().is_needed) return launch(kernel_, global_, local_);

@@ -330,11 +330,10 @@ FrameBuffer Processor::frame_buffer() {
   State& state = *state_;
   const Skin& skin = state.skin;
   if (!state.transfers) return {state.sensel_type, skin.rows, skin.cols};
-  auto memory = with_opencl_errors(state.device.info().name, [&] {
-    return state.transfers->frames.add(state.device.state().context,
-                                       skin.sensels() * size_of(state.sensel_type));
+  return with_opencl_errors(state.device.info().name, [&] {
+    return state.transfers->frames.add(state.device.state().context, state.sensel_type, skin.rows,
+                                       skin.cols);
   });
-  return {state.sensel_type, skin.rows, skin.cols, std::move(memory)};
 }
 
 ForceFieldView Processor::receive() {

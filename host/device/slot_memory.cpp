@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "device/packed_results.h"
 #include "device/pinned_memory.h"
@@ -64,13 +65,15 @@ std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const Resu
   return std::make_unique<SharedMemory>(context, layout);
 }
 
-std::shared_ptr<std::byte[]> PinnedFrames::add(const cl::Context& context, std::size_t bytes) {
+FrameBuffer PinnedFrames::add(const cl::Context& context, SenselType type, std::uint32_t rows,
+                              std::uint32_t cols) {
   std::erase_if(frames_, [](const auto& frame) { return frame.expired(); });
   const cl::CommandQueue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
+  const std::size_t bytes = std::size_t{rows} * cols * size_of(type);
   const auto memory = std::make_shared<PinnedMemory>(context, queue, bytes);
   std::shared_ptr<std::byte[]> frame(memory, memory->data());
   frames_.emplace_back(frame);
-  return frame;
+  return {type, rows, cols, std::move(frame)};
 }
 
 bool PinnedFrames::hold(const FrameView& frame) const {

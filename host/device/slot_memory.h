@@ -21,8 +21,9 @@ struct DeviceFrame {
 /// Frames in pinned memory, which the driver copies from directly.
 class PinnedFrames {
  public:
-  /// Memory of a new frame.
-  [[nodiscard]] std::shared_ptr<std::byte[]> add(const cl::Context& context, std::size_t bytes);
+  /// A new frame.
+  [[nodiscard]] FrameBuffer add(const cl::Context& context, SenselType type, std::uint32_t rows,
+                                std::uint32_t cols);
   /// True if the frame is the whole of one that add() made.
   [[nodiscard]] bool hold(const FrameView& frame) const;
 

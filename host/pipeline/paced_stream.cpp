@@ -94,8 +94,10 @@ Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
   const nanoseconds begun = clock_->now();
   for (bool slept = false;;) {
     if (ahead_is_ == Arrival::timed_out) {
-      ahead_is_ = stream_->next(ahead_, timeout);
+      // It is read into the caller's buffer, which the next call returns.
+      ahead_is_ = stream_->next(frame, timeout);
       if (ahead_is_ == Arrival::timed_out) return ahead_is_;
+      std::swap(frame, ahead_);
       if (!start_) {
         start_ = clock_->now();
         first_sequence_ = ahead_.sequence;
@@ -113,13 +115,13 @@ Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
       return Arrival::ended;
     } else {
       ahead_is_ = Arrival::timed_out;
+      std::swap(frame, ahead_);
       if (pace_.drop_after && now - due_ > *pace_.drop_after) {
         ++dropped_;
         // All are dropped if reading takes longer than a period: let the caller look around.
         if (now - begun > timeout) return Arrival::timed_out;
         continue;
       }
-      std::swap(frame, ahead_);
       frame.arrived = due_;
       return Arrival::arrived;
     }

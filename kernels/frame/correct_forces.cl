@@ -103,17 +103,21 @@ PF_INLINE uint next_correctable(OwnRow row, uint at, uchar also) {
 
 #ifdef PF_PILLAR_LEAK
 
+/* As load_near(); all pillars beside the block exist if it lies `inside`. */
+PF_INLINE Real load_beside(global const float* plane, Layout layout, uint row, int down, int col,
+                           bool inside) {
+  if (!inside) return load_near(plane, layout, row, down, col);
+  return load_own(plane + (row + (size_t)down) * layout.cols + col);
+}
+
 /* A component of the force without the leak of the pillars around. */
-PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int col) {
-  const Real own = load_near(plane, layout, row, 0, col);
-  const Real edges =
-      (load_near(plane, layout, row, 0, col - 1) + load_near(plane, layout, row, 0, col + 1)) +
-      (load_near(plane, layout, row, -1, col) + load_near(plane, layout, row, 1, col));
-  const Real corners =
-      (load_near(plane, layout, row, -1, col - 1) + load_near(plane, layout, row, -1, col + 1)) +
-      (load_near(plane, layout, row, 1, col - 1) + load_near(plane, layout, row, 1, col + 1));
-  return pillar_without_leak(own, edges, corners, PF_VALUE(Real, pillar_leak_self),
+PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int col, bool inside) {
+#define PF_AT(down, right) load_beside(plane, layout, row, down, col + (right), inside)
+  const Real edges = (PF_AT(0, -1) + PF_AT(0, 1)) + (PF_AT(-1, 0) + PF_AT(1, 0));
+  const Real corners = (PF_AT(-1, -1) + PF_AT(-1, 1)) + (PF_AT(1, -1) + PF_AT(1, 1));
+  return pillar_without_leak(PF_AT(0, 0), edges, corners, PF_VALUE(Real, pillar_leak_self),
                              PF_VALUE(Real, pillar_leak_edge), PF_VALUE(Real, pillar_leak_corner));
+#undef PF_AT
 }
 
 /* Forces as solve_frame left them in the scratch memory, to the planes of the result. A work-item
@@ -132,13 +136,16 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
       const Lanes lanes = lanes_of_block(own, at);
       const size_t index = (size_t)row * cols + col;
       const Mask loaded = is_loaded(status_at(results, layout, index));
+      const bool inside =
+          row > 0 && row + 1 < (uint)layout.rows && col > 0 && col + PF_LANES < cols;
       for (uint plane = 0; plane < 3; ++plane) {
         global const float* const solved =
             (global const float*)(results + layout.forces + plane * layout.result_bytes);
+        PF_PREFETCH_SPAN(solved + index + 2 * cols, PF_LANES, 3);
         global float* const to = (global float*)(results + plane * layout.result_bytes);
-        const Real force =
-            loaded ? unleaked(solved, layout, row, (int)col) : PF_CONSTANT(Real, 0.0f);
-        store_plane(force, to + index, lanes);
+        const Real all = inside ? unleaked(solved, layout, row, (int)col, true)
+                                : unleaked(solved, layout, row, (int)col, false);
+        store_plane(loaded ? all : PF_CONSTANT(Real, 0.0f), to + index, lanes);
       }
     }
   }

@@ -23,6 +23,9 @@ PF_DEFINE_SUMMED(summed_reading, float)
 PF_DEFINE_SUMMED(summed_readings, Real)
 #endif
 
+#define PF_WIRE_MODEL \
+  { (float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT), (float)(PF_IDLE_PER_COUNT) }
+
 /* Reads the sensels of a tile's row. */
 PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
                              uint cols, float* readings) {
@@ -58,6 +61,86 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
   }
 }
 
+#ifdef PF_SCALAR
+
+/* Work-items of a group share a tile: each sums rows, then finds columns. They exchange results in
+ * the vectors of the frame, where `own` holds k until the end. */
+
+/* The sensel of a tile in this row and column of it, for the sums. */
+PF_INLINE float reading_in_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
+                                Tile tile, uint row, uint col) {
+  const size_t sensel_row = tile.row + row;
+  const size_t sensel_col = tile.col + col;
+  float reading;
+  read_tile_row(raw + sensel_row * layout.row_stride + sensel_col, calibration,
+                sensel_row * calibration.stride + sensel_col, 1, &reading);
+  return reading;
+}
+
+/* As sums_of_row(). */
+PF_INLINE RowSums sums_in_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
+                               Tile tile, uint row, global const float* gains) {
+  float loads[PF_WIRE_PARTS];
+  float squares[PF_WIRE_PARTS];
+  PF_UNROLL
+  for (uint i = 0; i < PF_WIRE_PARTS; ++i) loads[i] = squares[i] = 0.0f;
+  for (uint at = 0; at < tile.cols; at += PF_WIRE_PARTS) {
+    PF_UNROLL
+    for (uint i = 0; i < PF_WIRE_PARTS; ++i) {
+      if (at + i >= tile.cols) continue;
+      const float reading = reading_in_tile(raw, calibration, layout, tile, row, at + i);
+      const float load = reading * gains[at + i];
+      loads[i] = loads[i] + load;
+      squares[i] = squares[i] + reading * load;
+    }
+  }
+  const RowSums sums = {sum_of_parts(loads), sum_of_parts(squares)};
+  return sums;
+}
+
+/* The loss of a column over all rows of a tile, as add_row() adds it. */
+PF_INLINE float loss_in_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
+                             Tile tile, uint col, global const float* rows,
+                             global const float* driven, WireModel model) {
+  float losses = 0.0f;
+  for (uint row = 0; row < tile.rows; ++row) {
+    const float reading = reading_in_tile(raw, calibration, layout, tile, row, col);
+    losses = losses + losses_in_row(reading, rows[row], driven[row], model);
+  }
+  return losses;
+}
+
+/* Finds the wires of a tile with the other work-items of the group. */
+PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
+                          Tile tile, global float* rows, global float* own, global float* gains) {
+  const WireModel model = PF_WIRE_MODEL;
+  for (uint row = PF_TILE_ITEM; row < tile.rows; row += PF_TILE_ITEMS) {
+    rows[row] = 1.0f;
+    own[row] = 0.0f;
+  }
+  for (uint col = PF_TILE_ITEM; col < tile.cols; col += PF_TILE_ITEMS) gains[col] = 1.0f;
+  for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
+    barrier(CLK_GLOBAL_MEM_FENCE);
+    for (uint row = PF_TILE_ITEM; row < tile.rows; row += PF_TILE_ITEMS) {
+      const RowSums sums = sums_in_tile(raw, calibration, layout, tile, row, gains);
+      const RowWires before = {rows[row], own[row]};
+      const RowWires after = wires_of_rows(sums.load, sums.square, before, model);
+      rows[row] = after.row;
+      own[row] = after.driven;
+    }
+    barrier(CLK_GLOBAL_MEM_FENCE);
+    for (uint col = PF_TILE_ITEM; col < tile.cols; col += PF_TILE_ITEMS) {
+      gains[col] =
+          gain_of_loss(loss_in_tile(raw, calibration, layout, tile, col, rows, own, model));
+    }
+  }
+  barrier(CLK_GLOBAL_MEM_FENCE);
+  for (uint row = PF_TILE_ITEM; row < tile.rows; row += PF_TILE_ITEMS)
+    own[row] = own[row] * rows[row];
+}
+
+#else
+
 #ifndef PF_MOST_TILE_ROWS
 #define PF_MOST_TILE_ROWS PF_TILE_ROWS
 #define PF_MOST_TILE_PARTS PF_TILE_PARTS
@@ -77,9 +160,9 @@ PF_INLINE void fill_floats(float* values, uint count, float value) {
 /* Finds the wires of a tile: those of its rows, PF_LANES at a time, then the gains of its columns.
  */
 PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
-                          Tile tile, TileWires* wires) {
-  const WireModel model = {(float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT),
-                           (float)(PF_IDLE_PER_COUNT)};
+                          Tile tile, global float* rows, global float* own, global float* gains) {
+  const WireModel model = PF_WIRE_MODEL;
+  TileWires found;
   float readings[PF_LANES * PF_MOST_TILE_PARTS];
   float losses[PF_MOST_TILE_PARTS];
   float loads[PF_LANES];
@@ -88,43 +171,50 @@ PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, 
   fill_floats(losses, PF_TILE_PARTS, 0.0f);
   fill_floats(loads, PF_LANES, 0.0f);
   fill_floats(squares, PF_LANES, 0.0f);
-  fill_floats(wires->column, PF_TILE_PARTS, 1.0f);
-  fill_floats(wires->row, PF_TILE_ROWS + PF_LANES, 1.0f);
-  fill_floats(wires->driven, PF_TILE_ROWS + PF_LANES, 0.0f);
+  fill_floats(found.column, PF_TILE_PARTS, 1.0f);
+  fill_floats(found.row, PF_TILE_ROWS + PF_LANES, 1.0f);
+  fill_floats(found.driven, PF_TILE_ROWS + PF_LANES, 0.0f);
   for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
     for (uint first = 0; first < tile.rows; first += PF_LANES) {
-      const uint rows = min(tile.rows - first, (uint)PF_LANES);
-      for (uint i = 0; i < rows; ++i) {
+      const uint count = min(tile.rows - first, (uint)PF_LANES);
+      for (uint i = 0; i < count; ++i) {
         float* const of_row = readings + i * PF_TILE_PARTS;
         const size_t at = tile.row + first + i;
         read_tile_row(raw + at * layout.row_stride + tile.col, calibration,
                       at * calibration.stride + tile.col, tile.cols, of_row);
-        const RowSums sums = sums_of_row(of_row, wires->column, PF_TILE_PARTS);
+        const RowSums sums = sums_of_row(of_row, found.column, PF_TILE_PARTS);
         loads[i] = sums.load;
         squares[i] = sums.square;
       }
-      const RowWires before = {PF_LOAD_WIRES(wires->row + first),
-                               PF_LOAD_WIRES(wires->driven + first)};
+      const RowWires before = {PF_LOAD_WIRES(found.row + first),
+                               PF_LOAD_WIRES(found.driven + first)};
       const RowWires after =
           wires_of_rows(PF_LOAD_WIRES(loads), PF_LOAD_WIRES(squares), before, model);
-      PF_STORE_WIRES(after.row, wires->row + first);
-      PF_STORE_WIRES(after.driven, wires->driven + first);
-      for (uint i = 0; i < rows; ++i) {
-        add_row(readings + i * PF_TILE_PARTS, losses, PF_TILE_PARTS, wires->row[first + i],
-                wires->driven[first + i], model);
+      PF_STORE_WIRES(after.row, found.row + first);
+      PF_STORE_WIRES(after.driven, found.driven + first);
+      for (uint i = 0; i < count; ++i) {
+        add_row(readings + i * PF_TILE_PARTS, losses, PF_TILE_PARTS, found.row[first + i],
+                found.driven[first + i], model);
       }
     }
-    find_columns(losses, wires->column, PF_TILE_PARTS);
+    find_columns(losses, found.column, PF_TILE_PARTS);
   }
+  for (uint i = 0; i < tile.rows; ++i) {
+    rows[i] = found.row[i];
+    own[i] = found.driven[i] * found.row[i];
+  }
+  for (uint col = 0; col < tile.cols; ++col) gains[col] = found.column[col];
 }
 
-/* A work-item finds the wires of one tile. */
+#endif
+
+/* A work-item, with one lane a group of PF_TILE_ITEMS, finds the wires of one tile. */
 kernel void find_wires(global const PF_SENSEL* restrict raw,
                        global const uchar* restrict calibration, global uchar* restrict results,
                        Layout layout) {
   const Calibration planes = calibration_of(calibration, results, layout);
   const WireVectors wires = planes.wires;
-  const uint across = (uint)get_global_id(0);
+  const uint across = (uint)(get_global_id(0) / PF_TILE_ITEMS);
   const uint down = (uint)get_global_id(1);
   Tile tile;
   tile.row = down * PF_TILE_ROWS;
@@ -134,18 +224,17 @@ kernel void find_wires(global const PF_SENSEL* restrict raw,
   const size_t first = (size_t)across * wires.rows + tile.row;
   global float* const gains = wires.column + (size_t)down * wires.cols + tile.col;
 #ifdef PF_SKIP_IDLE
+#ifdef PF_SCALAR
+  local TileRange ranges[PF_TILE_ITEMS];
+  const TileRange range = range_in_group(raw, planes, layout, tile, ranges);
+#else
   const TileRange range = range_of_tile(raw, planes, layout, tile);
+#endif
   if (find_idle_tile(range, tile, wires, first, gains)) return;
 #endif
-  TileWires found;
-  sweep_tile(raw, planes, layout, tile, &found);
-  for (uint i = 0; i < tile.rows; ++i) {
-    wires.row[first + i] = found.row[i];
-    wires.own[first + i] = found.driven[i] * found.row[i];
-  }
-  for (uint col = 0; col < tile.cols; ++col) gains[col] = found.column[col];
+  sweep_tile(raw, planes, layout, tile, wires.row + first, wires.own + first, gains);
 #ifdef PF_SKIP_IDLE
-  bound_rows(range, tile, wires, first, found.column);
+  bound_rows(range, tile, wires, first, gains);
 #endif
 }
 

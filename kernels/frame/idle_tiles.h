@@ -35,6 +35,11 @@ typedef struct {
   float distance;
 } TileRange;
 
+PF_INLINE TileRange wider_range(TileRange a, TileRange b) {
+  const TileRange range = {max(a.largest, b.largest), min(a.distance, b.distance)};
+  return range;
+}
+
 /* Readings in their own type, which is narrower, if all are valid numbers. */
 #ifdef PF_SCALAR
 #define PF_SENSELS_AT(place) (*(place))
@@ -92,8 +97,8 @@ PF_INLINE TileRange range_of_lanes(LaneRange range) {
   PF_VSTORE(PF_REALS_OF(range.distance), 0, distances);
   TileRange result = {largest[0], distances[0]};
   for (uint i = 1; i < PF_LANES; ++i) {
-    result.largest = max(result.largest, largest[i]);
-    result.distance = min(result.distance, distances[i]);
+    const TileRange lane = {largest[i], distances[i]};
+    result = wider_range(result, lane);
   }
 #endif
   return result;
@@ -186,6 +191,22 @@ PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calib
   return range_of_lanes(range);
 }
 
+#ifdef PF_SCALAR
+/* The range of a tile by the work-items of a group. `ranges`: of PF_TILE_ITEMS parts. */
+PF_INLINE TileRange range_in_group(global const PF_SENSEL* raw, Calibration calibration,
+                                   Layout layout, Tile tile, local TileRange* ranges) {
+  TileRange range = {0.0f, (float)(PF_ACTIVATION_NEVER)};
+  for (uint row = PF_TILE_ITEM; row < tile.rows; row += PF_TILE_ITEMS) {
+    const Tile part = {tile.row + row, tile.col, 1, tile.cols};
+    range = wider_range(range, range_of_tile(raw, calibration, layout, part));
+  }
+  ranges[PF_TILE_ITEM] = range;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (uint i = 0; i < PF_TILE_ITEMS; ++i) range = wider_range(range, ranges[i]);
+  return range;
+}
+#endif
+
 /* A bound on the gains of all sensels of a tile, by the sweeps of find_wires with the largest
  * reading everywhere. */
 PF_INLINE float largest_gain(float largest, Tile tile) {
@@ -207,25 +228,25 @@ PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, siz
   const float gain = largest_gain(largest, tile);
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
                     largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
-  for (uint i = 0; idle && i < tile.rows; ++i) {
+  for (uint i = PF_TILE_ITEM; idle && i < tile.rows; i += PF_TILE_ITEMS) {
     wires.row[first + i] = 1.0f;
     wires.own[first + i] = 0.0f;
     wires.bound[first + i] = PF_IDLE_TILE;
   }
-  for (uint i = 0; idle && i < tile.cols; ++i) columns[i] = 1.0f;
+  for (uint i = PF_TILE_ITEM; idle && i < tile.cols; i += PF_TILE_ITEMS) columns[i] = 1.0f;
   return idle;
 }
 
 /* Bounds of a tile's rows: how far a gain of their sensels is from 1 at most, plus 1. */
 PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t first,
-                          const float* columns) {
+                          global const float* columns) {
   float least = columns[0];
   float most = columns[0];
   for (uint col = 1; col < tile.cols; ++col) {
     least = min(least, columns[col]);
     most = max(most, columns[col]);
   }
-  for (uint at = first; at < first + tile.rows; ++at) {
+  for (size_t at = first + PF_TILE_ITEM; at < first + tile.rows; at += PF_TILE_ITEMS) {
     const float row = wires.row[at];
     const float own = wires.own[at] * PF_LARGEST_LOAD(range);
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;

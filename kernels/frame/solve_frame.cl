@@ -50,11 +50,20 @@ PF_INLINE Sensel valid_sensel(Sensel sensel) {
 PF_INLINE Mask is_invalid(Sensel sensel) { return sensel.missing || sensel.saturated; }
 #endif
 
-/* The corrected sensels of a block. */
-PF_INLINE Pillar corrected_block(Block block, Input input) {
+/* The linear readings of a block's sensels. */
+PF_INLINE Pillar linear_block(Block block, Input input) {
+  const SenselPair top = read_linear(block.raw, input.calibration, block.top);
+  const SenselPair bottom =
+      read_linear(block.raw + input.row_stride, input.calibration, block.bottom);
+  const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
+  return pillar;
+}
+
+/* The corrected sensels of a block with these linear readings. */
+PF_INLINE Pillar corrected_block(Pillar linear, Block block, Input input) {
   const Calibration calibration = input.calibration;
-  SenselPair top = read_linear(block.raw, calibration, block.top);
-  SenselPair bottom = read_linear(block.raw + input.row_stride, calibration, block.bottom);
+  SenselPair top = {linear.s2, linear.s1};
+  SenselPair bottom = {linear.s3, linear.s4};
 #ifdef PF_LEAK
   if (PF_NAMED(leak)) {
     const Surroundings around = surroundings_of(block, input);
@@ -103,7 +112,7 @@ PF_INLINE void store_sensels(SenselSolution left, SenselSolution right, Output o
 /* Solves a block of sensels without pillars, and writes those that exist. */
 PF_INLINE void write_sensels(Block block, Input input, Output output) {
   const Stages stages = input.calibration.stages;
-  const Pillar sensels = corrected_block(block, input);
+  const Pillar sensels = corrected_block(linear_block(block, input), block, input);
   const Noise noise = noise_of(block, input);
   const SenselSolution s1 = solve_sensel(sensels.s1, noise.n1, stages);
   const SenselSolution s2 = solve_sensel(sensels.s2, noise.n2, stages);
@@ -128,21 +137,33 @@ PF_INLINE void write_sensels(Block block, Input input, Output output) {
 
 #ifdef PF_PILLARS
 
+PF_INLINE Solution solve_corrected(Pillar pillar, Block block, Input input) {
+  return solve_pillar(pillar, noise_of(block, input), input.calibration.stages);
+}
+
 /* Solves a block. Most blocks have no missing and no saturated sensel; constant false masks let the
- * compiler drop half of the code for them. */
+ * compiler drop half of the code for them. In C++ they are told apart after the corrections: of two
+ * copies of these g++ makes slower code. */
 PF_INLINE Solution solve_block(Block block, Input input) {
-  const Calibration calibration = input.calibration;
-  const Pillar pillar = corrected_block(block, input);
-#if !defined(PF_SCALAR) && (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE))
+#ifdef __cplusplus
+#define PF_CORRECTED(pillar) (pillar)
+  const Pillar pillar = corrected_block(linear_block(block, input), block, input);
+#else
+#define PF_CORRECTED(pillar) corrected_block(pillar, block, input)
+  const Pillar pillar = linear_block(block, input);
+#endif
+#if !defined(PF_SCALAR) && \
+    (defined(PF_MASK) || defined(PF_SATURATION) || defined(PF_RANGE) || defined(PF_WIRES))
   const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
                        is_invalid(pillar.s4);
   if (!any_lane(invalid)) {
     const Pillar valid = {valid_sensel(pillar.s1), valid_sensel(pillar.s2), valid_sensel(pillar.s3),
                           valid_sensel(pillar.s4)};
-    return solve_pillar(valid, noise_of(block, input), calibration.stages);
+    return solve_corrected(PF_CORRECTED(valid), block, input);
   }
 #endif
-  return solve_pillar(pillar, noise_of(block, input), calibration.stages);
+  return solve_corrected(PF_CORRECTED(pillar), block, input);
+#undef PF_CORRECTED
 }
 
 #define PF_STORE(name, unit, value)                                   \

@@ -115,14 +115,18 @@ PF_INLINE RowWires wires_of_rows(Real load, Real square, RowWires before, WireMo
   return after;
 }
 
-/* Adds an idle row's loss per column, divided by the column's gain, to `losses`. */
-PF_INLINE void add_row(const float* readings, float* losses, int cols, float row, float driven,
-                       WireModel model) {
+/* Loss of columns in an idle row with these readings, divided by their gain. */
+PF_INLINE Real losses_in_row(Real reading, float row, float driven, WireModel model) {
   const Real first = PF_CONSTANT(Real, (model.column - driven) * row);
   const Real second = PF_CONSTANT(Real, driven * row);
+  return first * reading * (PF_REAL(1.0) + second * reading);
+}
+
+/* Adds the losses of columns in an idle row to `losses`. */
+PF_INLINE void add_row(const float* readings, float* losses, int cols, float row, float driven,
+                       WireModel model) {
   for (int at = 0; at < cols; at += PF_WIRE_LANES) {
-    const Real reading = PF_LOAD_WIRES(readings + at);
-    const Real loss = first * reading * (PF_REAL(1.0) + second * reading);
+    const Real loss = losses_in_row(PF_LOAD_WIRES(readings + at), row, driven, model);
     PF_STORE_WIRES(PF_LOAD_WIRES(losses + at) + loss, losses + at);
   }
 }

@@ -2,6 +2,15 @@
  * row of sensels and tile across, the gain for each column and tile down. */
 #ifdef PF_WIRES
 
+/* A work-item of those that share a tile: with several lanes there is one. */
+#ifdef PF_SCALAR
+#define PF_TILE_ITEMS 64
+#define PF_TILE_ITEM (uint) get_local_id(0)
+#else
+#define PF_TILE_ITEMS 1
+#define PF_TILE_ITEM 0
+#endif
+
 typedef struct {
   global float* row;    /* [tiles across, sensel rows] */
   global float* own;    /* [tiles across, sensel rows] */

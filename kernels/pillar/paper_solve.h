@@ -104,6 +104,12 @@ PF_INLINE Angles paper_region_4(void) {
   return angles;
 }
 
+/* A reading as a fraction of the largest: 1 for that one, also where a device rounds quotients
+ * otherwise than IEEE 754. */
+PF_INLINE Real ratio_to(Real largest, Real reading) {
+  return reading == largest ? PF_REAL(1.0) : reading / largest;
+}
+
 PF_INLINE Ratios turned_ratios(Real v1, Real v2, Real v3, Real v4, Turn turn) {
   Ratios v;
   v.a = turn.at_2 ? v2 : (turn.at_3 ? v3 : (turn.at_4 ? v4 : v1));
@@ -161,7 +167,8 @@ PF_INLINE Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum sum, F
   const Real rising = r1 > r3 ? r1 : r3;
   const Real falling = r2 > r4 ? r2 : r4;
   const Real largest = no_region ? PF_REAL(1.0) : (rising > falling ? rising : falling);
-  const Ratios v = turned_ratios(r1 / largest, r2 / largest, r3 / largest, r4 / largest, turn);
+  const Ratios v = turned_ratios(ratio_to(largest, r1), ratio_to(largest, r2),
+                                 ratio_to(largest, r3), ratio_to(largest, r4), turn);
 
   const Angles region_1 = paper_region_1(v);
   const Angles region_2 = paper_region_2(v);

@@ -126,6 +126,14 @@ class SerialSearch(StreamTest):
         with h5py.File(copy) as file:
             np.testing.assert_array_equal(file["frames/raw"][0].ravel(), readings)
 
+    def test_a_stated_size_counts_where_frames_have_as_many_readings(self):
+        self.board(list(range(96)) * 4)
+        for pillars, words in (("[6, 16]", "12 x 32 as stated"), ("[6, 17]", "16 x 24 is assumed")):
+            self.scene.write_text(BALL.replace("[20, 20]", pillars))
+            process = self.started(f"serial:{self.folder}/tty*", "--scene", self.scene, "--frames", 2)
+            self.assertIn(words, process.communicate(timeout=PATIENCE_S)[1])
+            self.assertEqual(process.returncode, int("assumed" in words))
+
     def test_devices_without_a_board_are_named(self):
         self.board(None)
         self.assert_fails("stream", f"serial:{self.folder}/tty*", "-q", names=["ttyUSB0 sends other bytes", "baud"])
@@ -345,6 +353,7 @@ class FirstFrames(StreamTest):
         summary = json.loads(out.splitlines()[-1])["summary"]
         self.assertLess(summary["solved"], 300)
         self.assertEqual((summary["frames"] + summary["lost"], summary["frames"]), (300, summary["solved"]))
+        self.assertEqual(summary["overrun"], summary["lost"])
         with h5py.File(copy) as file:
             self.assertEqual(file["frames/raw"][-1].max(), 299 % 50)
         self.assert_fails("stream", self.recording, "--newest", names=["--newest", "live"])

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "device/device_race.h"
@@ -73,7 +74,22 @@ TEST(DeviceChoice, TheQuickerOneOfTwoIsRememberedForItsPlan) {
   seconds[devices[1].info().name] = 3;
   EXPECT_EQ(soonest(devices, plan, file, measure), 1U) << "remembered";
   EXPECT_EQ(measured, 2);
-  EXPECT_EQ(soonest(devices, bare_plan(512, 516, SenselType::u8), file, measure), 0U);
+  const SolverPlan wider = bare_plan(512, 516, SenselType::u8);
+  EXPECT_EQ(soonest(devices, wider, file, measure), 0U);
+  EXPECT_EQ(soonest(devices, plan, file, measure), 1U);
+  EXPECT_EQ(soonest(devices, wider, file, measure), 0U);
+  EXPECT_EQ(measured, 4) << "both are remembered";
+  // An update of its driver, another kernel, another work of the host: each may be decisive.
+  DeviceInfo info = devices[0].info();
+  info.version += " updated";
+  const Device updated(std::make_shared<Device::State>(info, devices[0].state().device));
+  SolverPlan with_threshold = plan;
+  with_threshold.skin.threshold_counts = 3;
+  SolverPlan with_contacts = plan;
+  with_contacts.estimator = Estimator::contact;
+  EXPECT_EQ(soonest(std::array{updated, devices[1]}, plan, file, measure), 0U);
+  EXPECT_EQ(soonest(devices, with_threshold, file, measure), 0U);
+  EXPECT_EQ(soonest(devices, with_contacts, file, measure), 0U);
   seconds[devices[0].info().name] = 0;
   EXPECT_EQ(soonest(devices, plan, "/dev/null/nowhere", measure), 1U) << "the other one fails";
 }

@@ -28,7 +28,8 @@ inline const testing::Environment* const kDeviceForTests =
 inline const Device& test_device() { return DeviceForTests::device.value(); }
 
 /// The lanes to test for a path of `lanes`. A GPU runs the single lane that users get there:
-/// sixteen lanes fail the tolerance of the paper's estimator on NVIDIA's driver.
+/// sixteen lanes failed the tolerance of the paper's estimator on NVIDIA's driver, while its
+/// largest ratio was a quotient (docs/derivations/paper_solve.md).
 inline int tested_lanes(int lanes) { return test_device().info().lanes == 1 ? 1 : lanes; }
 
 }  // namespace pillarfield

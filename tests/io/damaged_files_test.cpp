@@ -101,9 +101,9 @@ TEST(DamagedFiles, AreRefusedWhileOtherThreadsRead) {
 }
 
 TEST(DamagedFilesDeathTest, EndTheProcessIfHdf5Crashes) {
-  const auto path = kDamagedFiles / "recording/sigfpe_chunk_of_zero.h5";
+  const auto path = kDamagedFiles / "recording/sigsegv_dense_links.h5";
   EXPECT_EXIT(read_recording_whole(path), testing::ExitedWithCode(1),
-              "sigfpe_chunk_of_zero.h5: reading it crashes the HDF5 library; the file is damaged");
+              "sigsegv_dense_links.h5: reading it crashes the HDF5 library; the file is damaged");
 }
 
 /// Compressed if `gzip`.

@@ -89,7 +89,7 @@ class FakeRing {
   void submit() {
     ASSERT_LT(in_flight(), capacity());
     const std::uint64_t frame = vacant().sequence;
-    EXPECT_EQ(vacant().readings.data, vacant().buffer.view().data);
+    EXPECT_EQ(vacant().readings.data, own_.at(submitted.size() % 2)) << "in another's buffer";
     submitted.push_back(frame);
     submitted_at.push_back(clock_.now());
     free_at_ = std::max(free_at_, clock_.now()) + durations.at(frame);
@@ -108,6 +108,7 @@ class FakeRing {
   FakeClock& clock_;
   std::array<StreamedFrame, 2> frames_ = {StreamedFrame(SenselType::u8, kSkin),
                                           StreamedFrame(SenselType::u8, kSkin)};
+  std::array<const void*, 2> own_ = {frames_[0].buffer.view().data, frames_[1].buffer.view().data};
 
  public:
   std::vector<Nanoseconds> durations;

@@ -382,6 +382,30 @@ class Warnings(unittest.TestCase):
                     self.assertAlmostEqual(told / noise, 1, delta=0.15)
                 self.assertNotIn("is stated", self.warnings_of(frames, counts_per_newton=320, layout="pillars"))
 
+    def test_noise_is_measured_in_steady_readings_of_good_sensels_within_their_range(self):
+        random = np.random.default_rng(5)
+        steady = np.full((300, 16, 16), 60.0)
+        mostly_idle, mostly_saturated = steady.copy(), steady.copy()
+        mostly_idle[:, :12] = -9
+        mostly_saturated[:, :12] = 300
+        jumping = steady * random.uniform(0.2, 3, (300, 1, 1)) * random.normal(1, 0.05, (16, 16))
+        masked = np.ones((16, 16), np.uint8)
+        masked[::2, ::2] = 0
+
+        def is_told(load, noise, layout="pillars", mask=None):
+            readings = np.rint(random.normal(load, noise)).clip(0, 255).astype(np.uint8)
+            skin = pf.Skin(16, 16, layout=layout, counts_per_newton=320, full_scale_counts=255)
+            calibration = pf.Calibration(16, 16, mask=mask, counts_per_newton=320)
+            warned = self.warnings_of(readings, skin=skin, calibration=calibration, noise_counts=0.5)
+            return "0.5 is stated" in warned
+
+        self.assertTrue(is_told(mostly_idle, 1))
+        self.assertTrue(is_told(mostly_saturated, 1))
+        self.assertFalse(is_told(jumping, 0.4))
+        self.assertFalse(is_told(steady, np.where(masked == 1, 0.4, 5), mask=masked))
+        self.assertFalse(is_told(steady[:5], 2), "too few changes")
+        self.assertFalse(is_told(steady, 2, layout="sensels"))
+
     def test_deviations_allow_for_errors_that_frames_show(self):
         random = np.random.default_rng(4)
         load = np.kron(np.geomspace(6, 120, 400).reshape(20, 20), np.ones((2, 2)))

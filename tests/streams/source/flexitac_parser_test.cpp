@@ -5,10 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "streams/source/serial_search.h"
 
 namespace pillarfield::streams_test {
 namespace {
@@ -272,6 +277,33 @@ TEST(FlexitacParser, TellsWhyNoFrameComes) {
   feed(doubtful, joined(std::vector<std::string>(20, kMarks + still)), random, parsed);
   EXPECT_EQ(doubtful.complaint(),
             "readings look like the marks of frames; press the skin, so that they change");
+}
+
+/// Some readings look like marks: one before the first frame, one in each, one in every third that
+/// moves.
+TEST(MarkDistance, IsNeverAnyOtherThanThatOfTheFrames) {
+  std::string sent = quiet_readings(99).replace(20, 2, kMarks);
+  for (std::uint32_t number = 0; number < 12; ++number) {
+    std::string readings = quiet_readings(number).replace(10, 2, kMarks);
+    if (number % 3 == 0) readings.replace(40 + number, 2, kMarks);
+    sent += kMarks + readings;
+  }
+  const std::size_t distance = kBoard.bytes() + 2;
+  for (std::size_t size = 0; size <= sent.size(); ++size) {
+    const auto found = mark_distance(std::as_bytes(std::span(sent).first(size)));
+    ASSERT_EQ(found.value_or(distance), distance) << "after " << size << " bytes";
+    EXPECT_EQ(found.has_value(), size >= 5 * distance) << "after " << size << " bytes";
+  }
+}
+
+TEST(LikelySize, IsNearestToASquare) {
+  for (const auto& [readings, rows, cols] :
+       {std::array{384U, 16U, 24U}, {1024U, 32U, 32U}, {1023U, 31U, 33U}, {4U, 2U, 2U}}) {
+    const auto size = likely_size(readings);
+    ASSERT_TRUE(size.has_value());
+    EXPECT_EQ(std::pair(size->rows, size->cols), std::pair(rows, cols));
+  }
+  for (const std::size_t readings : {0U, 1U, 3U, 97U}) EXPECT_FALSE(likely_size(readings));
 }
 
 }  // namespace
