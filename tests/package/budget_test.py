@@ -9,10 +9,10 @@ SOURCE = os.environ["PILLARFIELD_SOURCE"]
 
 # At most so many lines of code, and files of any kind.
 LIMITS = {
-    "core": 109300,
+    "core": 109700,
     "viewer": 21400,
     "laboratory": 7050,
-    "all": 137600,
+    "all": 137950,
     "tests": 41200,
     "files": 1330,
 }
