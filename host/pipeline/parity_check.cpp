@@ -207,6 +207,7 @@ std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source)
   const std::uint64_t frames = all ? std::min(source.frames(), kMostFrames) : source.frames();
   const std::uint64_t step = all ? 1 : std::max<std::uint64_t>(2, frames / pairs);
   FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  std::uint64_t next = 0;  // behind the last frame that was read
   for (std::uint64_t first = 0; first < frames; first += step) {
     for (std::uint64_t i = first; i < std::min({first + 2, first + step, frames}); ++i) {
       try {
@@ -214,7 +215,8 @@ std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source)
       } catch (const Error&) {
         continue;  // a damaged frame, which is reported where it is solved
       }
-      check.add(frame.view(), all || i > first);
+      check.add(frame.view(), i == next && (all || i > first));
+      next = i + 1;
     }
   }
   std::vector<std::string> sentences = check.warnings(true);

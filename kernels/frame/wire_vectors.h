@@ -2,7 +2,7 @@
  * row of sensels and tile across, the gain for each column and tile down. */
 #ifdef PF_WIRES
 
-/* A work-item of those that share a tile: with several lanes there is one. */
+/* The number of work-items that share a tile, as the host launches them, and which this one is. */
 #ifdef PF_SCALAR
 #define PF_TILE_ITEMS 64
 #define PF_TILE_ITEM (uint) get_local_id(0)
