@@ -175,6 +175,8 @@ TEST_P(SensorEffectsOnDevice, WiresHaveTheBitsOfTheHost) {
   SensorEffects effects;
   effects.wires = all_effects(GetParam().type).wires;
   expect_host_bits(plan_with(effects, true), true);
+  effects.wires->tile_cols = 96;  // more than the work-items of a tile
+  expect_host_bits(plan_with(effects, true), true);
 }
 
 /// The wires act on what sensels read above tares that are an offset, as does the bound of idle
