@@ -161,6 +161,7 @@ PF_INLINE void fill_floats(float* values, uint count, float value) {
  */
 PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
                           Tile tile, global float* rows, global float* own, global float* gains) {
+  if (tile.rows == 0) return;
   const WireModel model = PF_WIRE_MODEL;
   TileWires found;
   float readings[PF_LANES * PF_MOST_TILE_PARTS];
@@ -230,7 +231,8 @@ kernel void find_wires(global const PF_SENSEL* restrict raw,
 #else
   const TileRange range = range_of_tile(raw, planes, layout, tile);
 #endif
-  if (find_idle_tile(range, tile, wires, first, gains)) return;
+  /* An idle tile sweeps nothing: to return here would part its group at the barriers. */
+  if (find_idle_tile(range, tile, wires, first, gains)) tile.rows = tile.cols = 0;
 #endif
   sweep_tile(raw, planes, layout, tile, wires.row + first, wires.own + first, gains);
 #ifdef PF_SKIP_IDLE
