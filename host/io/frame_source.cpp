@@ -19,8 +19,6 @@ namespace pillarfield {
 SourceFormat tekscan_format();
 SourceFormat npy_format();
 SourceFormat npz_format();
-SourceFormat mat_format();
-SourceFormat mcap_format();
 SourceFormat table_format();
 SourceFormat sections_format();
 
@@ -44,8 +42,7 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
 }
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format(), npy_format(),  npz_format(),
-                                     mat_format(),     mcap_format(), table_format(),
+  static const std::array formats = {tekscan_format(), npy_format(), npz_format(), table_format(),
                                      sections_format()};
   return formats;
 }
