@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/file_kind.h"
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/readers.h"
 #include "pillarfield/error.h"
 #include "pillarfield/frame_stream.h"
@@ -76,6 +77,8 @@ std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
 std::unique_ptr<FrameSource> open_frames(const std::vector<std::filesystem::path>& paths,
                                          const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
+  const hdf5::CrashGuard guard(paths.empty() ? "" : paths.front(), options.trust,
+                               hdf5::CrashGuard::kNoLimit);
   for (const std::filesystem::path& path : paths) refuse_foreign(path, "");
   std::vector<std::filesystem::path> files = series_files(paths);
   std::unique_ptr<FileSource> source = files.size() == 1 ? open_source(files.front(), options)
