@@ -42,7 +42,8 @@ constexpr std::array kForeign = {
             "import scipy.io as s; a = {{}}; n = np.ndarray; g = lambda k, v: [g('%s.%s' % (k, i), "
             "w) for i, w in (v.items() if isinstance(v, dict) else enumerate(v, 1))] if "
             "isinstance(v, (dict, list)) or isinstance(v, n) and v.dtype == object else "
-            "isinstance(v, n) and v.dtype.kind in 'buif' and a.update({{k: v.copy()}}); [g(k, v) for k, v "
+            "isinstance(v, n) and v.dtype.kind in 'buif' and a.update({{k: v.copy()}}); [g(k, v) "
+            "for k, v "
             "in s.loadmat({0}, simplify_cells=True).items()]; np.savez({5}, **a)",
             ".mat", "save it in MATLAB with save({0}, '-v7.3'), or "},
     // All images of readings and arrays of numbers, by their topics.

@@ -1,6 +1,7 @@
 """Builds the drivers of examples/driver with a C99 compiler, and lets them feed the program."""
 
 import json
+import pathlib
 import re
 import signal
 import socket
@@ -77,6 +78,7 @@ class Drivers(DriverTest):
         with open(f"/dev/shm/{NAME}", "r+b") as segment:
             segment.write(b"PRG1\x02")  # results of an earlier version
         self.assertIn("compile this program", self.error_of(loop))
+        pathlib.Path("/dev/shm", NAME).unlink()
 
     def error_of(self, command):
         result = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
