@@ -5,7 +5,6 @@
 #include <exception>
 #include <new>
 
-#include "pillarfield/crash.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
 #include "viewer/app/app.h"
@@ -40,7 +39,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  pillarfield::exit_after_crashes();
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

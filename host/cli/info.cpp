@@ -255,7 +255,11 @@ void print_devices(bool json) {
                device.shares_memory ? "zero copy" : "staged",
                device.unsuitable.empty() ? "suitable" : "passed over: " + device.unsuitable);
   }
-  if (!has_opencl) print_device_error();
+  if (!has_opencl) return print_device_error();
+  fmt::print(
+      "Without --device: the host for small skins, else the best OpenCL device (GPU before CPU); "
+      "one "
+      "with memory of its own only if its first frames are as quick as the host's.\n");
 }
 
 /// Prints the stages and the kernel source for frames of the scene.

@@ -4,7 +4,6 @@
 #include <exception>
 
 #include "cli/options/arguments.h"
-#include "pillarfield/crash.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
 
@@ -41,7 +40,6 @@ int run(int argc, char** argv) {
 }  // namespace pillarfield::cli
 
 int main(int argc, char** argv) {
-  pillarfield::exit_after_crashes();
   try {
     return pillarfield::cli::run(argc, argv);
   } catch (const pillarfield::cli::WrongCommandLine& error) {

@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 
@@ -258,11 +257,14 @@ Device Device::for_plan(const SolverPlan& plan) const {
   const std::size_t most = is_whole(plan) ? kMostWholeQuadsOnHost : kMostQuadsOnHost;
   Device host(std::make_shared<State>());
   if (quads(plan.skin) <= most) return host;
-  const std::array devices = {Device(best_->opened()), host};
-  if (devices[0].info().shares_memory) return devices[0];
-  const std::filesystem::path& cache = kernel_cache().directory;
-  const auto file = cache.empty() ? cache : cache / "soonest_devices";
-  return devices.at(soonest(devices, plan, file));
+  Device opened(best_->opened());
+  if (opened.info().shares_memory) return opened;
+  try {
+    if (time_of_frame(opened, plan) <= time_of_frame(host, plan)) return opened;
+  } catch (const Error&) {
+    // The device fails or cannot hold the plan.
+  }
+  return host;
 }
 
 }  // namespace pillarfield

@@ -1,20 +1,9 @@
 #include "device/device_race.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <fstream>
-#include <functional>
-#include <limits>
-#include <optional>
-#include <string>
 #include <utility>
 #include <vector>
-
-#include "pillarfield/error.h"
-#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 namespace {
@@ -34,29 +23,6 @@ void press_rows(FrameBuffer& frame, std::uint32_t first, std::uint32_t count) {
     case SenselType::f32:
       return press_rows<float>(frame, first, count);
   }
-}
-
-/// Beginning of a line of the file, which the name of the soonest device ends.
-std::string race_key(std::span<const Device> devices, const SolverPlan& plan) {
-  std::string all = fmt::format("{} x {} ", plan.skin.rows, plan.skin.cols);
-  all += std::to_string(static_cast<int>(estimator_of(plan)));
-  for (const Device& device : devices) {
-    all += device.info().name + device.info().version;
-    all += kernel_source(plan, device.info().lanes);
-  }
-  return fmt::format("{:016x} ", std::hash<std::string>{}(all));
-}
-
-std::optional<std::size_t> remembered(std::span<const Device> devices, const std::string& key,
-                                      const std::filesystem::path& file) {
-  std::ifstream lines(file);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with(key)) continue;
-    for (std::size_t i = 0; i < devices.size(); ++i) {
-      if (line.substr(key.size()) == devices[i].info().name) return i;
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -82,25 +48,6 @@ double time_of_frame(const Device& device, const SolverPlan& plan) {
   while (processor.in_flight() > 0) static_cast<void>(processor.receive());
   std::ranges::nth_element(seconds, seconds.begin() + kFrames / 2);
   return seconds[kFrames / 2];
-}
-
-std::size_t soonest(std::span<const Device> devices, const SolverPlan& plan,
-                    const std::filesystem::path& file, const FrameTime& measure) {
-  const std::string key = race_key(devices, plan);
-  if (const auto known = remembered(devices, key, file)) return *known;
-  std::size_t first = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    try {
-      const double time = measure(devices[i], plan);
-      if (time < least) first = i;
-      least = std::min(time, least);
-    } catch (const Error&) {
-      // Another device may do; if none does, the first one says so.
-    }
-  }
-  std::ofstream(file, std::ios::app) << key + devices[first].info().name + "\n";
-  return first;
 }
 
 }  // namespace pillarfield

@@ -4,9 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -73,21 +71,15 @@ PrivateDirectory private_directory(const fs::path& wanted, std::uintmax_t least_
 }
 
 TemporaryDirectory::TemporaryDirectory(std::uintmax_t least_free_bytes) : owner_(getpid()) {
-  const char* const chosen = std::getenv("TMPDIR");
-  std::string reasons;
-  for (const char* const parent : {chosen, "/tmp", "/var/tmp", "/dev/shm"}) {
-    if (parent == nullptr || !fs::path(parent).is_absolute()) continue;
-    std::string name = (fs::path(parent) / "pillarfield-kernels-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      directory_.refused = fmt::format("{} cannot be written: {}", parent, std::strerror(errno));
-    } else {
-      directory_ = private_directory(name, least_free_bytes);
-      if (directory_.refused.empty()) return;
-      rmdir(name.c_str());
-    }
-    reasons += (reasons.empty() ? "" : ", ") + directory_.refused;
+  std::error_code failed;
+  const fs::path parent = fs::temp_directory_path(failed);
+  std::string name = (parent / "pillarfield-kernels-XXXXXX").string();
+  if (failed || mkdtemp(name.data()) == nullptr) {
+    directory_.refused = fmt::format("{} cannot be written", parent.string());
+    return;
   }
-  directory_.refused = reasons;
+  directory_ = private_directory(name, least_free_bytes);
+  if (!directory_.refused.empty()) rmdir(name.c_str());
 }
 
 TemporaryDirectory::~TemporaryDirectory() {
@@ -128,35 +120,9 @@ std::vector<fs::path> usual_places() {
   return places;
 }
 
-/// True if PoCL may have given a directory this name: digits of a hash, as letters from A on.
-bool is_hash(const fs::path& name) {
-  return std::ranges::all_of(name.string(), [](char c) { return c >= 'A' && c <= 'P'; });
-}
+}  // namespace
 
-bool is_older(const fs::path& file, std::chrono::hours age) {
-  std::error_code failed;
-  const auto written = fs::last_write_time(file, failed);
-  return !failed && fs::file_time_type::clock::now() - written > age;
-}
-
-/// PoCL never removes a program, and leaves an empty file for each that a process builds, others if
-/// it is killed. It writes `last_accessed` at each use.
-void remove_old(const fs::path& entry) {
-  constexpr std::chrono::hours kLongestBuild{1};
-  constexpr std::chrono::hours kUnused{24 * 30};
-  std::error_code failed;
-  if (entry.filename().string().starts_with("tempfile_")) {
-    if (is_older(entry, kLongestBuild)) fs::remove(entry, failed);
-    return;
-  }
-  if (!is_hash(entry.filename())) return;
-  for (const auto& program : fs::directory_iterator(entry, failed)) {
-    if (!is_hash(program.path().filename())) continue;
-    if (is_older(program.path() / "last_accessed", kUnused)) fs::remove_all(program, failed);
-  }
-}
-
-KernelCache choose_directory(std::unique_ptr<TemporaryDirectory>& temporary) {
+KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary) {
   if (const std::string wanted = environment("POCL_CACHE_DIR"); !wanted.empty()) {
     return cache_of_user(wanted);
   }
@@ -172,6 +138,8 @@ KernelCache choose_directory(std::unique_ptr<TemporaryDirectory>& temporary) {
   return {temporary->directory().path, refused};
 }
 
+namespace {
+
 /// The chosen directory, for the lifetime of the process.
 struct ProcessCache {
   ProcessCache() : cache(choose_kernel_cache(temporary)) {
@@ -182,20 +150,6 @@ struct ProcessCache {
 };
 
 }  // namespace
-
-KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary) {
-  KernelCache cache = choose_directory(temporary);
-  try {
-    std::error_code absent;
-    for (const auto& entry : fs::directory_iterator(cache.directory, absent)) remove_old(entry);
-  } catch (const fs::filesystem_error&) {
-    // Entries that cannot be removed stay.
-  }
-  if (cache.not_kept.empty() && environment("POCL_KERNEL_CACHE") == "0") {
-    cache.not_kept = "POCL_KERNEL_CACHE is 0";
-  }
-  return cache;
-}
 
 const KernelCache& kernel_cache() {
   static const ProcessCache chosen;

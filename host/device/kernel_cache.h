@@ -21,8 +21,8 @@ struct PrivateDirectory {
 [[nodiscard]] PrivateDirectory private_directory(const std::filesystem::path& wanted,
                                                  std::uintmax_t least_free_bytes);
 
-/// A new private directory in the first usable of $TMPDIR, /tmp, /var/tmp and /dev/shm. The
-/// destructor removes it in the process that created it.
+/// A new private directory in $TMPDIR or /tmp. The destructor removes it in the process that
+/// created it.
 class TemporaryDirectory {
  public:
   explicit TemporaryDirectory(std::uintmax_t least_free_bytes);
@@ -47,8 +47,8 @@ struct KernelCache {
 
 /// Chooses the directory: $POCL_CACHE_DIR, or the first usable one of
 /// $XDG_CACHE_HOME/pillarfield/kernels, $HOME/.cache/pillarfield/kernels and a new `temporary` one.
-/// Creates missing directories, and removes programs that no process has used for 30 days. Throws
-/// Error if $POCL_CACHE_DIR is not writable, has too little space, or is not private.
+/// Creates missing directories. Throws Error if $POCL_CACHE_DIR is not writable, has too little
+/// space, or is not private.
 [[nodiscard]] KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary);
 
 /// The directory of this process. The first call chooses it and sets POCL_CACHE_DIR for PoCL, so it

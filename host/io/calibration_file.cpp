@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/readers.h"
 #include "io/recording_format.h"
@@ -131,6 +132,7 @@ bool is_calibration_file(const std::filesystem::path& path) {
 SkinCalibration read_calibration_file(const std::filesystem::path& path,
                                       const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
+  const hdf5::CrashGuard guard(path, options.trust, hdf5::CrashGuard::kNoLimit);
   return read_calibration(hdf5::open_to_read(InputFile(path), options.trust));
 }
 

@@ -8,6 +8,7 @@
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/force_info.h"
 #include "io/hdf5/handle.h"
@@ -303,6 +304,7 @@ struct ForceFileReader::State : OpenForces {
 
 ForceFileReader::ForceFileReader(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
+  const hdf5::CrashGuard guard(path, options.trust, hdf5::CrashGuard::kNoLimit);
   state_ = std::make_unique<State>(hdf5::open_to_read(InputFile(path), options.trust));
 }
 

@@ -6,17 +6,21 @@
 #include <array>
 #include <system_error>
 
+#include "io/file_kind.h"
 #include "io/frame_source.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
-/// A format by its first bytes, and the code that python_line() completes.
+/// A format by its first bytes or the ending of its name, the code that python_line() completes,
+/// and another mend before it.
 struct Foreign {
   std::string_view bytes;
   const char* name;
   const char* code;
+  const char* ending = "none";
+  const char* mend = "";
 };
 
 // The largest value of a dictionary, or all that is no dictionary.
@@ -33,6 +37,26 @@ constexpr const char* kWorkbook =
     "import pandas as pd; np.save({1}, pd.read_excel({0}).select_dtypes('number').to_numpy())";
 
 constexpr std::array kForeign = {
+    // All arrays of numbers, also those in cells and structs, by their names.
+    Foreign{"MATLAB 5.0 MAT-file", "a MATLAB file before version 7.3",
+            "import scipy.io as s; a = {{}}; n = np.ndarray; g = lambda k, v: [g('%s.%s' % (k, i), "
+            "w) for i, w in (v.items() if isinstance(v, dict) else enumerate(v, 1))] if "
+            "isinstance(v, (dict, list)) or isinstance(v, n) and v.dtype == object else "
+            "isinstance(v, n) and v.dtype.kind in 'buif' and a.update({{k: v.copy()}}); [g(k, v) "
+            "for k, v "
+            "in s.loadmat({0}, simplify_cells=True).items()]; np.savez({5}, **a)",
+            ".mat", "save it in MATLAB with save({0}, '-v7.3'), or "},
+    // All images of readings and arrays of numbers, by their topics.
+    Foreign{"\x89MCAP0\r\n", "an MCAP file",
+            "from mcap_ros2.reader import read_ros2_messages as r; d = {{}}; "
+            "e = dict(mono8='u1', mono16='u2'); e['32FC1'] = 'f4'; "
+            "[d.setdefault(getattr(m, 'channel', m).topic.strip('/').replace('/', '.'), []).append("
+            "x.data if hasattr(x, 'layout') else "
+            "np.frombuffer(bytes(x.data), e[x.encoding]).reshape(x.height, -1)) "
+            "for m in r({0}) for x in [m.ros_msg] "
+            "if hasattr(x, 'layout') or getattr(x, 'encoding', '') in e]; np.savez({5}, **d)",
+            ".mcap",
+            "record readings with stream --record FILE.h5, or pip install mcap-ros2-support and "},
     Foreign{"\x80", "a pickle of Python",
             "import pickle; d = pickle.load(open({0}, 'rb')); "
             "np.save({1}, max(d.values(), key=np.size) if isinstance(d, dict) else d)"},
@@ -70,9 +94,11 @@ std::string quoted(const std::string& text) {
   return text.find_first_of("'\"\\$`!") == std::string::npos ? "'" + text + "'" : "'FILE'";
 }
 
-[[noreturn]] void refuse_as(const std::filesystem::path& path, const char* name, const char* code) {
-  throw Error(path.string(), fmt::format("is {}, which is not read", name),
-              python_line(code, path));
+[[noreturn]] void refuse_as(const std::filesystem::path& path, const char* name, const char* code,
+                            const char* mend = "") {
+  throw Error(
+      path.string(), fmt::format("is {}, which is not read", name),
+      fmt::format(fmt::runtime(mend), quoted(path.filename().string())) + python_line(code, path));
 }
 
 }  // namespace
@@ -84,7 +110,8 @@ std::string python_line(std::string_view code, const std::filesystem::path& path
   return fmt::format("run python3 -c \"import numpy as np; {}\"",
                      fmt::format(fmt::runtime(code), quoted(named.string()),
                                  quoted(named.stem().string() + ".npy"), quoted(folder.string()),
-                                 quoted(alike.string()), quoted((folder / named.stem()).string())));
+                                 quoted(alike.string()), quoted((folder / named.stem()).string()),
+                                 quoted(named.stem().string() + ".npz")));
 }
 
 void refuse_foreign(const std::filesystem::path& path, std::string_view head) {
@@ -95,9 +122,13 @@ void refuse_foreign(const std::filesystem::path& path, std::string_view head) {
               "import zarr; z = zarr.open({0}, mode='r'); np.save({1}, z[:] if hasattr(z, 'shape') "
               "else z[next(iter(z.array_keys()))][:])");
   }
+  const bool is_matlab_7_3 = head.starts_with("MATLAB 7.3");  // without HDF5 it is damaged
   head.remove_prefix(std::min(head.find_first_not_of(" \t\r\n"), head.size()));
-  for (const auto& [bytes, name, code] : kForeign) {
-    if (head.starts_with(bytes)) refuse_as(path, name, code);
+  const std::string ending = head.empty() || is_matlab_7_3 ? "" : extension_of(path);
+  for (const Foreign& foreign : kForeign) {
+    if (head.starts_with(foreign.bytes) || ending == foreign.ending) {
+      refuse_as(path, foreign.name, foreign.code, foreign.mend);
+    }
   }
 }
 

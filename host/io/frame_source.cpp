@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/file_kind.h"
+#include "io/hdf5/crash_guard.h"
 #include "io/hdf5/readers.h"
 #include "pillarfield/error.h"
 #include "pillarfield/frame_stream.h"
@@ -19,8 +20,6 @@ namespace pillarfield {
 SourceFormat tekscan_format();
 SourceFormat npy_format();
 SourceFormat npz_format();
-SourceFormat mat_format();
-SourceFormat mcap_format();
 SourceFormat table_format();
 SourceFormat sections_format();
 
@@ -44,8 +43,7 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
 }
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format(), npy_format(),  npz_format(),
-                                     mat_format(),     mcap_format(), table_format(),
+  static const std::array formats = {tekscan_format(), npy_format(), npz_format(), table_format(),
                                      sections_format()};
   return formats;
 }
@@ -79,6 +77,8 @@ std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
 std::unique_ptr<FrameSource> open_frames(const std::vector<std::filesystem::path>& paths,
                                          const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
+  const hdf5::CrashGuard guard(paths.empty() ? "" : paths.front(), options.trust,
+                               hdf5::CrashGuard::kNoLimit);
   for (const std::filesystem::path& path : paths) refuse_foreign(path, "");
   std::vector<std::filesystem::path> files = series_files(paths);
   std::unique_ptr<FileSource> source = files.size() == 1 ? open_source(files.front(), options)

@@ -25,7 +25,7 @@ class Recording(_core.FrameSource):
 
     path: a file, a folder or a list of files: several are one source in order of their names
     trust: the file is your own, so its frames may have any size
-    dataset, times: names of the arrays of frames and times in an HDF5 file, .npz archive or .mat file
+    dataset, times: names of the arrays of frames and times in an HDF5 file or .npz archive
     frame_size: (R, C) of frames that lie in one line of a table or array
     columns: those of a table that are readings, by name or number from 1 on: 'pressure_*', '2-97'
     rate_hz: frames per second of a file without times

@@ -332,42 +332,6 @@ TEST(OutputFile, ARemovedPartIsReported) {
   EXPECT_EQ(bytes_of(directory / "a.csv.part"), "of somebody else");
 }
 
-/// The error of a recording whose part another program changes between its frames.
-std::string error_after(const std::function<void(const fs::path& part)>& change) {
-  const TemporaryDirectory directory;
-  const fs::path part = directory / "r.h5.part";
-  std::string error;
-  {
-    RecordingWriter writer = begin_recording(directory / "r.h5");
-    const FrameBuffer frame(SenselType::u8, 4, 4);
-    for (int index = 0; index < 200; ++index) writer.append(frame.view(), index);
-    writer.flush();
-    change(part);
-    error = error_of([&] {
-      for (int index = 200; index < 400; ++index) writer.append(frame.view(), index);
-      writer.finish();
-    });
-  }
-  EXPECT_FALSE(fs::exists(directory / "r.h5"));
-  EXPECT_TRUE(fs::exists(part));
-  return error;
-}
-
-TEST(OutputFile, APartThatAnotherProgramChangesDoesNotTakeItsName) {
-  const std::vector<std::string> expected = {"r.h5.part", "shortened or overwritten"};
-  EXPECT_TRUE(
-      has_all(error_after([](const auto& part) { fs::resize_file(part, 5000); }), expected));
-  EXPECT_TRUE(has_all(error_after([](const auto& part) {
-                        write_bytes(part, std::string(fs::file_size(part) + (1 << 20), 'x'));
-                      }),
-                      expected));
-  const TemporaryDirectory directory;
-  OutputFile text(directory / "a.csv", OutputKind::forces);
-  text.write(std::string(1000, 'a'));
-  fs::resize_file(text.part_path(), 500);
-  EXPECT_TRUE(has_all(error_of([&] { text.commit(); }), {"a.csv.part", "shortened"}));
-}
-
 TEST(OutputFile, ALinkAtItsNameStaysAndItsTargetIsWritten) {
   const TemporaryDirectory directory;
   fs::create_directory(directory / "far");

@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "fuzz/targets.h"
-#include "pillarfield/crash.h"
 #include "pillarfield/error.h"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -195,7 +194,6 @@ int replay_all(const std::filesystem::path& corpus, std::vector<std::filesystem:
 }  // namespace pillarfield::fuzz
 
 int main(int argc, char** argv) {
-  pillarfield::exit_after_crashes();
   if (argc < 2) {
     fmt::print(stderr, "Usage: fuzz_replay CORPUS [FOLDER/NAME...]\n");
     return 2;

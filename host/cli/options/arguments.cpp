@@ -84,8 +84,8 @@ void add_solve(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   input
       .text("INPUT", options->inputs, "FILE",
-            "Recording (HDF5), Tekscan ASCII export, MCAP of stream, or plain data: .npy, .npz, "
-            ".mat, CSV, HDF5 dataset; several files, or a folder, are one source in order of names")
+            "Recording (HDF5), Tekscan ASCII export, or plain data: .npy, .npz, CSV, HDF5 dataset; "
+            "several files, or a folder, are one source in order of names")
       ->required();
   add_tare_frames(command, options->plan.read);
   add_plain_data(command, options->plan.read, true);

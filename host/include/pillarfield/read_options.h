@@ -23,11 +23,10 @@ struct ReadOptions {
   /// most 8,388,608 sensels.
   bool trust = false;
 
-  /// Array of frames in an HDF5 file, an .npz archive or a .mat file. Empty: the readings of a
-  /// recording, the only array of frames of an archive or .mat file.
+  /// Array of frames in an HDF5 file or an .npz archive. Empty: the readings of a recording, the
+  /// only array of frames of an archive.
   std::string dataset = {};
-  /// One-dimensional array of the frames' times, s, in that file. Empty: `time` of an archive or
-  /// .mat file.
+  /// One-dimensional array of the frames' times, s, in that file. Empty: `time` of an archive.
   std::string times = {};
   /// Size of a frame whose readings lie in one line of a table or array.
   std::optional<FrameSize> frame_size = {};

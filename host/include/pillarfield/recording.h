@@ -50,7 +50,7 @@ class FrameSource {
 };
 
 /// Opens a recording (HDF5), a Tekscan ASCII export or plain data (docs/formats.md): .npy, .npz,
-/// .mat, a table of numbers, an HDF5 dataset; or the files of a folder, as below. The content
+/// a table of numbers, an HDF5 dataset; or the files of a folder, as below. The content
 /// decides, not the name. If its writer was killed or still writes, a recording has the frames
 /// flushed so far. Frames are read on demand, except those of text files and compressed arrays.
 /// Throws Error if the file is none of these, is damaged, holds values out of range, or contradicts

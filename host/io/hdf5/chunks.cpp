@@ -2,14 +2,21 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <new>
 #include <numeric>
+#include <span>
 #include <system_error>
 
+#include "io/hdf5/crash_guard.h"
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 
 namespace pillarfield::hdf5 {
 namespace {
@@ -40,21 +47,106 @@ std::vector<hsize_t> chunk_of(const File& file, const Handle& layout, const std:
   throw Error(file.path.string(), fmt::format("the chunks of {} have no size", name), kDamaged);
 }
 
-void require_filters(const File& file, const Handle& layout, const std::string& name) {
+/// Filters whose chunks have a known size, in the order in which they may be applied.
+constexpr std::array kCheckedFilters = {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE,
+                                        H5Z_FILTER_FLETCHER32};
+
+/// Reads the filters of the chunks. Throws Error if HDF5 lacks one, or the file is untrusted and
+/// has others than kCheckedFilters, or those in another order.
+void read_filters(const File& file, const Handle& layout, const std::string& name,
+                  Storage& storage) {
   const int count = H5Pget_nfilters(layout.get());
   require(count, file.path, fmt::format("the filters of {} cannot be read", name), kDamaged);
+  const auto* next = kCheckedFilters.begin();
   for (unsigned index = 0; index < static_cast<unsigned>(count); ++index) {
     unsigned flags = 0;
     std::size_t values = 0;
     char filter_name[64] = "";
     const H5Z_filter_t filter = H5Pget_filter2(layout.get(), index, &flags, &values, nullptr,
                                                sizeof filter_name, filter_name, nullptr);
-    if (H5Zfilter_avail(filter) > 0) continue;
-    throw Error(file.path.string(),
-                fmt::format("{} is stored with '{:.60}', HDF5 filter {}, which HDF5 lacks here",
-                            name, filter_name, filter),
-                "store it with gzip, or uncompressed");
+    if (H5Zfilter_avail(filter) <= 0) {
+      throw Error(file.path.string(),
+                  fmt::format("{} is stored with '{:.60}', HDF5 filter {}, which HDF5 lacks here",
+                              name, filter_name, filter),
+                  "store it with gzip, or uncompressed");
+    }
+    storage.filters.push_back(filter);
+    next = std::find(next, kCheckedFilters.end(), filter);
+    if (next != kCheckedFilters.end()) {
+      ++next;
+    } else if (file.trusted) {
+      storage.is_checked = false;
+    } else {
+      throw Error(
+          file.path.string(),
+          fmt::format("{} is stored with '{:.60}', HDF5 filter {}, whose chunks are not checked",
+                      name, filter_name, filter),
+          "store it with gzip, alone or behind shuffle, or read a file of your own with "
+          "--trust-input");
+    }
   }
+  storage.is_filtered = count > 0;
+}
+
+/// Size of deflated bytes when inflated, `most` + 1 if it is larger; 0 if they are damaged.
+std::size_t inflated_bytes(std::span<std::byte> deflated, std::size_t most) {
+  z_stream stream = {};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  std::array<Bytef, std::size_t{64} << 10U> part;
+  stream.next_in = reinterpret_cast<Bytef*>(deflated.data());
+  stream.avail_in = static_cast<uInt>(deflated.size());
+  int result = Z_OK;
+  while (result == Z_OK && stream.total_out <= most) {
+    stream.next_out = part.data();
+    stream.avail_out = static_cast<uInt>(part.size());
+    result = inflate(&stream, Z_NO_FLUSH);
+  }
+  inflateEnd(&stream);
+  if (stream.total_out > most) return most + 1;
+  return result == Z_STREAM_END ? stream.total_out : 0;
+}
+
+/// Size of a stored chunk behind its filters but those that `skipped` names by their bits.
+std::size_t unfiltered_bytes(const Storage& storage, std::span<std::byte> stored, unsigned skipped,
+                             std::size_t most) {
+  std::size_t bytes = stored.size();
+  for (std::size_t index = storage.filters.size(); index-- > 0;) {
+    if ((skipped >> index & 1U) != 0) continue;
+    constexpr std::size_t kChecksumBytes = 4;
+    if (storage.filters[index] == H5Z_FILTER_FLETCHER32) {
+      bytes -= std::min(bytes, kChecksumBytes);
+    } else if (storage.filters[index] == H5Z_FILTER_DEFLATE) {
+      bytes = inflated_bytes(stored.first(bytes), most);
+    }
+  }
+  return bytes;
+}
+
+/// Throws Error if the chunk that begins `at` these values is stored, and has another size than it
+/// states: HDF5 reads memory of the process in place of bytes that lack.
+void require_whole_chunk(const std::filesystem::path& path, const Handle& dataset,
+                         const std::string& name, const Storage& storage,
+                         const std::vector<hsize_t>& at) {
+  const auto bytes = static_cast<std::size_t>(storage.chunk_bytes());
+  const std::string failure = fmt::format("the chunk of {} at {} has another size than it states",
+                                          name, fmt::join(at, ", "));
+  hsize_t stored_bytes = 0;
+  // Without any chunk, or where the index is damaged: then H5Dread() fails.
+  if (H5Dget_chunk_storage_size(dataset.get(), at.data(), &stored_bytes) < 0) return;
+  std::size_t found = stored_bytes;
+  constexpr std::size_t kMostOverhead = 4096;
+  const bool is_possible = stored_bytes <= 2 * bytes + kMostOverhead;
+  if (stored_bytes == 0 || (storage.is_filtered && is_possible)) {
+    std::vector<std::byte> stored(stored_bytes);
+    std::uint32_t skipped = 0;
+    std::byte none = {};
+    const herr_t result = H5Dread_chunk(dataset.get(), H5P_DEFAULT, at.data(), &skipped,
+                                        stored.empty() ? &none : stored.data());
+    if (stored_bytes == 0 && result < 0) return;  // not stored
+    require(result, path, failure, kDamaged);
+    found = unfiltered_bytes(storage, stored, skipped, bytes);
+  }
+  if (found != bytes) throw Error(path.string(), failure, kDamaged);
 }
 
 /// Number of chunks that the values fill.
@@ -113,12 +205,12 @@ std::uint64_t bytes_of(const File& file) {
 
 bool Storage::holds_values() const { return std::ranges::find(extent, 0U) == extent.end(); }
 
-std::size_t Storage::layer_bytes() const {
+double Storage::layer_bytes() const {
   double bytes = chunk_bytes();
   for (std::size_t d = 1; d < extent.size(); ++d) {
     bytes *= std::ceil(static_cast<double>(extent[d]) / static_cast<double>(chunk[d]));
   }
-  return static_cast<std::size_t>(std::min(bytes, static_cast<double>(kMaxChunkBytes)));
+  return bytes;
 }
 
 double Storage::chunk_bytes() const { return product(chunk) * static_cast<double>(value_bytes); }
@@ -136,8 +228,7 @@ Storage storage_of(const File& file, const Handle& dataset, const std::string& n
   storage.value_bytes = H5Tget_size(type.get());
   storage.extent = extent_of(file, dataset, name);
   storage.chunk = chunk_of(file, layout, name, storage.extent.size());
-  storage.is_filtered = H5Pget_nfilters(layout.get()) != 0;
-  require_filters(file, layout, name);
+  read_filters(file, layout, name, storage);
   if (storage.is_filtered && storage.chunk_bytes() > static_cast<double>(kMaxChunkBytes)) {
     throw Error(file.path.string(),
                 fmt::format("{} is compressed in chunks of {} values, more than {} MiB each", name,
@@ -174,6 +265,20 @@ void require_stored(const File& file, const Handle& dataset, const std::string& 
               fmt::format("{} claims {} values in {} chunks, but only {} are stored", name,
                           fmt::join(storage.extent, " x "), chunks_of(storage), stored),
               "the file is damaged, or the dataset is longer than its data; shorten it");
+}
+
+void require_whole_chunks(const std::filesystem::path& path, bool trusted, const Handle& dataset,
+                          const std::string& name, const Storage& storage, std::uint64_t layer) {
+  if (storage.chunk.empty() || !storage.is_checked) return;
+  std::vector<hsize_t> at(storage.extent.size(), 0);
+  at[0] = layer * storage.chunk[0];
+  for (std::size_t d = 0; d != at.size();) {
+    if (is_interrupted())
+      throw Error(path.string(), "interrupted while it was read", "start again");
+    const CrashGuard guard(path, trusted, storage.chunk_bytes());
+    require_whole_chunk(path, dataset, name, storage, at);
+    for (d = 1; d < at.size() && (at[d] += storage.chunk[d]) >= storage.extent[d]; ++d) at[d] = 0;
+  }
 }
 
 }  // namespace pillarfield::hdf5

@@ -4,19 +4,22 @@
 #include <csignal>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace pillarfield::hdf5 {
 
 /// Names the file if the HDF5 library crashes or loops on it: while a guard exists, a fatal signal
-/// in this thread, or 2 s of its processor time, end the process with exit status 1 and one line on
-/// standard error. Damaged files do both to HDF5 1.10. A guard of a trusted file, or within
-/// another, does nothing, and signals in other threads have their former actions. Where a signal
-/// has none and no guard exists, as when HDF5 has damaged memory, the line names the file that was
-/// read last, and the signal stays, but for exit_after_crashes().
+/// in this thread, or 2 s of its processor time and one more for each 16 MiB of `bytes` that are
+/// read, end the process with exit status 1 and one line on standard error. Damaged files do both
+/// to HDF5 1.10. With kNoLimit it has no limit of time and holds guards with one: crashes of our
+/// own code between calls of HDF5, which may have damaged memory. Otherwise a guard within another,
+/// or of a trusted file, does nothing. Signals in other threads, and later ones, have their former
+/// actions.
 class CrashGuard {
  public:
-  explicit CrashGuard(const std::filesystem::path& file, bool trusted = false);
+  static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  explicit CrashGuard(const std::filesystem::path& file, bool trusted = false, double bytes = 0);
   ~CrashGuard();
   CrashGuard(const CrashGuard&) = delete;
   CrashGuard& operator=(const CrashGuard&) = delete;
@@ -27,7 +30,8 @@ class CrashGuard {
 
   std::string crashed_;  ///< lines to print
   std::string late_;
-  bool is_outer_ = false;
+  bool is_active_ = false;
+  const CrashGuard* former_ = nullptr;
   timer_t timer_ = {};
   bool has_timer_ = false;
   stack_t stack_before_ = {};

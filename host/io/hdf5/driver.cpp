@@ -27,10 +27,9 @@ struct DriverOptions {
 };
 
 struct DriverFile : H5FD_t {
-  explicit DriverFile(int file) : H5FD_t{}, descriptor(file), bytes(file) {}
+  explicit DriverFile(int file) : H5FD_t{}, descriptor(file) {}
 
   int descriptor;
-  PartBytes bytes;  ///< for writing
   haddr_t allocated_end = 0;
   haddr_t metadata_at = 0;   ///< free place in the page of metadata
   haddr_t metadata_end = 0;  ///< end of that page
@@ -74,7 +73,7 @@ void note_result(DriverFile& target, int reason) {
 
 void write_through(DriverFile& target, haddr_t address, const char* next, std::size_t size) {
   if (size == 0 || target.write_status->error_number != 0) return;
-  note_result(target, target.bytes.write(std::as_bytes(std::span(next, size)), address));
+  note_result(target, write_all(target.descriptor, std::as_bytes(std::span(next, size)), address));
 }
 
 void write_waiting(DriverFile& target) {
@@ -85,7 +84,6 @@ void write_waiting(DriverFile& target) {
 herr_t close_file(H5FD_t* file) {
   const std::unique_ptr<DriverFile> owned(&ours(file));
   write_waiting(*owned);
-  if (owned->write_status) note_result(*owned, owned->bytes.check());
   if (::close(owned->descriptor) != 0 && owned->write_status) note_result(*owned, errno);
   return 0;
 }
@@ -171,7 +169,8 @@ herr_t truncate_file(H5FD_t* file, hid_t, hbool_t) {
   DriverFile& target = ours(file);
   write_waiting(target);
   if (target.file_end == target.allocated_end || target.write_status->error_number != 0) return 0;
-  note_result(target, target.bytes.resize(target.allocated_end));
+  const int result = ftruncate(target.descriptor, static_cast<off_t>(target.allocated_end));
+  note_result(target, result == 0 ? 0 : errno);
   target.file_end = target.allocated_end;
   return 0;
 }

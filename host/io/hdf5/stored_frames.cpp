@@ -67,7 +67,8 @@ void StoredFrames::keep_inflated_chunks(const File& file) {
   const std::string failure = fmt::format("{} cannot be opened", name_);
   const Handle access = own(H5Pcreate(H5P_DATASET_ACCESS), path_, failure);
   require(H5Pset_chunk_cache(access.get(), H5D_CHUNK_CACHE_NSLOTS_DEFAULT,
-                             std::max(kLeastCacheBytes, storage_.layer_bytes()),
+                             std::clamp(static_cast<std::size_t>(storage_.layer_bytes()),
+                                        kLeastCacheBytes, kMaxChunkBytes),
                              H5D_CHUNK_CACHE_W0_DEFAULT),
           path_, failure);
   dataset_ = {};
@@ -81,7 +82,17 @@ void StoredFrames::get_all(std::uint64_t first, std::uint64_t count, hid_t memor
   std::vector<hsize_t> size = storage_.extent;
   start[0] = first;
   size[0] = count;
-  const CrashGuard guard(path_, is_trusted_);
+  double bytes = 0;  // of the chunks
+  const std::uint64_t layer_frames = storage_.chunk.empty() ? 0 : storage_.chunk[0];
+  for (std::uint64_t frame = first; layer_frames > 0 && frame < first + count;
+       frame += layer_frames - frame % layer_frames) {
+    const std::uint64_t layer = frame / layer_frames;
+    if (whole_layers_.insert(layer).second) {
+      require_whole_chunks(path_, is_trusted_, dataset_, name_, storage_, layer);
+    }
+    bytes += storage_.layer_bytes();
+  }
+  const CrashGuard guard(path_, is_trusted_, bytes);
   const std::string failure = first == 0 && count == storage_.extent[0]
                                   ? fmt::format("{} cannot be read", name_)
                                   : fmt::format("frame {} of {} cannot be read", first, name_);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ class StoredFrames {
   Handle type_;  ///< of the values; for an enumeration, of its integers
   bool is_enumeration_ = false;
   Storage storage_;
+  mutable std::set<std::uint64_t> whole_layers_;  ///< that require_whole_chunks() has passed
 };
 
 /// Reads a dataset [rows, cols] of any number type.

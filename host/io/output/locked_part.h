@@ -1,34 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 
 namespace pillarfield {
 
-/// Writes a part, which is empty at first, and notices if another program shortens or overwrites
-/// it, which its lock does not prevent. All functions return 0 or errno, which is ESTALE then.
-class PartBytes {
- public:
-  explicit PartBytes(int descriptor) : descriptor_(descriptor) {}
+/// Writes all bytes from an offset on. Returns 0 or errno.
+[[nodiscard]] int write_all(int descriptor, std::span<const std::byte> bytes, std::uint64_t offset);
 
-  [[nodiscard]] std::uint64_t end() const { return end_; }
-  [[nodiscard]] int write(std::span<const std::byte> bytes, std::uint64_t offset);
-  [[nodiscard]] int resize(std::uint64_t bytes);
-
-  /// Compares the size and the first bytes with what was written.
-  [[nodiscard]] int check() const;
-
- private:
-  int descriptor_;
-  std::uint64_t end_ = 0;
-  std::array<std::byte, 64> head_{};
-};
-
-/// Throws Error about a part with the reason that a function of PartBytes or the system gives.
+/// Throws Error about a part with the reason, an errno.
 [[noreturn]] void fail_to_write(const std::filesystem::path& part, int reason);
 
 /// Names of an output while it is written and when it is complete.
@@ -55,7 +37,6 @@ class LockedPart {
   LockedPart& operator=(const LockedPart&) = delete;
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
-  [[nodiscard]] PartBytes& bytes() { return *bytes_; }
   [[nodiscard]] bool was_there() const { return was_there_; }
 
   /// True if the part's name still refers to this file.
@@ -68,7 +49,6 @@ class LockedPart {
 
   OutputPlace place_;
   int descriptor_ = -1;
-  std::optional<PartBytes> bytes_;
   bool was_there_ = false;
 };
 

@@ -94,7 +94,7 @@ int OutputFile::descriptor() const { return part_ == nullptr ? -1 : part_->descr
 
 void OutputFile::put(std::span<const std::byte> bytes, std::uint64_t offset) {
   if (!is_open()) throw Error(path_.string(), "is finished", "start another file");
-  if (const int reason = part_->bytes().write(bytes, offset); reason != 0) {
+  if (const int reason = write_all(descriptor(), bytes, offset); reason != 0) {
     fail_to_write(part_path_, reason);
   }
 }
@@ -148,10 +148,9 @@ void OutputFile::take_name() {
 void OutputFile::commit() {
   if (!is_open()) throw Error(path_.string(), "is finished", "start another file");
   take_sync_result();
-  int reason = reason_of_sync(fsync(descriptor()));
-  // Other outputs are written by HDF5 or another program.
-  if (reason == 0 && part_->bytes().end() > 0) reason = part_->bytes().check();
-  if (reason != 0) fail_to_write(part_path_, reason);
+  if (const int reason = reason_of_sync(fsync(descriptor())); reason != 0) {
+    fail_to_write(part_path_, reason);
+  }
   if (!part_->has_its_name()) {
     throw Error(part_path_.string(), "was renamed or removed while it was written",
                 "find it under its new name, or write it again");

@@ -13,7 +13,6 @@
 #include "base/npy.h"
 #include "io/frame_source.h"
 #include "io/plain/array_names.h"
-#include "io/plain/inflater.h"
 #include "io/plain/source.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
@@ -22,6 +21,14 @@ namespace pillarfield {
 namespace {
 
 constexpr std::size_t kMostMembers = 1000;
+constexpr std::size_t kMostAtOnce = std::size_t{16} << 20U;  // bytes
+
+/// Most bytes that a deflated member is inflated to: 64 times as many as it has, but always
+/// 256 MiB, and never more than 1 GiB.
+constexpr std::uint64_t most_inflated(std::uint64_t stored_bytes) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30U;
+  return std::clamp(64 * std::min(stored_bytes, kMost), kMost / 4, kMost);
+}
 constexpr const char* kDamagedArchive = "the archive is damaged or truncated; use another copy";
 
 /// The header of an array of readings. Throws Error if it is damaged, or the array has booleans or
@@ -90,10 +97,13 @@ class NpzArchive {
     if (!has_npy_) refuse_foreign_archive(file_.path(), is_workbook_);
   }
 
+  /// Throws Error if the array exceeds most_inflated(), or has another size or checksum than the
+  /// archive says.
   [[nodiscard]] std::unique_ptr<NumberArray> open(std::size_t index) const {
     const NpzArray& array = arrays_[index];
     const std::string place = place_of(array.name);
     if (array.info.compression_method == 0) {
+      verify(array);
       return npy_in_file(InputFile(file_.path()), array.data_at, array.info.uncompressed_size,
                          place);
     }
@@ -137,6 +147,7 @@ class NpzArchive {
     if (array.data_at > file_.size() || info.compressed_size > file_.size() - array.data_at) {
       fail_archive("ends within a member");
     }
+    require_name_at_member(array, text.data());
     std::string head(std::min<std::uint64_t>(kLongestNpyHeader, info.uncompressed_size), '\0');
     head.resize(read_member(std::as_writable_bytes(std::span(head)), place_of(array.name)));
     is_workbook_ = is_workbook_ || array.name == "xl/workbook.xml";
@@ -177,7 +188,6 @@ class NpzArchive {
 
   /// Reads from the open member; returns the number of bytes, fewer at its end.
   std::size_t read_member(std::span<std::byte> bytes, const std::string& place) const {
-    constexpr std::size_t kMostAtOnce = std::size_t{16} << 20U;
     std::size_t found = 0;
     while (found < bytes.size()) {
       if (is_interrupted()) throw Error(place, "interrupted while it was read", "start again");
@@ -190,9 +200,31 @@ class NpzArchive {
     return found;
   }
 
-  /// Throws Error if the array exceeds most_inflated(), or has another size or checksum than the
-  /// archive says.
+  /// Throws Error if the directory has another name for the member than the member itself: then one
+  /// of them is damaged, and may name readings of others.
+  void require_name_at_member(const NpzArray& array, const std::string& name) const {
+    const int extra_bytes = unzGetLocalExtrafield(zip_.get(), nullptr, 0);
+    const std::uint64_t bytes = name.size() + static_cast<std::uint64_t>(std::max(extra_bytes, 0));
+    if (bytes <= array.data_at && file_.text_at(array.data_at - bytes, name.size()) == name) return;
+    throw Error(place_of(array.name), "has two different names", kDamagedArchive);
+  }
+
+  /// Throws Error if the stored member differs from its checksum.
+  void verify(const NpzArray& array) const {
+    open_member(array);
+    std::vector<std::byte> part(std::min<std::uint64_t>(array.info.uncompressed_size, kMostAtOnce));
+    while (read_member(part, place_of(array.name)) == part.size() && !part.empty()) continue;
+    require_checksum(array);
+  }
+
+  /// Throws Error if the open member, read to its end, differs from its checksum.
+  void require_checksum(const NpzArray& array) const {
+    if (unzCloseCurrentFile(zip_.get()) == UNZ_OK) return;
+    throw Error(place_of(array.name), "differs from its checksum", kDamagedArchive);
+  }
+
   [[nodiscard]] std::vector<std::byte> inflated(const NpzArray& array) const {
+    constexpr std::uint64_t kMostDeflateRatio = 1032;
     const std::string place = place_of(array.name);
     const std::uint64_t size = array.info.uncompressed_size;
     const std::uint64_t stored = array.info.compressed_size;
@@ -207,10 +239,10 @@ class NpzArchive {
     }
     open_member(array);
     std::vector<std::byte> bytes(size);
-    const std::size_t found = read_member(bytes, place);
-    if (found != size || unzCloseCurrentFile(zip_.get()) != UNZ_OK) {
-      throw Error(place, "differs from its size or checksum", kDamagedArchive);
+    if (read_member(bytes, place) != size) {
+      throw Error(place, "differs from its size", kDamagedArchive);
     }
+    require_checksum(array);
     return bytes;
   }
 

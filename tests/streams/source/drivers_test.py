@@ -1,7 +1,6 @@
 """Builds the drivers of examples/driver with a C99 compiler, and lets them feed the program."""
 
 import json
-import os
 import pathlib
 import re
 import signal
@@ -36,13 +35,13 @@ class Drivers(DriverTest):
         self.assertEqual(stream.returncode, 0)
         return json.loads(lines[-1])["summary"]
 
-    def test_ring_driver_to_control_loop(self):
+    def test_ring_to_control_loop(self):
         frames, forces = f"{NAME}-frames", f"{NAME}-forces"
         stream = self.start_stream(f"shm:{frames}", "--to", f"shm:{forces}")
         loop = self.start(self.folder / "control_loop", forces, "--seconds", 3600,
                           stdout=subprocess.PIPE)
-        driver = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 3600,
-                            "--rows", 48, "--cols", 48)
+        driver = self.start(*self.relay(frames, 50))
+
         def next_frame():
             while (line := loop.stdout.readline()).startswith("alarm:"):
                 pass
@@ -58,8 +57,7 @@ class Drivers(DriverTest):
         # The program goes on when its driver is killed, and takes up the ring of the next one.
         driver.kill()
         driver.wait()
-        again = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 3600,
-                           "--rows", 48, "--cols", 48)
+        again = self.start(*self.relay(frames, 50))
         while next_frame() >= 50:
             pass
         again.terminate()
@@ -69,38 +67,23 @@ class Drivers(DriverTest):
         self.assertEqual(summary["invalid"], 0)
         self.assertEqual(segments(), [])
 
-    def test_a_driver_replaces_a_ring_of_another_size(self):
-        driver = self.folder / "ring_driver"
-        killed = self.start(driver, NAME, "--seconds", 3600)
+    def test_a_control_loop_refuses_other_rings(self):
+        writer = self.start(*self.relay(NAME, 50))
         while not segments():
             time.sleep(0.01)
-        busy = subprocess.run([driver, NAME], stderr=subprocess.PIPE, text=True, check=False)
-        self.assertEqual(busy.returncode, 1)
-        self.assertIn("another driver", busy.stderr)
-        loop = subprocess.run([self.folder / "control_loop", NAME], stderr=subprocess.PIPE, text=True, check=False)
-        self.assertEqual(loop.returncode, 1)
-        self.assertIn("it holds frames, not results", loop.stderr)
-        killed.kill()
-        killed.wait()
-        self.assertEqual(segments(), [NAME])
+        loop = [self.folder / "control_loop", NAME]
+        self.assertIn("it holds frames, not results", self.error_of(loop))
+        writer.kill()
+        writer.wait()
         with open(f"/dev/shm/{NAME}", "r+b") as segment:
             segment.write(b"PRG1\x02")  # results of an earlier version
-        loop = subprocess.run([self.folder / "control_loop", NAME], stderr=subprocess.PIPE, text=True, check=False)
-        self.assertEqual(loop.returncode, 1)
-        self.assertIn("compile this program", loop.stderr)
-        subprocess.run([driver, NAME, "--rows", "20", "--seconds", "0.05"], check=True)
-        self.assertEqual(segments(), [])
+        self.assertIn("compile this program", self.error_of(loop))
+        pathlib.Path("/dev/shm", NAME).unlink()
 
-    @unittest.skipIf(os.geteuid() != 0, "only root gives files away")
-    def test_a_driver_refuses_a_ring_of_another_user(self):
-        segment = pathlib.Path("/dev/shm", NAME)
-        segment.touch()
-        os.chown(segment, 65534, 65534)
-        driver = subprocess.run([self.folder / "ring_driver", NAME], stderr=subprocess.PIPE,
-                                text=True, check=False)
-        segment.unlink()
-        self.assertEqual(driver.returncode, 1)
-        self.assertIn("another user", driver.stderr)
+    def error_of(self, command):
+        result = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(result.returncode, 1)
+        return result.stderr
 
     def test_udp_driver(self):
         port = free_port()

@@ -1,6 +1,6 @@
 """Kills driver, program and reader (SIGKILL) in every order, and starts each again.
 
-Argument: the number of rounds. The driver's spot moves across the skin, which orders the frames of a
+Argument: the number of rounds. The spot of its frames moves across the skin, which orders the frames of a
 recording."""
 
 import itertools
@@ -16,7 +16,6 @@ import h5py
 from drivers import NAME, PROGRAM, DriverTest, segments
 
 ROUNDS = int(sys.argv.pop(1))
-COLS = 48
 
 
 def spot_column(readings):
@@ -36,8 +35,7 @@ class Kills(DriverTest):
         if which == "program":
             self.recordings.append(self.folder / f"{len(self.recordings)}.h5")
         command = {
-            "driver": [self.folder / "ring_driver", frames, "--rate", "500", "--seconds", "3600",
-                       "--rows", "32", "--cols", str(COLS)],
+            "driver": self.relay(frames, 500),
             "program": [PROGRAM, "stream", f"shm:{frames}", "--to", f"shm:{forces}", "--record",
                         str(self.recordings[-1] if self.recordings else ""), "-q"],
             "reader": [self.folder / "control_loop", forces, "--seconds", "3600"],
