@@ -193,17 +193,22 @@ std::string layout_text(const Diagnosis& found) {
 }
 
 std::string tested_text(const Diagnosis& found) {
-  const auto order = [](bool tested) { return tested ? "tested" : "not shown by these frames"; };
-  const auto ghosts = [](const std::optional<double>& percent) {
-    return percent ? fixed(*percent, 1) + " %" : std::string("not shown");
-  };
-  const std::uint64_t sensels = std::uint64_t{found.rows} * found.cols;
-  return fmt::format(
-      "{} of {} sensels ({} not touched: unknown)\n             order of rows {}, of columns {}; "
-      "crosstalk along rows {}, along columns {}",
-      grouped(sensels - found.untouched.size()), grouped(sensels), grouped(found.untouched.size()),
-      order(found.row_order_tested), order(found.column_order_tested),
-      ghosts(found.row_crosstalk_percent), ghosts(found.column_crosstalk_percent));
+  const auto order = [](bool tested) { return tested ? "tested" : "not tested: sweep a finger"; };
+  const std::uint64_t differ = std::uint64_t{found.rows} * found.cols - found.never_differ;
+  std::string text =
+      fmt::format("{} of {}", grouped(differ - found.untouched.size()), counted(differ, "sensel"));
+  if (!found.touch_here.empty()) {
+    std::vector<std::string> places;
+    for (const SenselPlace& place : found.touch_here) places.push_back(place_text(place));
+    text += fmt::format("; not tested, touch here: {}{}", fmt::join(places, ", "),
+                        places.size() < found.untouched.size() ? " and around" : "");
+  }
+  if (found.never_differ > 0) {
+    text += fmt::format("; {} more never {}", grouped(found.never_differ),
+                        found.never_differ == 1 ? "differs" : "differ");
+  }
+  return text + fmt::format("\n             order of rows {}, of columns {}",
+                            order(found.row_order_tested), order(found.column_order_tested));
 }
 
 void print(const DoctorOptions& options, const Diagnosis& found) {
@@ -213,8 +218,7 @@ void print(const DoctorOptions& options, const Diagnosis& found) {
   fmt::print("  idle       {} counts, noise {}\n", rounded(found.idle_counts),
              worst_text(found.noise));
   if (found.drift) {
-    fmt::print("  drift      {}{}\n", worst_text(*found.drift),
-               found.timing.rate_hz ? " per minute" : " over all frames");
+    fmt::print("  drift      {} per minute\n", worst_text(*found.drift));
   }
   fmt::print("  load       {}\n", load_text(found));
   fmt::print("  layout     {}\n", layout_text(found));

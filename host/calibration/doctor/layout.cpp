@@ -18,8 +18,6 @@ constexpr double kAboveNoise = 4;
 constexpr double kPillarRatio = 0.4;
 constexpr double kSenselRatio = 0.5;
 constexpr std::size_t kLeastGroups = 200;
-constexpr std::size_t kLeastPairs = 4;
-constexpr double kLeastDifferent = 0.05;
 constexpr double kLeastGroupLoad = 0.3;  ///< of a group's most loaded sensel, in the usual peak
 
 /// Sums over frames of a group of four sensels: of the squares of its parity, of its load and of
@@ -85,21 +83,6 @@ std::optional<double> parity_ratio(const Examination& seen) {
   return usual > 0 ? std::optional(std::sqrt(median(powers[0]) / usual)) : std::nullopt;
 }
 
-/// Difference of lines that may run under the same pillars, relative to that of others.
-std::optional<double> pair_ratio(const Examination& seen) {
-  std::array<std::vector<double>, 2> differences;  // of the same pillars, of others
-  for (const LineAxis axis : {LineAxis::rows, LineAxis::columns}) {
-    const auto found = neighbour_differences(seen, axis);
-    for (std::size_t line = 0; line < found.size(); ++line) {
-      if (found[line]) differences.at(line % 2).push_back(*found[line]);
-    }
-  }
-  auto& [same, others] = differences;
-  if (same.size() < kLeastPairs || others.size() < kLeastPairs) return std::nullopt;
-  const double usual = median(others);
-  return usual > kLeastDifferent ? std::optional(median(same) / usual) : std::nullopt;
-}
-
 }  // namespace
 
 bool may_have_pillars(const Diagnosis& found) {
@@ -107,11 +90,8 @@ bool may_have_pillars(const Diagnosis& found) {
 }
 
 void find_layout(const Examination& seen, Diagnosis& found) {
-  const std::optional<double> parity = parity_ratio(seen);
-  const std::optional<double> pairs = pair_ratio(seen);
-  if (!parity && !pairs) return;
-  found.layout_ratio =
-      std::min(parity.value_or(pairs.value_or(1)), pairs.value_or(parity.value_or(1)));
+  found.layout_ratio = parity_ratio(seen);
+  if (!found.layout_ratio) return;
   if (*found.layout_ratio < kPillarRatio) found.layout = ArrayLayout::pillars;
   if (*found.layout_ratio > kSenselRatio) found.layout = ArrayLayout::sensels;
 }

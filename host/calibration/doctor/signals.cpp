@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,6 +24,13 @@ constexpr double kAtRest = 0.35;
 constexpr double kMostDrift = 0.3;
 constexpr std::size_t kLeastRest = 10;  ///< frames
 constexpr double kOddSpans = 0.01;      ///< share of the sensels
+/// Sudden change of a load, in the range of its sensel and in noise.
+constexpr double kSudden = 0.25;
+constexpr double kSuddenNoise = 8;
+/// Multiples of the usual noise, and of that around, of sensels that do not tell of load.
+constexpr double kUnsteady = 7;
+constexpr double kUnsteadyAround = 5;
+constexpr double kLeastDriftSeconds = 30;  ///< of frames without load
 /// Deviation of a rounded number.
 const double kRounding = 1 / std::sqrt(12.0);
 
@@ -45,18 +53,35 @@ std::size_t window_count(std::size_t frames) {
   return std::clamp<std::size_t>(frames / kLeastWindowFrames, 1, kWindows);
 }
 
-/// The lower quartile of the windows' differences from frame to frame.
+/// The lower quartile of the windows' standard deviations: slow noise and hum count, too.
 double noise_of_windows(const std::vector<float>& readings) {
   std::vector<double> squares;
   const std::size_t count = window_count(readings.size());
   for (std::size_t w = 0; w < count; ++w) {
     const std::size_t first = w * readings.size() / count;
     const std::size_t end = (w + 1) * readings.size() / count;
+    double mean = 0;
     double sum = 0;
-    for (std::size_t n = first + 1; n < end; ++n) sum += std::pow(readings[n] - readings[n - 1], 2);
-    if (end - first >= 2) squares.push_back(sum / (2.0 * static_cast<double>(end - first - 1)));
+    for (std::size_t n = first; n < end; ++n) {
+      const double step = readings[n] - mean;
+      mean += step / static_cast<double>(n - first + 1);
+      sum += step * (readings[n] - mean);
+    }
+    if (end - first >= 2) squares.push_back(sum / static_cast<double>(end - first - 1));
   }
   return squares.empty() ? 0 : std::sqrt(quantile(squares, 0.25));
+}
+
+/// The largest change between means of three readings, five frames apart: loads come and go so
+/// fast, drift does not.
+double largest_step(const std::vector<float>& readings) {
+  double largest = 0;
+  for (std::size_t n = 0; n + 8 <= readings.size(); ++n) {
+    double step = 0;
+    for (std::size_t k = 0; k < 3; ++k) step += readings[n + 5 + k] - readings[n + k];
+    largest = std::max(largest, std::abs(step) / 3);
+  }
+  return largest;
 }
 
 /// Median slope between windows, counts per window.
@@ -79,7 +104,7 @@ SenselFigure figure_of(const Examination& seen, const std::vector<float>& values
     if (seen.constant[i] == 0) varying.push_back(values[i]);
   }
   SenselFigure figure;
-  if (varying.empty()) return figure;
+  if (varying.empty()) varying = values;
   figure.median = median(varying);
   double farthest = -1;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -121,23 +146,25 @@ double seconds_per_frame(const KeptFrames& kept) {
 void find_noisy(Examination& seen) {
   std::vector<float> around;
   for (std::size_t i = 0; i < seen.noise.size(); ++i) {
-    if (seen.noise[i] <= kNoisy * seen.typical_noise) continue;
+    if (seen.noise[i] <= kUnsteady * seen.typical_noise) continue;
     around.clear();
     for (const std::size_t n : Neighbours(seen.statistics.skin(), i).all()) {
       if (seen.constant[n] == 0) around.push_back(seen.noise[n]);
     }
-    seen.noisy[i] = around.empty() || seen.noise[i] > kNoisy * median(around) ? 1 : 0;
+    seen.noisy[i] = around.empty() || seen.noise[i] > kUnsteadyAround * median(around) ? 1 : 0;
   }
 }
 
 /// Noise of the sensels, and the range of what they read.
 void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   const std::size_t sensels = seen.kept.sensels();
+  std::vector<double> steps(sensels);
   SenselReadings readings;
   for (std::size_t i = 0; i < sensels; ++i) {
     if (seen.constant[i] != 0) continue;
     seen.kept.read_sensel(i, readings);
     if (readings.values.empty()) continue;
+    steps[i] = largest_step(readings.values);
     seen.noise[i] = static_cast<float>(noise_of_windows(readings.values));
     // Without the one lowest and the one highest reading, which may be a slip.
     const auto second =
@@ -156,9 +183,19 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   find_noisy(seen);
   std::vector<double> spans;
   for (std::size_t i = 0; i < sensels; ++i) {
-    if (seen.is_steady(i)) spans.push_back(double{seen.highest[i]} - seen.lowest[i]);
+    if (!seen.is_steady(i)) continue;
+    const double span = double{seen.highest[i]} - seen.lowest[i];
+    spans.push_back(span);
+    seen.has_load =
+        seen.has_load || steps[i] > std::max(kSudden * span, kSuddenNoise * seen.noise_of(i));
   }
   if (!spans.empty()) seen.span = quantile(spans, 1 - kOddSpans);
+}
+
+/// The largest reading that may be without load, but for drift.
+double most_at_rest(const Examination& seen, std::size_t sensel) {
+  return seen.has_load ? seen.lowest[sensel] + kAtRest * seen.span
+                       : std::numeric_limits<double>::infinity();
 }
 
 /// Readings without load as a function of time: one curve for all sensels, a slope for each.
@@ -188,9 +225,9 @@ class Baseline {
            slopes_[sensel] * (place_of(frame) - place_of(0));
   }
 
-  /// Counts per kept frame.
-  [[nodiscard]] std::optional<std::vector<float>> drifts() const {
-    if (windows_ < kLeastDriftWindows) return std::nullopt;
+  /// Counts per kept frame; empty: too few frames.
+  [[nodiscard]] std::vector<float> drifts() const {
+    if (windows_ < kLeastDriftWindows) return {};
     const RestWindows curve(common_.begin(), common_.end());
     const double slope = slope_of(curve, std::vector<double>(windows_));
     std::vector<float> drifts = slopes_;
@@ -212,7 +249,7 @@ class Baseline {
     RestWindows rest(windows_);
     if (!seen_.is_steady(sensel)) return rest;
     const std::size_t frames = seen_.kept.frames();
-    const double most = seen_.lowest[sensel] + kAtRest * seen_.span;
+    const double most = most_at_rest(seen_, sensel);
     std::vector<float> part;
     for (std::size_t w = 0; w < windows_; ++w) {
       const std::size_t first = w * frames / windows_;
@@ -267,7 +304,7 @@ class Baseline {
     }
     // A curve that goes as far as loads do is load.
     const auto [least, most] = std::ranges::minmax(common_);
-    if (most - least > kMostDrift * seen_.span) common_.assign(windows_, 0);
+    if (seen_.has_load && most - least > kMostDrift * seen_.span) common_.assign(windows_, 0);
   }
 
   const Examination& seen_;
@@ -276,13 +313,13 @@ class Baseline {
   std::vector<float> slopes_;   ///< counts per window
 };
 
-void report_drift(const Examination& seen, const Baseline& baseline, Diagnosis& found) {
-  const auto drifts = baseline.drifts();
-  if (!drifts) return;
+/// Reports drift if enough frames are without load.
+void report_drift(const Examination& seen, const std::vector<float>& drifts, Diagnosis& found) {
+  const std::size_t idle = seen.kept.frames() - seen.loaded_frames;
   const double seconds = seconds_per_frame(seen.kept);
-  const double factor = (found.polarity == Polarity::falls ? -1 : 1) *
-                        (seconds > 0 ? 60 / seconds : static_cast<double>(seen.kept.frames()));
-  SenselFigure drift = figure_of(seen, *drifts);
+  if (drifts.empty() || !(seconds * static_cast<double>(idle) >= kLeastDriftSeconds)) return;
+  const double factor = (found.polarity == Polarity::falls ? -1 : 1) * 60 / seconds;
+  SenselFigure drift = figure_of(seen, drifts);
   drift.median *= factor;
   drift.worst *= factor;
   found.drift = drift;
@@ -306,7 +343,7 @@ std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline
   for (std::size_t frame = 0; frame < at_rest.size(); ++frame) {
     const auto readings = std::as_const(seen.kept).frame(frame);
     for (std::size_t i = 0; i < readings.size() && at_rest[frame] != 0; ++i) {
-      const double most = seen.lowest[i] + kAtRest * seen.span;
+      const double most = most_at_rest(seen, i);
       if (seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most) {
         at_rest[frame] = 0;
       }
@@ -329,7 +366,7 @@ void take_signals(Examination& seen, const Baseline& baseline, float sign) {
     rest.clear();
     for (std::size_t n = 0; n < readings.values.size(); ++n) {
       readings.values[n] -= static_cast<float>(baseline.of(i, readings.frames[n]));
-      const float most = seen.lowest[i] + static_cast<float>(kAtRest * seen.span);
+      const auto most = static_cast<float>(most_at_rest(seen, i));
       const bool is_rest =
           at_rest.empty() ? readings.values[n] < most : at_rest[readings.frames[n]] != 0;
       if (is_rest) rest.push_back(readings.values[n]);
@@ -365,10 +402,12 @@ LoadOfFrame load_of(const Examination& seen, std::size_t frame) {
 void find_contacts(Examination& seen, Diagnosis& found) {
   std::vector<LoadOfFrame> loads;
   std::vector<float> peaks;
+  if (!seen.has_load) return;
   for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
     loads.push_back(load_of(seen, frame));
     if (loads.back().loaded > 0) peaks.push_back(loads.back().peak);
   }
+  seen.loaded_frames = peaks.size();
   if (peaks.empty()) return;
   const double usual = quantile(peaks, 0.9);
   peaks.clear();
@@ -395,25 +434,19 @@ void find_contacts(Examination& seen, Diagnosis& found) {
 
 }  // namespace
 
-double Examination::threshold(std::size_t sensel) const {
-  return kBeyondIdleNoise * noise_of(sensel);
-}
-
-bool Examination::is_steady(std::size_t sensel) const {
-  return constant[sensel] == 0 && noisy[sensel] == 0;
-}
-
 void find_signals(Examination& seen, Diagnosis& found) {
   find_noise_and_ranges(seen, found);
-  found.polarity = find_polarity(seen);
+  if (seen.has_load) found.polarity = find_polarity(seen);
   if (found.polarity == Polarity::falls) turn_over(seen);
   const Baseline baseline(seen);
-  report_drift(seen, baseline, found);
+  const std::vector<float> drifts = baseline.drifts();
   take_signals(seen, baseline, found.polarity == Polarity::falls ? -1 : 1);
   found.idle_counts = figure_of(seen, seen.idle).median;
   found.idle_frames = found.frames;
-  find_contacts(seen, found);
+  if (found.polarity != Polarity::unknown) find_contacts(seen, found);
+  if (found.polarity == Polarity::unknown && seen.has_load) found.idle_frames = 0;
   if (seen.contacts.empty()) found.polarity = Polarity::unknown;
+  if (!seen.contacts.empty() || !seen.has_load) report_drift(seen, drifts, found);
   found.contact_counts = seen.contact_counts;
   found.contact_frames = seen.contacts.size();
 }

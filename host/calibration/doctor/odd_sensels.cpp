@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "base/quantile.h"
+#include "calibration/doctor/examination.h"
+#include "calibration/doctor/finding_text.h"
+#include "calibration/neighbours.h"
+
+namespace pillarfield {
+namespace {
+
+/// Least noise of nearly all varying sensels from which a constant reading is no chance, counts,
+/// and the frames that takes.
+constexpr double kTellingNoise = 0.35;
+constexpr double kNearlyAllNoise = 0.02;
+constexpr std::uint64_t kTellingFrames = 50;
+/// Largest share of constant sensels that stand out.
+constexpr double kFewConstant = 0.1;
+/// Distance from the usual level from which a level is another, in deviations of levels.
+constexpr double kOutOfPlace = 6;
+/// Multiple of the usual noise from which a sensel is noisy, and deviations of its logarithm.
+constexpr double kNoisier = 7;
+constexpr double kNoiseSpread = 5;
+/// Distance of a value that stands for "no sensel" from all others, in their range.
+constexpr float kClearOf = 0.5F;
+
+/// Median and deviation by quantiles; the deviation is at least `least`.
+struct UsualValue {
+  double middle = 0;
+  double deviation = 0;
+
+  UsualValue(std::vector<double> values, double least) : deviation(least) {
+    if (values.empty()) return;
+    middle = median(values);
+    for (double& value : values) value = std::abs(value - middle);
+    deviation = std::max(least, 1.4826 * median(values));
+  }
+};
+
+class OddSensels {
+ public:
+  explicit OddSensels(Examination& seen) : seen_(seen) {
+    for (std::size_t i = 0; i < seen.read.size(); ++i) {
+      if (seen.read[i].readings == 0) continue;
+      if (seen.constant[i] != 0) {
+        ++constant_[seen.read[i].lowest];
+        continue;
+      }
+      levels_.push_back(std::abs(seen.idle[i]));
+      logs_.push_back(std::log(std::max<double>(seen.noise[i], 1e-12)));
+      lowest_ = std::min(lowest_, seen.read[i].lowest);
+      highest_ = std::max(highest_, seen.read[i].highest);
+    }
+  }
+
+  void judge() {
+    seen_.verdicts.resize(seen_.read.size());
+    if (logs_.empty()) return;
+    judge_absent();
+    std::size_t constant = 0;
+    for (std::size_t i = 0; i < seen_.read.size(); ++i) constant += is_open(i) ? 1U : 0U;
+    std::vector<double> logs = logs_;
+    const bool tells = std::exp(quantile(logs, kNearlyAllNoise)) > kTellingNoise &&
+                       seen_.statistics.frames() >= kTellingFrames;
+    const double few = kFewConstant * static_cast<double>(seen_.read.size());
+    if (tells && static_cast<double>(constant) <= std::max(1.0, few)) judge_constant();
+    judge_noise();
+  }
+
+ private:
+  /// True of a constant sensel that has no verdict.
+  [[nodiscard]] bool is_open(std::size_t i) const {
+    return seen_.constant[i] != 0 && !seen_.verdicts[i];
+  }
+
+  /// No reading at all, or a value that is none: -1, or far from all others.
+  void judge_absent() {
+    const float clear = kClearOf * (highest_ - lowest_);
+    for (std::size_t i = 0; i < seen_.read.size(); ++i) {
+      if (seen_.read[i].readings == 0) {
+        seen_.verdicts[i] = SenselFault::not_a_number;
+      } else if (seen_.constant[i] != 0) {
+        const float value = seen_.read[i].lowest;
+        const bool is_clear = value < lowest_ - clear || value > highest_ + clear;
+        const bool is_none = value == -1 || constant_[value] > 1;
+        const bool can_be_rest = value == 0 || value >= static_cast<float>(seen_.full_scale);
+        if (is_none && !can_be_rest && (is_clear || (value == -1 && lowest_ >= 0))) {
+          seen_.verdicts[i] = SenselFault::absent;
+        }
+      }
+    }
+  }
+
+  /// Constant, although it would show noise as all others do. At an end of the range it may rest
+  /// beyond it, or be pressed.
+  void judge_constant() {
+    const UsualValue level(levels_, 1);
+    for (std::size_t i = 0; i < seen_.read.size(); ++i) {
+      if (!is_open(i)) continue;
+      const float value = seen_.read[i].lowest;
+      const bool is_far = std::abs(std::abs(value) - level.middle) > kOutOfPlace * level.deviation;
+      if (value > lowest_ && value < highest_) {
+        seen_.verdicts[i] = SenselFault::stuck;
+      } else if (is_far && is_alone(i)) {
+        seen_.verdicts[i] = value == 0                                     ? SenselFault::absent
+                            : value < static_cast<float>(seen_.full_scale) ? SenselFault::stuck
+                                                                           : SenselFault::saturated;
+      }
+    }
+  }
+
+  /// True if nothing presses the sensels around it for good.
+  [[nodiscard]] bool is_alone(std::size_t i) const {
+    const UsualValue level(levels_, 1);
+    for (const std::size_t n : Neighbours(seen_.statistics.skin(), i).all()) {
+      if (seen_.constant[n] != 0) continue;
+      if (std::abs(std::abs(seen_.idle[n]) - level.middle) > kOutOfPlace * level.deviation) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Far noisier than the others at the same level: load trembles, too.
+  void judge_noise() {
+    const UsualValue log(logs_, 0.1);
+    const UsualValue level(levels_, seen_.typical_noise);
+    const double least = log.middle + std::max(std::log(kNoisier), kNoiseSpread * log.deviation);
+    for (std::size_t i = 0; i < seen_.read.size(); ++i) {
+      if (seen_.constant[i] != 0 || seen_.noise[i] < 1 || std::log(seen_.noise[i]) < least)
+        continue;
+      const double beyond = std::abs(std::abs(seen_.idle[i]) - level.middle);
+      if (beyond < 3 * std::max<double>(level.deviation, seen_.noise[i] / 3)) {
+        seen_.verdicts[i] = SenselFault::noisy;
+      }
+    }
+  }
+
+  Examination& seen_;
+  std::map<float, std::size_t> constant_;  ///< number of sensels that read it always
+  std::vector<double> levels_;             ///< of sensels that vary
+  std::vector<double> logs_;               ///< of their noise
+  float lowest_ = std::numeric_limits<float>::infinity();
+  float highest_ = -std::numeric_limits<float>::infinity();
+};
+
+}  // namespace
+
+void find_odd_sensels(Examination& seen, Diagnosis& found) {
+  OddSensels(seen).judge();
+  for (const auto& [fault, verdicts] :
+       {std::pair(ArrayFault::absent, std::set{SenselFault::absent, SenselFault::not_a_number}),
+        std::pair(ArrayFault::stuck, std::set{SenselFault::stuck}),
+        std::pair(ArrayFault::saturated, std::set{SenselFault::saturated}),
+        std::pair(ArrayFault::noisy, std::set{SenselFault::noisy})}) {
+    ArrayFinding finding = {.fault = fault};
+    std::vector<double> means;
+    std::vector<double> noises;
+    for (std::size_t i = 0; i < seen.verdicts.size(); ++i) {
+      if (!seen.verdicts[i] || !verdicts.contains(*seen.verdicts[i])) continue;
+      finding.sensels.push_back(seen.place(i));
+      means.push_back(seen.read[i].mean);
+      noises.push_back(seen.noise[i] / seen.typical_noise);
+    }
+    if (finding.sensels.empty()) continue;
+    finding.figure = fault == ArrayFault::noisy ? median(noises) : median(means);
+    add(found, std::move(finding));
+  }
+  for (std::size_t i = 0; i < seen.verdicts.size(); ++i) seen.good[i] = seen.verdicts[i] ? 0 : 1;
+}
+
+}  // namespace pillarfield
