@@ -63,7 +63,7 @@ class World:
 
     def shape(self, y, x, width, flat, aspect=1.0):
         radius = np.hypot((self.y - y) / aspect, (self.x - x) * aspect) / width
-        return 1 / (1 + np.exp((radius - 1.2) / 0.12)) if flat else np.exp(-radius ** 2 / 2)
+        return 0.5 - 0.5 * np.tanh((radius - 1.2) / 0.24) if flat else np.exp(-radius ** 2 / 2)
 
     def press(self, shape, frames):
         """A touch that comes, stays and goes."""
@@ -214,6 +214,7 @@ class Faulty(World):
             self.each_noise = np.ones(self.y.shape)
             self.each_noise[row, col] = random.uniform(10, 25)
             self.noise = max(self.noise, 0.5)
+            self.rest += 25 * self.noise + 0.1 * self.peak
         elif fault == "shorted":
             self.load[line] = self.load[beside] = (self.load * self.gain)[line] + (self.load * self.gain)[beside]
             self.gain[line[1:]] = self.gain[beside[1:]] = 1
@@ -222,13 +223,18 @@ class Faulty(World):
             self.line = sorted([row, others])
             self.load[:, self.line] = self.load[:, self.line[::-1]]
         elif fault == "rest":
-            left = np.maximum.accumulate(self.load, 0)
-            up = np.cumsum(np.diff(self.load, axis=0, prepend=0) < 0, axis=0) > 0
             self.sign = random.choice([-1, 1])
-            self.load = self.load + self.sign * 0.12 * left * up * (self.load < 0.02)
-            self.rest += 0.2 * self.peak
+            follows, left = np.zeros(self.y.shape), np.zeros(self.y.shape)
+            for number, load in enumerate(self.load.copy()):
+                if self.sign > 0:  # each touch leaves a part
+                    left += 0.12 * (load - self.load[number - 1]).clip(0) if number else 0
+                else:  # the board follows its baseline
+                    follows += (load - follows) / 120
+                self.load[number] = load + left * (load < 0.02) - follows
+            self.rest += 0.5 * self.peak
         elif fault == "drift":
             self.drift = random.choice([-1, 1]) * random.uniform(0.1, 0.3) * self.peak
+            self.rest += 0.6 * self.peak
         counts = super().readings()
         if fault == "stuck":
             counts[:, row, col] = counts[:, row, col].min() if random.random() < 0.5 else np.median(counts) + 7

@@ -148,7 +148,7 @@ Diagnosis Doctor::result() {
       seen.kept.frames() * seen.kept.stride() + seen.kept.stride() < found.frames;
   seen.read.assign(statistics.sensels().begin(), statistics.sensels().end());
   if (has_dropped) seen.read = statistics_of(seen.kept, seen.full_scale);
-  for (auto* const plane : {&seen.idle, &seen.noise, &seen.lowest, &seen.highest}) {
+  for (auto* const plane : {&seen.idle, &seen.noise, &seen.jitter, &seen.lowest, &seen.highest}) {
     plane->resize(skin.sensels());
   }
   seen.touched.resize(skin.sensels());

@@ -33,6 +33,7 @@ struct Examination {
   double full_scale = 0;                    ///< counts; infinite: unknown
   std::vector<float> idle = {};             ///< reading without load, of each sensel, counts
   std::vector<float> noise = {};            ///< standard deviation of that, counts
+  std::vector<float> jitter = {};           ///< the same from frame to frame
   double typical_noise = 0;                 ///< median, at least that of rounding, counts
   std::vector<float> lowest = {};           ///< of the readings of each sensel but for one, counts
   std::vector<float> highest = {};          ///< counts
@@ -45,6 +46,7 @@ struct Examination {
   std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel
   std::vector<std::uint32_t> contacts = {};  ///< kept frames in which something touches the array
   double contact_counts = 0;                 ///< median of their largest signals
+  double usual_peak = 0;                     ///< their 90th percentile
   std::vector<std::uint32_t> touched = {};   ///< number of contacts in which a sensel is loaded
   std::vector<LinePair> shorted = {};
 

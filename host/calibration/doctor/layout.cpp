@@ -17,7 +17,8 @@ constexpr double kAboveNoise = 4;
 /// Ratios up to which groups share pillars, and from which they do not.
 constexpr double kPillarRatio = 0.4;
 constexpr double kSenselRatio = 0.5;
-constexpr std::size_t kLeastGroups = 200;
+constexpr std::size_t kLeastGroups = 200;  ///< in all frames
+constexpr std::size_t kLeastPlaces = 16;
 constexpr double kLeastGroupLoad = 0.3;  ///< of a group's most loaded sensel, in the usual peak
 
 /// Sums over frames of a group of four sensels: of the squares of its parity, of its load and of
@@ -79,6 +80,7 @@ std::optional<double> parity_ratio(const Examination& seen) {
   if (std::ranges::min(frames) < kLeastGroups || others.squares < kAboveNoise * others.noise) {
     return std::nullopt;
   }
+  if (std::min(powers[0].size(), powers[1].size()) < kLeastPlaces) return std::nullopt;
   const double usual = median(powers[1]);
   return usual > 0 ? std::optional(std::sqrt(median(powers[0]) / usual)) : std::nullopt;
 }

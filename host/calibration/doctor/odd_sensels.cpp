@@ -51,7 +51,7 @@ class OddSensels {
         continue;
       }
       levels_.push_back(std::abs(seen.idle[i]));
-      logs_.push_back(std::log(std::max<double>(seen.noise[i], 1e-12)));
+      logs_.push_back(log_jitter(i));
       lowest_ = std::min(lowest_, seen.read[i].lowest);
       highest_ = std::max(highest_, seen.read[i].highest);
     }
@@ -63,8 +63,11 @@ class OddSensels {
     judge_absent();
     std::size_t constant = 0;
     for (std::size_t i = 0; i < seen_.read.size(); ++i) constant += is_open(i) ? 1U : 0U;
-    std::vector<double> logs = logs_;
-    const bool tells = std::exp(quantile(logs, kNearlyAllNoise)) > kTellingNoise &&
+    std::vector<double> noises;
+    for (std::size_t i = 0; i < seen_.read.size(); ++i) {
+      if (seen_.constant[i] == 0) noises.push_back(seen_.noise[i]);
+    }
+    const bool tells = quantile(noises, kNearlyAllNoise) > kTellingNoise &&
                        seen_.statistics.frames() >= kTellingFrames;
     const double few = kFewConstant * static_cast<double>(seen_.read.size());
     if (tells && static_cast<double>(constant) <= std::max(1.0, few)) judge_constant();
@@ -72,6 +75,12 @@ class OddSensels {
   }
 
  private:
+  /// Logarithm of the noise from frame to frame, at least that of rounding.
+  [[nodiscard]] double log_jitter(std::size_t i) const {
+    const bool is_whole = seen_.statistics.type() != SenselType::f32;
+    return std::log(std::max<double>(seen_.jitter[i], is_whole ? 0.5 : 1e-9));
+  }
+
   /// True of a constant sensel that has no verdict.
   [[nodiscard]] bool is_open(std::size_t i) const {
     return seen_.constant[i] != 0 && !seen_.verdicts[i];
@@ -131,8 +140,7 @@ class OddSensels {
     const UsualValue level(levels_, seen_.typical_noise);
     const double least = log.middle + std::max(std::log(kNoisier), kNoiseSpread * log.deviation);
     for (std::size_t i = 0; i < seen_.read.size(); ++i) {
-      if (seen_.constant[i] != 0 || seen_.noise[i] < 1 || std::log(seen_.noise[i]) < least)
-        continue;
+      if (seen_.constant[i] != 0 || log_jitter(i) < least) continue;
       const double beyond = std::abs(std::abs(seen_.idle[i]) - level.middle);
       if (beyond < 3 * std::max<double>(level.deviation, seen_.noise[i] / 3)) {
         seen_.verdicts[i] = SenselFault::noisy;

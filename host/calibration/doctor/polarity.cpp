@@ -102,8 +102,8 @@ class Changes {
     }
     std::vector<double> levels = values_of(middles_, still_);
     const double rest = median(levels);
-    for (double& level : levels) level = std::abs(level - rest);
-    const double spread = std::max(1.4826 * median(levels), seen_.typical_noise);
+    const double spread =
+        std::max((quantile(levels, 0.98) - quantile(levels, 0.02)) / 4, seen_.typical_noise);
     double rise = 0;
     double fall = 0;
     double noise = 0;

@@ -12,8 +12,8 @@ namespace {
 constexpr float kSameTouch = 0.2F;
 /// Way of a touch's centre, in steps, from which it is at another place.
 constexpr float kOtherPlace = 0.4F;
-/// Largest response of a sensel of a dead line.
-constexpr float kDeadLine = 0.15F;
+/// Largest response of a dead line.
+constexpr double kDeadLine = 0.12;
 constexpr std::size_t kLinePlaces = 3;
 
 /// The ring around a sensel, in steps down and right modulo 2^64: opposite ones are four apart.
@@ -25,7 +25,7 @@ constexpr std::array<std::array<std::size_t, 2>, 8> kRing = {
 
 ResponseWatch::ResponseWatch(std::uint32_t rows, std::uint32_t cols, std::uint32_t step)
     : rows_(rows), cols_(cols), step_(step), sensels_(std::size_t{rows} * cols) {
-  for (std::vector<float>& each : in_line_) each.assign(sensels_.size(), -1);
+  for (std::vector<Between>& each : in_line_) each.resize(sensels_.size());
 }
 
 /// The signal at a place, 0 where it is no load; NaN where there is no good sensel.
@@ -83,10 +83,10 @@ void ResponseWatch::test_sensel(std::size_t row, std::size_t col) {
 void ResponseWatch::test_between(std::size_t sensel, LineAxis axis, float before, float behind) {
   const float weaker = std::min(before, behind);
   if (!(weaker > least_[sensel])) return;
-  const bool is_column = axis == LineAxis::columns;
-  float& most = in_line_.at(is_column ? 1 : 0)[sensel];
-  most = std::max(most, std::max(0.0F, signals_[sensel]) / weaker);
-  sensels_[sensel].sides |= (before > behind ? 1U : 2U) << (is_column ? 2U : 0U);
+  Between& between = in_line_.at(axis == LineAxis::columns ? 1 : 0)[sensel];
+  between.products += signals_[sensel] * weaker;
+  between.squares += weaker * weaker;
+  (before > behind ? between.more_before : between.more_behind) = true;
 }
 
 /// Notes where the touch around a sensel has its centre, and when it has moved.
@@ -125,15 +125,16 @@ double ResponseWatch::deviation(std::size_t sensel, double noise) const {
 ResponseWatch::Line ResponseWatch::line(LineAxis axis, std::uint32_t number) const {
   const bool is_column = axis == LineAxis::columns;
   Line line;
+  double squares = 0;
   for (std::size_t along = 0; along < (is_column ? rows_ : cols_); ++along) {
     const std::size_t i = is_column ? along * cols_ + number : number * cols_ + along;
-    const float response = in_line_.at(is_column ? 1 : 0)[i];
+    const Between& between = in_line_.at(is_column ? 1 : 0)[i];
     line.responds = line.responds || sensels_[i].is_touched;
-    if (response < 0) continue;
-    line.most = std::max(line.most, response);
-    const unsigned sides = sensels_[i].sides >> (is_column ? 2U : 0U) & 3U;
-    line.places += sides == 3 ? 2U : 1U;
+    line.response += between.products;
+    squares += between.squares;
+    line.places += (between.more_before ? 1U : 0U) + (between.more_behind ? 1U : 0U);
   }
+  if (squares > 0) line.response /= squares;
   return line;
 }
 
@@ -141,13 +142,14 @@ std::vector<std::uint32_t> ResponseWatch::dead_lines(LineAxis axis) const {
   std::vector<std::uint32_t> dead;
   for (std::uint32_t n = 0; n < (axis == LineAxis::columns ? cols_ : rows_); ++n) {
     const Line found = line(axis, n);
-    if (found.places >= kLinePlaces && found.most < kDeadLine && !found.responds) dead.push_back(n);
+    if (found.places >= kLinePlaces && found.response < kDeadLine && !found.responds)
+      dead.push_back(n);
   }
   return dead;
 }
 
 double ResponseWatch::line_response(LineAxis axis, std::uint32_t number) const {
-  return line(axis, number).most;
+  return line(axis, number).response;
 }
 
 }  // namespace pillarfield

@@ -27,7 +27,7 @@ class ResponseWatch {
   /// Rows or columns of which no sensel responds, while lines on both sides of them do at three
   /// places or more.
   [[nodiscard]] std::vector<std::uint32_t> dead_lines(LineAxis axis) const;
-  /// Largest response of a sensel of a line, relative to its neighbours.
+  /// Response of a line, relative to its neighbours.
   [[nodiscard]] double line_response(LineAxis axis, std::uint32_t line) const;
 
   /// Response of a sensel relative to the weaker of two opposite neighbours under the same touch;
@@ -44,16 +44,22 @@ class ResponseWatch {
     float squares = 0;
     float row = 0;  ///< centre of the first touch that tested it
     float col = 0;
-    std::uint32_t sides = 0;  ///< bits: between columns, between rows, more load before, behind
-    bool is_tested = false;   ///< at one place
-    bool has_moved = false;   ///< at two
+    bool is_tested = false;  ///< at one place
+    bool has_moved = false;  ///< at two
     bool is_touched = false;
   };
   /// Evidence against a line.
   struct Line {
-    float most = 0;  ///< largest response of a sensel
+    double response = 0;
     std::size_t places = 0;
     bool responds = false;
+  };
+  /// Responses of a sensel as part of a line, relative to the lines on both sides.
+  struct Between {
+    float products = 0;
+    float squares = 0;
+    bool more_before = false;  ///< some touch had more load on the line before
+    bool more_behind = false;
   };
 
   void test_sensel(std::size_t row, std::size_t col);
@@ -68,8 +74,7 @@ class ResponseWatch {
   std::span<const float> signals_;
   std::span<const float> least_;
   std::vector<Sums> sensels_;
-  /// Largest response as part of a line, between rows and between columns; -1: not tested.
-  std::array<std::vector<float>, 2> in_line_;
+  std::array<std::vector<Between>, 2> in_line_;  ///< of rows, of columns
 };
 
 }  // namespace pillarfield

@@ -21,7 +21,7 @@ constexpr double kTouchSignal = 0.25;
 constexpr float kReleased = 0.5F;
 /// Least change of a rest: in the touch, in the noise of its mean, and in the changes of sensels
 /// that were not touched.
-constexpr double kLeastOfTouch = 0.04;
+constexpr double kLeastOfTouch = 0.05;
 constexpr double kOverNoise = 6;
 constexpr double kOverOthers = 6;
 /// Releases that a sensel needs, and the share of them that must agree.
@@ -52,8 +52,8 @@ class RestSearch {
  public:
   explicit RestSearch(const Examination& seen) : seen_(seen) {
     for (std::size_t i = 0; i < seen.kept.sensels(); ++i) {
-      least_.push_back(static_cast<float>(
-          std::max(1.5 * seen.threshold(i), kTouchSignal * seen.contact_counts)));
+      least_.push_back(
+          static_cast<float>(std::max(1.5 * seen.threshold(i), kTouchSignal * seen.usual_peak)));
     }
     for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
       add(std::as_const(seen.kept).frame(frame));

@@ -16,6 +16,8 @@ namespace {
 constexpr double kShortedPower = 0.05;
 /// The same in their own power, of the first and the last line.
 constexpr double kShortedEnds = 0.01;
+/// Largest difference of shorted lines, in their signals.
+constexpr double kShortedDifference = 0.1;
 /// Difference of the lines beside a pair, in its load, of a load that tells.
 constexpr double kTellingSlope = 0.3;
 /// Different places of loads of either shape.
@@ -54,7 +56,7 @@ class PairOfLines {
       tells = tells && shape.tells() &&
               shape.difference < (are_ends() ? kShortedEnds : kShortedPower) * shape.expected;
     }
-    return tells;
+    return tells && difference() < kShortedDifference;
   }
   /// Root of the power of the difference in that of the signals.
   [[nodiscard]] double difference() const {
@@ -115,7 +117,9 @@ class PairOfLines {
     shape.expected += slope * slope;
     shape.noise += noise * noise;
     power_ += mean * mean;
-    shape.places.insert({static_cast<long>(most), std::lround(4 * slope / mean)});
+    if (along == most) {
+      shape.places.insert({static_cast<long>(along), std::lround(2 * slope / mean)});
+    }
   }
 
   const Examination& seen_;

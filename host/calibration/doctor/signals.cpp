@@ -31,8 +31,8 @@ constexpr double kSuddenNoise = 8;
 constexpr double kUnsteady = 7;
 constexpr double kUnsteadyAround = 5;
 constexpr double kLeastDriftSeconds = 30;  ///< of frames without load
-/// Deviation of a rounded number.
-const double kRounding = 1 / std::sqrt(12.0);
+/// Least deviation of a whole number: rounding and a flicker.
+constexpr double kRounding = 0.5;
 
 /// A sensel's readings without load in each window of frames, as far as there are enough of them.
 using RestWindows = std::vector<std::optional<double>>;
@@ -70,6 +70,15 @@ double noise_of_windows(const std::vector<float>& readings) {
     if (end - first >= 2) squares.push_back(sum / static_cast<double>(end - first - 1));
   }
   return squares.empty() ? 0 : std::sqrt(quantile(squares, 0.25));
+}
+
+/// Deviation from frame to frame, of most windows: load changes more slowly.
+double jitter_of(const std::vector<float>& readings) {
+  std::vector<float> changes;
+  for (std::size_t n = 1; n < readings.size(); ++n) {
+    changes.push_back(std::abs(readings[n] - readings[n - 1]));
+  }
+  return changes.empty() ? 0 : quantile(changes, 0.6) / (0.8416 * std::sqrt(2.0));
 }
 
 /// The largest change between means of three readings, five frames apart: loads come and go so
@@ -165,6 +174,7 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
     seen.kept.read_sensel(i, readings);
     if (readings.values.empty()) continue;
     steps[i] = largest_step(readings.values);
+    seen.jitter[i] = static_cast<float>(jitter_of(readings.values));
     seen.noise[i] = static_cast<float>(noise_of_windows(readings.values));
     // Without the one lowest and the one highest reading, which may be a slip.
     const auto second =
@@ -409,7 +419,7 @@ void find_contacts(Examination& seen, Diagnosis& found) {
   }
   seen.loaded_frames = peaks.size();
   if (peaks.empty()) return;
-  const double usual = quantile(peaks, 0.9);
+  const double usual = seen.usual_peak = quantile(peaks, 0.9);
   peaks.clear();
   for (std::uint32_t frame = 0; frame < loads.size(); ++frame) {
     const LoadOfFrame& load = loads[frame];
