@@ -37,7 +37,8 @@ struct Examination {
   double typical_noise = 0;                 ///< median, at least that of rounding, counts
   std::vector<float> lowest = {};           ///< of the readings of each sensel but for one, counts
   std::vector<float> highest = {};          ///< counts
-  double span = 0;                          ///< largest range of a sensel's readings, counts
+  double span = 0;                          ///< largest range of a sensel that changes fast, counts
+  std::vector<std::uint8_t> sudden = {};    ///< 1: it changes faster than drift
   bool has_load = false;                    ///< something came or went
   std::size_t loaded_frames = 0;            ///< kept frames with any load
   std::vector<std::uint8_t> constant = {};  ///< 1: the reading never changes, or there is none

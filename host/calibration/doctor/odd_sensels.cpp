@@ -25,6 +25,7 @@ constexpr double kOutOfPlace = 6;
 /// Multiple of the usual noise from which a sensel is noisy, and deviations of its logarithm.
 constexpr double kNoisier = 7;
 constexpr double kNoiseSpread = 5;
+constexpr std::size_t kCalmFrames = 20;
 /// Distance of a value that stands for "no sensel" from all others, in their range.
 constexpr float kClearOf = 0.5F;
 
@@ -50,7 +51,9 @@ class OddSensels {
         ++constant_[seen.read[i].lowest];
         continue;
       }
-      levels_.push_back(std::abs(seen.idle[i]));
+      levels_.push_back(seen.idle[i]);
+      ++ends_[seen.read[i].lowest];
+      ++ends_[seen.read[i].highest];
       logs_.push_back(log_jitter(i));
       lowest_ = std::min(lowest_, seen.read[i].lowest);
       highest_ = std::max(highest_, seen.read[i].highest);
@@ -111,7 +114,7 @@ class OddSensels {
     for (std::size_t i = 0; i < seen_.read.size(); ++i) {
       if (!is_open(i)) continue;
       const float value = seen_.read[i].lowest;
-      const bool is_far = std::abs(std::abs(value) - level.middle) > kOutOfPlace * level.deviation;
+      const bool is_far = std::abs(value - level.middle) > kOutOfPlace * level.deviation;
       if (value > lowest_ && value < highest_) {
         seen_.verdicts[i] = SenselFault::stuck;
       } else if (is_far && is_alone(i)) {
@@ -127,29 +130,51 @@ class OddSensels {
     const UsualValue level(levels_, 1);
     for (const std::size_t n : Neighbours(seen_.statistics.skin(), i).all()) {
       if (seen_.constant[n] != 0) continue;
-      if (std::abs(std::abs(seen_.idle[n]) - level.middle) > kOutOfPlace * level.deviation) {
+      if (std::abs(seen_.idle[n] - level.middle) > kOutOfPlace * level.deviation) {
         return false;
       }
     }
     return true;
   }
 
-  /// Far noisier than the others at the same level: load trembles, too.
+  /// Far noisier than the others at rest: load trembles, too, and an end of the range cuts noise.
   void judge_noise() {
     const UsualValue log(logs_, 0.1);
     const UsualValue level(levels_, seen_.typical_noise);
     const double least = log.middle + std::max(std::log(kNoisier), kNoiseSpread * log.deviation);
     for (std::size_t i = 0; i < seen_.read.size(); ++i) {
       if (seen_.constant[i] != 0 || log_jitter(i) < least) continue;
-      const double beyond = std::abs(std::abs(seen_.idle[i]) - level.middle);
-      if (beyond < 3 * std::max<double>(level.deviation, seen_.noise[i] / 3)) {
-        seen_.verdicts[i] = SenselFault::noisy;
-      }
+      const bool is_cut = ends_.at(seen_.read[i].lowest) + ends_.at(seen_.read[i].highest) > 2;
+      const double beyond = std::abs(seen_.idle[i] - level.middle);
+      if (is_cut || beyond > 3 * std::max<double>(level.deviation, seen_.jitter[i] / 3)) continue;
+      if (std::log(noise_at_rest(i)) > least) seen_.verdicts[i] = SenselFault::noisy;
     }
+  }
+
+  /// Deviation from frame to frame while nothing loads the sensels around, and half of the
+  /// readings are about rest; 0: not shown.
+  [[nodiscard]] double noise_at_rest(std::size_t i) const {
+    const Neighbours around(seen_.statistics.skin(), i);
+    std::vector<double> changes;
+    std::vector<double> signals;
+    const auto is_calm = [&](std::size_t frame) {
+      return std::ranges::none_of(around.all(), [&](std::size_t n) {
+        return std::as_const(seen_.kept).frame(frame)[n] > seen_.threshold(n);
+      });
+    };
+    for (std::size_t frame = 1; frame < seen_.kept.frames(); ++frame) {
+      if (!is_calm(frame) || !is_calm(frame - 1)) continue;
+      signals.push_back(std::as_const(seen_.kept).frame(frame)[i]);
+      changes.push_back(std::abs(signals.back() - std::as_const(seen_.kept).frame(frame - 1)[i]));
+    }
+    if (changes.size() < kCalmFrames) return 0;
+    const double noise = median(changes) / (0.6745 * std::sqrt(2.0));
+    return std::abs(median(signals)) < 2 * noise ? noise : 0;
   }
 
   Examination& seen_;
   std::map<float, std::size_t> constant_;  ///< number of sensels that read it always
+  std::map<float, std::size_t> ends_;      ///< number of sensels whose extreme it is
   std::vector<double> levels_;             ///< of sensels that vary
   std::vector<double> logs_;               ///< of their noise
   float lowest_ = std::numeric_limits<float>::infinity();

@@ -53,7 +53,7 @@ class Changes {
       if (!seen.is_steady(i)) continue;
       seen.kept.read_sensel(i, readings);
       middles_[i] = median(readings.values);
-      const bool changes = seen.highest[i] - seen.lowest[i] > least_;
+      const bool changes = seen.sudden[i] != 0 && seen.highest[i] - seen.lowest[i] > least_;
       (changes ? changing_ : still_).push_back(i);
     }
   }

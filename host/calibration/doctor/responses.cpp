@@ -33,8 +33,9 @@ struct UsualResponse {
   explicit UsualResponse(std::vector<double> responses) {
     if (responses.size() < kEnoughTested) return;
     middle = median(responses);
+    const double low = std::log(middle / std::max(quantile(responses, 0.1), 1e-3)) / 1.2816;
     for (double& each : responses) each = std::abs(std::log(std::max(each, 1e-3) / middle));
-    const double spread = std::max(kLeastSpread, 1.4826 * median(responses));
+    const double spread = std::max({kLeastSpread, 1.4826 * median(responses), low});
     far_below = middle * std::exp(-kFarBelow * spread);
   }
 };

@@ -22,14 +22,17 @@ constexpr double kSingleShare = 0.3;
 /// Share of the largest span up to which a sensel may be at rest: drift is below a quarter.
 constexpr double kAtRest = 0.35;
 constexpr double kMostDrift = 0.3;
-constexpr std::size_t kLeastRest = 10;  ///< frames
-constexpr double kOddSpans = 0.01;      ///< share of the sensels
+constexpr std::size_t kLeastRest = 10;      ///< frames
+constexpr std::size_t kLoadedAtRest = 500;  ///< one of so many sensels
+constexpr double kOddSpans = 0.01;          ///< share of the sensels
 /// Sudden change of a load, in the range of its sensel and in noise.
 constexpr double kSudden = 0.25;
 constexpr double kSuddenNoise = 8;
 /// Multiples of the usual noise, and of that around, of sensels that do not tell of load.
 constexpr double kUnsteady = 7;
 constexpr double kUnsteadyAround = 5;
+constexpr double kManyChanges = 0.6;  ///< share of the changes from frame to frame
+constexpr double kFewChanges = 0.1;
 constexpr double kLeastDriftSeconds = 30;  ///< of frames without load
 /// Least deviation of a whole number: rounding and a flicker.
 constexpr double kRounding = 0.5;
@@ -72,13 +75,26 @@ double noise_of_windows(const std::vector<float>& readings) {
   return squares.empty() ? 0 : std::sqrt(quantile(squares, 0.25));
 }
 
-/// Deviation from frame to frame, of most windows: load changes more slowly.
-double jitter_of(const std::vector<float>& readings) {
+/// Deviation from frame to frame of a share of the changes: load changes more slowly. `skipped`:
+/// readings at an end of the range, which cuts their noise.
+double jitter_of(const std::vector<float>& readings, float skipped, double share) {
   std::vector<float> changes;
   for (std::size_t n = 1; n < readings.size(); ++n) {
+    if (readings[n] == skipped || readings[n - 1] == skipped) continue;
     changes.push_back(std::abs(readings[n] - readings[n - 1]));
   }
-  return changes.empty() ? 0 : quantile(changes, 0.6) / (0.8416 * std::sqrt(2.0));
+  if (changes.size() < kLeastWindowFrames) return 0;
+  // Quantiles of a normal distribution's magnitude.
+  const double deviations = share == kManyChanges ? 0.8416 : 0.1257;
+  return quantile(changes, share) / (deviations * std::sqrt(2.0));
+}
+
+/// The reading at an end of the range that most readings have; NaN: there is none.
+float reading_at_end(const std::vector<float>& readings, float lowest, float highest) {
+  for (const float end : {lowest, highest}) {
+    if (2 * std::ranges::count(readings, end) > std::ssize(readings)) return end;
+  }
+  return std::numeric_limits<float>::quiet_NaN();
 }
 
 /// The largest change between means of three readings, five frames apart: loads come and go so
@@ -168,14 +184,26 @@ void find_noisy(Examination& seen) {
 void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   const std::size_t sensels = seen.kept.sensels();
   std::vector<double> steps(sensels);
+  seen.sudden.resize(sensels);
+  float lowest = std::numeric_limits<float>::infinity();
+  float highest = -lowest;
+  for (std::size_t i = 0; i < sensels; ++i) {
+    if (seen.constant[i] != 0) continue;
+    lowest = std::min(lowest, seen.read[i].lowest);
+    highest = std::max(highest, seen.read[i].highest);
+  }
   SenselReadings readings;
   for (std::size_t i = 0; i < sensels; ++i) {
     if (seen.constant[i] != 0) continue;
     seen.kept.read_sensel(i, readings);
     if (readings.values.empty()) continue;
     steps[i] = largest_step(readings.values);
-    seen.jitter[i] = static_cast<float>(jitter_of(readings.values));
-    seen.noise[i] = static_cast<float>(noise_of_windows(readings.values));
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    seen.jitter[i] = static_cast<float>(jitter_of(readings.values, none, kManyChanges));
+    const float end = reading_at_end(readings.values, lowest, highest);
+    seen.noise[i] = static_cast<float>(
+        std::max(noise_of_windows(readings.values),
+                 std::isnan(end) ? 0 : jitter_of(readings.values, end, kFewChanges)));
     // Without the one lowest and the one highest reading, which may be a slip.
     const auto second =
         static_cast<std::ptrdiff_t>(std::min<std::size_t>(1, readings.values.size() - 1));
@@ -195,9 +223,10 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   for (std::size_t i = 0; i < sensels; ++i) {
     if (!seen.is_steady(i)) continue;
     const double span = double{seen.highest[i]} - seen.lowest[i];
+    if (steps[i] < std::max(kSudden * span, kSuddenNoise * seen.noise_of(i))) continue;
+    seen.sudden[i] = 1;
+    seen.has_load = true;
     spans.push_back(span);
-    seen.has_load =
-        seen.has_load || steps[i] > std::max(kSudden * span, kSuddenNoise * seen.noise_of(i));
   }
   if (!spans.empty()) seen.span = quantile(spans, 1 - kOddSpans);
 }
@@ -352,12 +381,12 @@ std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline
   std::size_t count = 0;
   for (std::size_t frame = 0; frame < at_rest.size(); ++frame) {
     const auto readings = std::as_const(seen.kept).frame(frame);
-    for (std::size_t i = 0; i < readings.size() && at_rest[frame] != 0; ++i) {
+    std::size_t loaded = 0;
+    for (std::size_t i = 0; i < readings.size(); ++i) {
       const double most = most_at_rest(seen, i);
-      if (seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most) {
-        at_rest[frame] = 0;
-      }
+      loaded += seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most ? 1U : 0U;
     }
+    at_rest[frame] = kLoadedAtRest * loaded <= readings.size() ? 1 : 0;
     count += at_rest[frame];
   }
   if (count < kLeastRest) at_rest.clear();
