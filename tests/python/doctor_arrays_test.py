@@ -229,12 +229,13 @@ class Faulty(World):
                 if self.sign > 0:  # each touch leaves a part
                     left += 0.12 * (load - self.load[number - 1]).clip(0) if number else 0
                 else:  # the board follows its baseline
-                    follows += (load - follows) / 120
+                    follows += (load - follows) / 200
                 self.load[number] = load + left * (load < 0.02) - follows
             self.rest += 0.5 * self.peak
         elif fault == "drift":
             self.drift = random.choice([-1, 1]) * random.uniform(0.1, 0.3) * self.peak
             self.rest += 0.6 * self.peak
+        self.rest = self.rest + abs(self.drift)
         counts = super().readings()
         if fault == "stuck":
             counts[:, row, col] = counts[:, row, col].min() if random.random() < 0.5 else np.median(counts) + 7

@@ -144,11 +144,17 @@ class OddSensels {
     const double least = log.middle + std::max(std::log(kNoisier), kNoiseSpread * log.deviation);
     for (std::size_t i = 0; i < seen_.read.size(); ++i) {
       if (seen_.constant[i] != 0 || log_jitter(i) < least) continue;
-      const bool is_cut = ends_.at(seen_.read[i].lowest) + ends_.at(seen_.read[i].highest) > 2;
+      const bool is_cut = is_shared_end(seen_.read[i].lowest, lowest_) ||
+                          is_shared_end(seen_.read[i].highest, highest_);
       const double beyond = std::abs(seen_.idle[i] - level.middle);
       if (is_cut || beyond > 3 * std::max<double>(level.deviation, seen_.jitter[i] / 3)) continue;
       if (std::log(noise_at_rest(i)) > least) seen_.verdicts[i] = SenselFault::noisy;
     }
+  }
+
+  /// True if a sensel's extreme is that of the array, and of another sensel.
+  [[nodiscard]] bool is_shared_end(float extreme, float end) const {
+    return extreme == end && ends_.at(extreme) > 1;
   }
 
   /// Deviation from frame to frame while nothing loads the sensels around, and half of the

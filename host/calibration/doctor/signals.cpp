@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
@@ -21,6 +22,7 @@ constexpr std::size_t kLeastLoaded = 3;
 constexpr double kSingleShare = 0.3;
 /// Share of the largest span up to which a sensel may be at rest: drift is below a quarter.
 constexpr double kAtRest = 0.35;
+constexpr double kRestNoise = 7;  ///< range of the noise, in deviations
 constexpr double kMostDrift = 0.3;
 constexpr std::size_t kLeastRest = 10;      ///< frames
 constexpr std::size_t kLoadedAtRest = 500;  ///< one of so many sensels
@@ -233,8 +235,11 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
 
 /// The largest reading that may be without load, but for drift.
 double most_at_rest(const Examination& seen, std::size_t sensel) {
-  return seen.has_load ? seen.lowest[sensel] + kAtRest * seen.span
-                       : std::numeric_limits<double>::infinity();
+  if (!seen.has_load) return std::numeric_limits<double>::infinity();
+  const double most = kAtRest * seen.span;
+  const double range = double{seen.highest[sensel]} - seen.lowest[sensel];
+  const double noise = std::min(most, kRestNoise * seen.noise_of(sensel));
+  return seen.lowest[sensel] + (seen.sudden[sensel] != 0 ? std::max(kAtRest * range, noise) : most);
 }
 
 /// Readings without load as a function of time: one curve for all sensels, a slope for each.
