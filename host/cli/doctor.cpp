@@ -125,7 +125,7 @@ std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
   if (found.is_no_force()) return "";
   const std::string source = quoted(options.source);
   const std::string falling = found.polarity == Polarity::falls ? " --falling" : "";
-  const std::string layout = found.layout == ArrayLayout::pillars ? " --layout pillars" : "";
+  const std::string layout = found.layout == SkinLayout::pillars ? " --layout pillars" : "";
   if (is_live_source(options.source)) {
     if (found.contact_frames == 0) return fmt::format("pillarfield doctor {} --seconds 30", source);
     return fmt::format("pillarfield stream {}{}{} --tare 2 --record recording.h5", source, layout,
@@ -182,16 +182,6 @@ std::string load_text(const Diagnosis& found) {
   return text;
 }
 
-std::string layout_text(const Diagnosis& found) {
-  if (!found.layout_ratio) return "undecidable: too little load";
-  const std::string figure =
-      fmt::format("groups of 2 x 2 differ from a shared load by {:.2f} of what other groups do",
-                  *found.layout_ratio);
-  return fmt::format("{} ({})",
-                     found.layout == ArrayLayout::unknown ? "undecidable" : name_of(found.layout),
-                     figure);
-}
-
 std::string tested_text(const Diagnosis& found) {
   const auto order = [](bool tested) { return tested ? "tested" : "not tested: sweep a finger"; };
   const std::uint64_t differ = std::uint64_t{found.rows} * found.cols - found.never_differ;
@@ -221,7 +211,6 @@ void print(const DoctorOptions& options, const Diagnosis& found) {
     fmt::print("  drift      {} per minute\n", worst_text(*found.drift));
   }
   fmt::print("  load       {}\n", load_text(found));
-  fmt::print("  layout     {}\n", layout_text(found));
   fmt::print("  tested     {}\n", tested_text(found));
   for (const ArrayFinding& finding : found.findings) fmt::print("  ! {}\n", finding.text);
   if (found.findings.empty()) fmt::print("  Nothing wrong was found.\n");

@@ -54,7 +54,6 @@ nlohmann::ordered_json facts_of(const Diagnosis& found) {
                 {"idle_frames", found.idle_frames},
                 {"clipped", found.clipped},
                 {"layout", name_of(found.layout)},
-                {"layout_ratio", fact_of(found.layout_ratio)},
                 {"row_order_tested", found.row_order_tested},
                 {"column_order_tested", found.column_order_tested},
                 {"untouched", found.untouched},

@@ -131,6 +131,7 @@ Diagnosis Doctor::result() {
   found.rows = skin.rows;
   found.cols = skin.cols;
   found.type = statistics.type();
+  found.layout = skin.layout;
   found.frames = statistics.frames();
   found.kept = state_->kept.frames();
   found.timing = timing_of(state_->times);
@@ -161,7 +162,6 @@ Diagnosis Doctor::result() {
   find_signals(seen, found);
   find_odd_sensels(seen, found);
   if (!found.is_no_force()) {
-    find_layout(seen, found);
     find_shorts(seen, found);
     find_line_orders(seen, found);
     find_ghosts(seen, found);

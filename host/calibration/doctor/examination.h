@@ -77,9 +77,6 @@ struct Examination {
 /// Direction of readings under load: loads are local and large, drift and offsets common and slow.
 [[nodiscard]] Polarity find_polarity(const Examination& seen);
 
-/// True if the layout is pillars, or might be.
-[[nodiscard]] bool may_have_pillars(const Diagnosis& found);
-
 // Each step writes what it finds into the examination and into the diagnosis, in this order. Each
 // finding is a hypothesis with an exposure that its test needs; without it nothing is said.
 
@@ -89,8 +86,6 @@ void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis
 void find_signals(Examination& seen, Diagnosis& found);
 /// Absent, stuck, saturated and noisy sensels, by the readings of each; they are not good after it.
 void find_odd_sensels(Examination& seen, Diagnosis& found);
-/// The layout: pillars if groups of 2 x 2 sensels share their loads.
-void find_layout(const Examination& seen, Diagnosis& found);
 /// Dead and weak sensels and dead lines, by their neighbours, and what nothing tested.
 void find_responses(Examination& seen, Diagnosis& found);
 /// Two lines with the same signals.

@@ -119,11 +119,6 @@ const char* name_of(Polarity polarity) {
   return polarity == Polarity::rises ? "rises" : "falls";
 }
 
-const char* name_of(ArrayLayout layout) {
-  if (layout == ArrayLayout::unknown) return "unknown";
-  return layout == ArrayLayout::pillars ? "pillars" : "sensels";
-}
-
 bool is_of_rows(ArrayFault fault) {
   return fault == ArrayFault::dead_row || fault == ArrayFault::shorted_rows ||
          fault == ArrayFault::row_order;

@@ -73,7 +73,7 @@ void find_two_values(const Examination& seen, Diagnosis& found) {
   const double low = *values.begin();
   const double high = *values.rbegin();
   // Noise without load takes two neighbouring values, too.
-  if (high - low <= 1 && low != 0 && seen.statistics.type() != SenselType::f32) return;
+  if (high - low <= 1) return;
   report_odd(
       found, ArrayFault::two_values, high,
       fmt::format("Two values: sensels read {} or {}, which shows contact, not force; record "

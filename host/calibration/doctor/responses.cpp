@@ -40,8 +40,8 @@ struct UsualResponse {
   }
 };
 
-ResponseWatch watch_responses(const Examination& seen, const Diagnosis& found) {
-  ResponseWatch watch(seen.rows, seen.cols, may_have_pillars(found) ? 2 : 1);
+ResponseWatch watch_responses(const Examination& seen) {
+  ResponseWatch watch(seen.rows, seen.cols, seen.statistics.skin().has_pillars() ? 2 : 1);
   std::vector<float> least(seen.kept.sensels());
   for (std::size_t i = 0; i < least.size(); ++i) {
     least[i] =
@@ -92,7 +92,7 @@ std::vector<SenselPlace> some_of(const std::vector<SenselPlace>& places, const E
 }  // namespace
 
 void find_responses(Examination& seen, Diagnosis& found) {
-  const ResponseWatch watch = watch_responses(seen, found);
+  const ResponseWatch watch = watch_responses(seen);
   find_dead_lines(seen, watch, LineAxis::rows, found);
   find_dead_lines(seen, watch, LineAxis::columns, found);
   std::vector<double> responses;

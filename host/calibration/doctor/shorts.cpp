@@ -133,7 +133,7 @@ class PairOfLines {
 }  // namespace
 
 void find_shorts(Examination& seen, Diagnosis& found) {
-  if (may_have_pillars(found)) return;
+  if (seen.statistics.skin().has_pillars()) return;
   for (const LineAxis axis : {LineAxis::rows, LineAxis::columns}) {
     const auto lines = static_cast<std::uint32_t>(seen.lines(axis));
     if (lines < 3) continue;

@@ -18,13 +18,6 @@ namespace pillarfield {
 /// The direction of readings under load.
 enum class Polarity : std::uint8_t { rises, falls, unknown };
 
-/// The structure on the sensels, as the readings show it.
-enum class ArrayLayout : std::uint8_t {
-  pillars,  ///< groups of 2 x 2 sensels share the load of a pillar
-  sensels,  ///< each sensel is loaded by itself
-  unknown,  ///< nothing decides it
-};
-
 /// A fault of an array.
 enum class ArrayFault : std::uint8_t {
   absent,              ///< sensels without a reading, or that always read 0 where all others do not
@@ -53,7 +46,6 @@ enum class ArrayFault : std::uint8_t {
 /// "absent", "dead", "dead row", ...
 [[nodiscard]] const char* name_of(ArrayFault fault);
 [[nodiscard]] const char* name_of(Polarity polarity);
-[[nodiscard]] const char* name_of(ArrayLayout layout);
 
 /// A place, [row, col]; rows and columns count from 0.
 using SenselPlace = std::pair<std::uint32_t, std::uint32_t>;
@@ -119,11 +111,8 @@ struct Diagnosis {
   std::vector<SenselPlace> untouched = {};   ///< sensels that differ, but nothing tested
   std::vector<SenselPlace> touch_here = {};  ///< a few of these, far apart
   std::uint64_t never_differ = 0;            ///< sensels without two different readings
-  ArrayLayout layout = ArrayLayout::unknown;
-  /// Disagreement of sensels that may share a pillar, relative to that of others; around 1 for bare
-  /// sensels.
-  std::optional<double> layout_ratio = {};
-  bool row_order_tested = false;  ///< a small contact swept over most rows
+  SkinLayout layout = SkinLayout::sensels;   ///< as the frames state it
+  bool row_order_tested = false;             ///< a small contact swept over most rows
   bool column_order_tested = false;
   std::vector<ArrayFinding> findings = {};
   std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel; unset: may be sound
