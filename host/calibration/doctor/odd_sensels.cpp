@@ -112,7 +112,7 @@ class OddSensels {
   void judge_constant() {
     const UsualValue level(levels_, 1);
     for (std::size_t i = 0; i < seen_.read.size(); ++i) {
-      if (!is_open(i)) continue;
+      if (!is_open(i) || is_in_constant_line(i)) continue;
       const float value = seen_.read[i].lowest;
       const bool is_far = std::abs(value - level.middle) > kOutOfPlace * level.deviation;
       if (value > lowest_ && value < highest_) {
@@ -123,6 +123,20 @@ class OddSensels {
                                                                            : SenselFault::saturated;
       }
     }
+  }
+
+  /// True if all of a row or column is constant: touches beside it show whether it is dead.
+  [[nodiscard]] bool is_in_constant_line(std::size_t i) const {
+    const auto [row, col] = seen_.place(i);
+    bool is_row = true;
+    bool is_column = true;
+    for (std::size_t n = 0; n < seen_.cols; ++n) {
+      is_row = is_row && seen_.constant[seen_.sensel(LineAxis::rows, row, n)] != 0;
+    }
+    for (std::size_t n = 0; n < seen_.rows; ++n) {
+      is_column = is_column && seen_.constant[seen_.sensel(LineAxis::columns, col, n)] != 0;
+    }
+    return is_row || is_column;
   }
 
   /// True if nothing presses the sensels around it for good.
