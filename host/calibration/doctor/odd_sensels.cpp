@@ -161,9 +161,19 @@ class OddSensels {
       const bool is_cut = is_shared_end(seen_.read[i].lowest, lowest_) ||
                           is_shared_end(seen_.read[i].highest, highest_);
       const double beyond = std::abs(seen_.idle[i] - level.middle);
-      if (is_cut || beyond > 3 * std::max<double>(level.deviation, seen_.jitter[i] / 3)) continue;
+      if (is_cut || trembles_around(i, log.middle) ||
+          beyond > 3 * std::max<double>(level.deviation, seen_.jitter[i] / 3))
+        continue;
       if (std::log(noise_at_rest(i)) > least) seen_.verdicts[i] = SenselFault::noisy;
     }
+  }
+
+  /// True if a load that trembles may cover this sensel and one around it.
+  [[nodiscard]] bool trembles_around(std::size_t i, double usual_log) const {
+    const Neighbours around(seen_.statistics.skin(), i);
+    return std::ranges::any_of(around.all(), [&](std::size_t n) {
+      return seen_.constant[n] == 0 && log_jitter(n) > usual_log + std::log(kNoisier);
+    });
   }
 
   /// True if a sensel's extreme is that of the array, and of another sensel.
