@@ -35,6 +35,7 @@ constexpr double kUnsteady = 7;
 constexpr double kUnsteadyAround = 5;
 constexpr double kManyChanges = 0.6;  ///< share of the changes from frame to frame
 constexpr double kFewChanges = 0.1;
+constexpr double kMostOfJitter = 3;        ///< slow noise, in that from frame to frame
 constexpr double kLeastDriftSeconds = 30;  ///< of frames without load
 /// Least deviation of a whole number: rounding and a flicker.
 constexpr double kRounding = 0.5;
@@ -107,6 +108,11 @@ double largest_step(const std::vector<float>& readings) {
     double step = 0;
     for (std::size_t k = 0; k < 3; ++k) step += readings[n + 5 + k] - readings[n + k];
     largest = std::max(largest, std::abs(step) / 3);
+  }
+  // A jump at the first frames, too, if it stays.
+  for (std::size_t n = 0; n + 4 <= readings.size() && n < 3; ++n) {
+    const auto [low, high] = std::minmax({readings[n + 1], readings[n + 2], readings[n + 3]});
+    largest = std::max<double>({largest, low - readings[n], readings[n] - high});
   }
   return largest;
 }
@@ -203,9 +209,10 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
     const float none = std::numeric_limits<float>::quiet_NaN();
     seen.jitter[i] = static_cast<float>(jitter_of(readings.values, none, kManyChanges));
     const float end = reading_at_end(readings.values, lowest, highest);
+    double noise = noise_of_windows(readings.values);
+    if (seen.jitter[i] > 0) noise = std::min(noise, kMostOfJitter * seen.jitter[i]);
     seen.noise[i] = static_cast<float>(
-        std::max(noise_of_windows(readings.values),
-                 std::isnan(end) ? 0 : jitter_of(readings.values, end, kFewChanges)));
+        std::max(noise, std::isnan(end) ? 0 : jitter_of(readings.values, end, kFewChanges)));
     // Without the one lowest and the one highest reading, which may be a slip.
     const auto second =
         static_cast<std::ptrdiff_t>(std::min<std::size_t>(1, readings.values.size() - 1));
