@@ -125,7 +125,7 @@ std::string next_command(const DoctorOptions& options, const Diagnosis& found) {
   if (found.is_no_force()) return "";
   const std::string source = quoted(options.source);
   const std::string falling = found.polarity == Polarity::falls ? " --falling" : "";
-  const std::string layout = found.layout == ArrayLayout::pillars ? " --layout pillars" : "";
+  const std::string layout = found.layout == SkinLayout::pillars ? " --layout pillars" : "";
   if (is_live_source(options.source)) {
     if (found.contact_frames == 0) return fmt::format("pillarfield doctor {} --seconds 30", source);
     return fmt::format("pillarfield stream {}{}{} --tare 2 --record recording.h5", source, layout,
@@ -182,28 +182,23 @@ std::string load_text(const Diagnosis& found) {
   return text;
 }
 
-std::string layout_text(const Diagnosis& found) {
-  if (!found.layout_ratio) return "undecidable: too little load";
-  const std::string figure =
-      fmt::format("groups of 2 x 2 differ from a shared load by {:.2f} of what other groups do",
-                  *found.layout_ratio);
-  return fmt::format("{} ({})",
-                     found.layout == ArrayLayout::unknown ? "undecidable" : name_of(found.layout),
-                     figure);
-}
-
 std::string tested_text(const Diagnosis& found) {
-  const auto order = [](bool tested) { return tested ? "tested" : "not shown by these frames"; };
-  const auto ghosts = [](const std::optional<double>& percent) {
-    return percent ? fixed(*percent, 1) + " %" : std::string("not shown");
-  };
-  const std::uint64_t sensels = std::uint64_t{found.rows} * found.cols;
-  return fmt::format(
-      "{} of {} sensels ({} not touched: unknown)\n             order of rows {}, of columns {}; "
-      "crosstalk along rows {}, along columns {}",
-      grouped(sensels - found.untouched.size()), grouped(sensels), grouped(found.untouched.size()),
-      order(found.row_order_tested), order(found.column_order_tested),
-      ghosts(found.row_crosstalk_percent), ghosts(found.column_crosstalk_percent));
+  const auto order = [](bool tested) { return tested ? "tested" : "not tested: sweep a finger"; };
+  const std::uint64_t differ = std::uint64_t{found.rows} * found.cols - found.never_differ;
+  std::string text =
+      fmt::format("{} of {}", grouped(differ - found.untouched.size()), counted(differ, "sensel"));
+  if (!found.touch_here.empty()) {
+    std::vector<std::string> places;
+    for (const SenselPlace& place : found.touch_here) places.push_back(place_text(place));
+    text += fmt::format("; not tested, touch here: {}{}", fmt::join(places, ", "),
+                        places.size() < found.untouched.size() ? " and around" : "");
+  }
+  if (found.never_differ > 0) {
+    text += fmt::format("; {} more never {}", grouped(found.never_differ),
+                        found.never_differ == 1 ? "differs" : "differ");
+  }
+  return text + fmt::format("\n             order of rows {}, of columns {}",
+                            order(found.row_order_tested), order(found.column_order_tested));
 }
 
 void print(const DoctorOptions& options, const Diagnosis& found) {
@@ -213,11 +208,9 @@ void print(const DoctorOptions& options, const Diagnosis& found) {
   fmt::print("  idle       {} counts, noise {}\n", rounded(found.idle_counts),
              worst_text(found.noise));
   if (found.drift) {
-    fmt::print("  drift      {}{}\n", worst_text(*found.drift),
-               found.timing.rate_hz ? " per minute" : " over all frames");
+    fmt::print("  drift      {} per minute\n", worst_text(*found.drift));
   }
   fmt::print("  load       {}\n", load_text(found));
-  fmt::print("  layout     {}\n", layout_text(found));
   fmt::print("  tested     {}\n", tested_text(found));
   for (const ArrayFinding& finding : found.findings) fmt::print("  ! {}\n", finding.text);
   if (found.findings.empty()) fmt::print("  Nothing wrong was found.\n");

@@ -7,6 +7,7 @@
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/status.h"
+#include "pipeline/line_check.h"
 #include "pipeline/parity_check.h"
 
 namespace pillarfield {
@@ -36,7 +37,8 @@ std::string coverage_words(double share, bool has_tare, SkinLayout layout) {
 ReadingCheck::ReadingCheck(const SolverPlan& plan)
     : plan_(plan),
       present_(plan.skin.elements() - count_absent_elements(plan.calibration, plan.skin)),
-      parity_(std::make_shared<ParityCheck>(plan)) {}
+      parity_(std::make_shared<ParityCheck>(plan)),
+      lines_(std::make_shared<LineCheck>(plan)) {}
 
 void ReadingCheck::append(const SolvedFrame& frame) {
   const std::uint64_t touched = count_in_contact(frame.forces.status);
@@ -51,6 +53,7 @@ void ReadingCheck::append(const SolvedFrame& frame) {
       static_cast<double>(touched) <= kHardlyAny * static_cast<double>(present_);
   if (is_nearly_idle && frame.readings.data != nullptr) look_at(frame.readings);
   if (frame.readings.data != nullptr) parity_->add(frame.readings);
+  if (frame.readings.data != nullptr && touched > 0) lines_->add(frame.readings);
 }
 
 void ReadingCheck::look_at(const FrameView& readings) {
@@ -109,6 +112,7 @@ std::vector<std::string> ReadingCheck::warnings() const {
         sunken_frames_, frames_));
   }
   for (std::string& sentence : parity_->warnings(false)) sentences.push_back(std::move(sentence));
+  for (std::string& sentence : lines_->warnings()) sentences.push_back(std::move(sentence));
   if (share >= kCovered) {
     sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));
   }

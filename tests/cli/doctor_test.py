@@ -45,27 +45,6 @@ class Pad:
         self.load += force[:, None, None] * bell * ragged * self.gain
         return self
 
-    def press(self, presses, width):
-        """Single presses, one after the other."""
-        for index in range(presses):
-            began, ended = (index + np.array([0.2, 0.8])) * self.frames / presses
-            row, col = self.random.uniform(0, [ROWS - 1, COLS - 1])
-            bell = shape_of(ROWS, [row], width)[0][:, None] * shape_of(COLS, [col], width)[0]
-            bell *= 1 + 0.15 * self.random.normal(size=bell.shape)
-            self.load[int(began):int(ended)] += bell * self.gain
-        return self
-
-    def lie(self):
-        """A body: a flat contact over a third of the pad that breathes and turns once."""
-        rows, cols = np.mgrid[0:ROWS, 0:COLS]
-        for began, ended in ((0.1, 0.5), (0.6, 1)):
-            row, col = self.random.uniform([5, 10], [10, 22])
-            inside = ((rows - row) / 5) ** 2 + ((cols - col) / 10) ** 2 < 1
-            body = inside * (0.6 + 0.1 * self.random.normal(size=inside.shape)) * self.gain
-            frames = slice(int(began * self.frames), int(ended * self.frames))
-            self.load[frames] += body * (1 + 0.1 * np.sin(self.time[frames]))[:, None, None]
-        return self
-
     def readings(self, falling=False, drift=0, dtype="u1"):
         """Frames, [frame, row, col]."""
         counts = self.peak * np.maximum(self.load, 0)
@@ -87,71 +66,21 @@ class DoctorTest(CommandTest):
     def assert_sound(self, report):
         self.assertEqual([finding["text"] for finding in report["findings"]], [])
 
-    def test_sound_pads_are_accused_of_nothing(self):
-        for seed in range(5):
-            for name, pad in (("finger", Pad(seed).sweep()), ("presses", Pad(seed).press(5, 1.2)),
-                              ("wide presses", Pad(seed).press(3, 3)), ("body", Pad(seed).lie()),
-                              ("idle", Pad(seed, 5))):
-                falling, dtype = seed % 3 == 1, ("u1", "u2")[seed % 2]
-                with self.subTest(name, seed=seed, falling=falling):
-                    report = self.examine(pad.readings(falling, 10 * (seed == 2), dtype))
-                    self.assert_sound(report)
-                    if name in ("idle", "presses"):
-                        self.assertGreater(len(report["untouched"]), 100)
-                    if name == "finger":
-                        self.assertTrue(report["row_order_tested"] and report["column_order_tested"])
-                        self.assertEqual(report["layout"], "sensels")
-
-    def planted(self, seed):
-        """For each fault: readings, and a function that says whether a report names it. doctor_arrays_test.py plants
-        dead sensels and lines, and lines that share a wire."""
-        def pad():
-            return Pad(1000 + seed).sweep()
-        random = np.random.default_rng(seed)
-
-        for axis, name, size in ((1, "row order", ROWS), (2, "column order", COLS)):
-            first = int(random.integers(0, size - 5))
-            mirrored = np.arange(size)
-            mirrored[first:first + 5] = mirrored[first:first + 5][::-1]
-            swapped = np.arange(size)
-            swapped[[first, first + 4]] = swapped[[first + 4, first]]
-            interleaved = np.r_[0:size:2, 1:size:2]
-            for order in (mirrored, swapped, interleaved):
-                wired = pad().readings()
-                elsewhere = {line for line in range(size) if any(
-                    abs(order[line] - order[near]) > 1 for near in (line - 1, line + 1) if 0 <= near < size)}
-                yield name, np.take(wired, order, axis), lambda report, name=name, lines=elsewhere: any(
-                    set(finding["lines"]) <= lines for finding in faults_of(report, name))
-
-        ghosts = pad()
-        ghosts.load = (ghosts.load + 0.05 * ghosts.load.max(1, keepdims=True)
-                       + 0.05 * ghosts.load.max(2, keepdims=True))
-        yield "crosstalk", ghosts.readings(), lambda report: all(
-            any(3 < finding["figure"] < 7 for finding in faults_of(report, name))
-            for name in ("row crosstalk", "column crosstalk"))
-
-        drift = float(random.uniform(8, 20))
-        yield "drift", pad().readings(drift=drift), lambda report: (
-            abs(report["drift_counts_per_minute"]["median"] / drift - 1) < 0.2)
-
-    def mostly(self, sensels, report, name):
-        found = [tuple(place) for finding in faults_of(report, name) for place in finding["sensels"]]
-        return set(found) <= set(sensels) and len(found) >= 0.9 * len(sensels)
-
-    def test_planted_faults_are_found(self):
-        allowed = {"row order": ["row order"], "column order": ["column order"],
-                   "crosstalk": ["row crosstalk", "column crosstalk"], "drift": []}
-        planted, missed = 0, []
+    def test_lines_out_of_order(self):
         for seed in range(3):
-            for name, readings, is_named in self.planted(seed):
-                report = self.examine(readings)
-                planted += 1
-                if not is_named(report):
-                    missed.append((name, seed, [finding["text"] for finding in report["findings"]]))
-                with self.subTest(name, seed=seed):
-                    self.assertLessEqual({finding["fault"] for finding in report["findings"]},
-                                         set(allowed[name]))
-        self.assertLessEqual(len(missed), 0.05 * planted, missed)
+            random, readings = np.random.default_rng(seed), Pad(1000 + seed).sweep().readings()
+            for axis, name, size in ((1, "row order", ROWS), (2, "column order", COLS)):
+                first = int(random.integers(0, size - 5))
+                mirrored, swapped = np.arange(size), np.arange(size)
+                mirrored[first:first + 5] = mirrored[first:first + 5][::-1]
+                swapped[[first, first + 4]] = swapped[[first + 4, first]]
+                for order in (mirrored, swapped, np.r_[0:size:2, 1:size:2]):
+                    found = self.examine(np.take(readings, order, axis))["findings"]
+                    elsewhere = {line for line in range(size) if any(
+                        abs(order[line] - order[near]) > 1 for near in (line - 1, line + 1) if 0 <= near < size)}
+                    with self.subTest(name, seed=seed):
+                        self.assertEqual([finding["fault"] for finding in found], [name])
+                        self.assertLessEqual(set(found[0]["lines"]), elsewhere)
 
     def test_all_faults_at_once(self):
         pad = Pad(77, 20).sweep()
@@ -164,38 +93,25 @@ class DoctorTest(CommandTest):
                          [("dead", None), ("dead column", [20]), ("shorted rows", [3, 4])])
         self.assertEqual(report["findings"][0]["sensels"], [[9, 6], [11, 27]])
 
-    def with_all_faults(self, seed):
-        """Readings of a pad with seven faults, and for each whether a report names it."""
-        pad, random = Pad(seed, (12, 20, 30)[seed % 3]).sweep(), np.random.default_rng(seed)
-        row, col = (int(random.integers(1, size)) for size in (ROWS - 2, COLS - 2))
-        dead = random.random((ROWS, COLS)) < 0.03
-        pad.load[:, dead] = 0
-        pad.load[:, row:row + 2] = pad.load[:, row:row + 2].mean(axis=1, keepdims=True)
-        pad.offset[row + 1] = pad.offset[row]
-        pad.load = (pad.load + 0.05 * pad.load.max(1, keepdims=True) + 0.05 * pad.load.max(2, keepdims=True))
-        pad.load[:, :, col] = 0
-        dead[row:row + 2] = dead[row] & dead[row + 1]
-        dead[:, col] = False
-        drift = float(random.choice([-1, 1]) * random.uniform(8, 20))
+    def test_drift_takes_half_a_minute_of_rest(self):
+        for seconds, is_told in ((20, False), (40, True)):
+            drift = self.examine(Pad(3, seconds).readings(drift=30))["drift_counts_per_minute"]
+            self.assertEqual(drift is not None, is_told)
+        self.assertLess(abs(drift["median"] - 30), 3)
 
-        def found(report):
-            lines = {(finding["fault"], *finding.get("lines", [])) for finding in report["findings"]}
-            ghosts = [any(3 < finding["figure"] < 7 for finding in faults_of(report, name))
-                      for name in ("row crosstalk", "column crosstalk")]
-            places = [(int(a), int(b)) for a, b in np.argwhere(dead)]
-            return [("shorted rows", row, row + 1) in lines,
-                    ("dead column", col) in lines, self.mostly(places, report, "dead"),
-                    report["polarity"] == "falls", *ghosts,
-                    abs(report["drift_counts_per_minute"]["median"] / drift - 1) < 0.2]
-        return pad.readings(falling=True, drift=drift), found
+    def test_what_nothing_tested_is_named(self):
+        """One touch of one sensel on a sound array accuses nobody; sensels that never differ count in no sum."""
+        readings = np.random.default_rng(2).normal(30, 0.8, (200, 8, 8)).round()
+        readings[80:120, 3, 4] += 140
+        readings[:, :, 7] = 0
+        np.save(self.folder / "pad.npy", readings.astype("u1"))
+        text = run("doctor", self.folder / "pad.npy").stdout
+        self.assertIn("1 of 56 sensels; not tested, touch here: (0, 0)", text)
+        self.assertIn("8 more never differ", text)
+        self.assertIn("Nothing wrong was found", text)
 
-    def test_pads_with_all_faults(self):
-        found = []
-        for seed in range(2000, 2012):
-            readings, found_in = self.with_all_faults(seed)
-            found += found_in(self.examine(readings))
-        self.assertEqual(len(found), 84)
-        self.assertGreaterEqual(sum(found), 0.95 * len(found))
+    def test_a_board_that_reads_7_everywhere_idles_at_7(self):
+        self.assertEqual(self.examine(np.full((50, 4, 4), 7, "u1"))["idle_counts"], 7)
 
     def test_absent_stuck_and_saturated_sensels(self):
         readings = Pad(5).sweep().readings()
@@ -241,9 +157,9 @@ class DoctorTest(CommandTest):
             self.assert_sound(report)
         readings = self.pressed_one_by_one(8)
         readings[:, 2, 5] = 20 + np.arange(len(readings)) % 2
-        readings[:, :, 0] = 20 + np.arange(len(readings))[:, None] % 2
-        found = {finding["fault"]: finding for finding in self.examine(readings)["findings"]}
-        self.assertEqual((found["dead"]["sensels"], found["dead column"]["lines"]), ([[2, 5]], [0]))
+        report = self.examine(readings)
+        self.assertEqual((report["untouched"], report["touch_here"]), ([[2, 5]], [[2, 5]]))
+        self.assert_sound(report)
 
     def test_frames_and_values_that_are_no_readings(self):
         pad = Pad(21).sweep().readings(dtype="u2").astype(int)
@@ -256,8 +172,8 @@ class DoctorTest(CommandTest):
         cases = {"missing frames": [lost.astype("u1"), nan], "frozen": [0 * pad[:, :8, :8] + 7, pad[:1].repeat(300, 0)],
                  "repeated frames": [repeated.astype("u1"), frozen.astype("u1")],
                  "normalised": [(pad / pad.max((1, 2), keepdims=True)).astype("f4")],
-                 "two values": [(100 * (pad > 60)).astype("u1"), (pad > 60).astype("f4")],
-                 "byte order": [(20 * pad).astype("u2").byteswap()], "stuck bit": [(pad | 8).astype("u1")]}
+                 "two values": [(100 * (pad > 60)).astype("u1")],
+                 "byte order": [(20 * pad).astype("u2").byteswap()]}
         for fault, recordings in cases.items():
             for readings in recordings:
                 with self.subTest(fault, type=readings.dtype):
@@ -301,20 +217,6 @@ class DoctorTest(CommandTest):
         self.assertEqual([finding["sensels"] for finding in faults_of(report, "ghosts")], [[[6, 5]]])
         self.assertIn("no calibration step mends it", report["findings"][0]["text"])
         self.assert_sound(self.examine((100 + 1400 * true + noise).round().astype("u2")))
-
-    def test_standing_loads_are_no_shorts(self):
-        rows, cols = np.mgrid[0:14, 0:6]
-        bell = 60 * np.exp(-((rows - 7) ** 2 + (cols - 3) ** 2) / 5)
-        counts = 140 + np.random.default_rng(34).normal(0, 1, (600, 14, 6))
-        counts[300:] += bell
-        self.assert_sound(self.examine(counts.round().astype("u1")))
-
-    def test_noisy_sensels(self):
-        pad = Pad(23).sweep()
-        readings = pad.readings().astype(float)
-        readings[:, 7, 9] += pad.random.normal(0, 15 * pad.noise, len(readings))
-        found = self.examine(readings.clip(0, 255).round().astype("u1"))["findings"]
-        self.assertEqual([(each["fault"], each["sensels"]) for each in found], [("noisy", [[7, 9]])])
 
     def test_a_tare_of_equal_frames_is_refused(self):
         np.save(self.folder / "pad.npy", np.full((50, 8, 8), 7, "u1"))
@@ -375,13 +277,6 @@ class DoctorTest(CommandTest):
         self.assertTrue((pixels[top + 120:, right:right + 45] == red).all(2).any())
         self.assert_fails("doctor", self.folder / "pad.npy", "--png", self.folder / "pad.npy",
                           names=["pad.npy"])
-
-    def test_pillars_are_told_from_sensels(self):
-        for scene in ("touch/sliding", "calibration/new_skin_rolled"):
-            run("simulate", SCENES / f"{scene}.toml", "--uncalibrated", "-o", self.folder / "skin.h5", "--overwrite")
-            report = run_json("doctor", self.folder / "skin.h5")
-            self.assertEqual(report["layout"], "pillars")
-            self.assert_sound(report)
 
     def test_the_next_command_works(self):
         for pad, verb in ((Pad(10).sweep(), "solve"), (Pad(11, 5), "calibrate")):

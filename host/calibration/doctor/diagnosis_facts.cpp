@@ -48,19 +48,17 @@ nlohmann::ordered_json facts_of(const Diagnosis& found) {
                 {"polarity", name_of(found.polarity)},
                 {"idle_counts", found.idle_counts},
                 {"noise_counts", fact_of(found.noise)},
-                {found.timing.rate_hz ? "drift_counts_per_minute" : "drift_counts",
-                 found.drift ? fact_of(*found.drift) : Json(nullptr)},
+                {"drift_counts_per_minute", found.drift ? fact_of(*found.drift) : Json(nullptr)},
                 {"contact_counts", found.contact_counts},
                 {"contact_frames", found.contact_frames},
                 {"idle_frames", found.idle_frames},
                 {"clipped", found.clipped},
                 {"layout", name_of(found.layout)},
-                {"layout_ratio", fact_of(found.layout_ratio)},
                 {"row_order_tested", found.row_order_tested},
                 {"column_order_tested", found.column_order_tested},
-                {"row_crosstalk_percent", fact_of(found.row_crosstalk_percent)},
-                {"column_crosstalk_percent", fact_of(found.column_crosstalk_percent)},
                 {"untouched", found.untouched},
+                {"touch_here", found.touch_here},
+                {"never_differ", found.never_differ},
                 {"findings", Json::array()}};
   for (const ArrayFinding& finding : found.findings) facts["findings"].push_back(fact_of(finding));
   return facts;

@@ -73,15 +73,6 @@ std::vector<SenselStatistics> statistics_of(const KeptFrames& kept, double full_
   return statistics;
 }
 
-std::vector<std::uint8_t> constant_sensels(const std::vector<SenselStatistics>& sensels) {
-  std::vector<std::uint8_t> constant;
-  constant.reserve(sensels.size());
-  for (const SenselStatistics& sensel : sensels) {
-    constant.push_back(sensel.readings == 0 || sensel.lowest == sensel.highest ? 1 : 0);
-  }
-  return constant;
-}
-
 void require_readings(const FrameStatistics& statistics) {
   const auto is_empty = [](const SenselStatistics& sensel) { return sensel.readings == 0; };
   if (!std::ranges::all_of(statistics.sensels(), is_empty)) return;
@@ -140,6 +131,7 @@ Diagnosis Doctor::result() {
   found.rows = skin.rows;
   found.cols = skin.cols;
   found.type = statistics.type();
+  found.layout = skin.layout;
   found.frames = statistics.frames();
   found.kept = state_->kept.frames();
   found.timing = timing_of(state_->times);
@@ -157,30 +149,26 @@ Diagnosis Doctor::result() {
       seen.kept.frames() * seen.kept.stride() + seen.kept.stride() < found.frames;
   seen.read.assign(statistics.sensels().begin(), statistics.sensels().end());
   if (has_dropped) seen.read = statistics_of(seen.kept, seen.full_scale);
-  seen.frames_with_readings = 0;
-  for (const SenselStatistics& each : seen.read) {
-    seen.frames_with_readings = std::max(seen.frames_with_readings, each.readings);
+  for (auto* const plane : {&seen.idle, &seen.noise, &seen.jitter, &seen.lowest, &seen.highest}) {
+    plane->resize(skin.sensels());
   }
-  seen.idle.resize(skin.sensels());
-  seen.noise.resize(skin.sensels());
-  seen.noisy.resize(skin.sensels());
-  seen.lowest.resize(skin.sensels());
-  seen.highest.resize(skin.sensels());
   seen.touched.resize(skin.sensels());
+  seen.noisy.resize(skin.sensels());
   seen.good.assign(skin.sensels(), 1);
-  seen.constant = constant_sensels(seen.read);
+  for (const SenselStatistics& each : seen.read) {
+    seen.constant.push_back(each.readings == 0 || each.lowest == each.highest ? 1 : 0);
+  }
   find_odd_frames(seen, watch, found);
   find_signals(seen, found);
-  find_odd_readings(seen, found);
-  seen.was_swept = is_swept(seen, LineAxis::rows) || is_swept(seen, LineAxis::columns);
+  find_odd_sensels(seen, found);
   if (!found.is_no_force()) {
-    find_layout(seen, found);
     find_shorts(seen, found);
     find_line_orders(seen, found);
-    find_crosstalk(seen, found);
     find_ghosts(seen, found);
+    find_rests(seen, found);
   }
-  find_faulty_sensels(seen, found);
+  find_responses(seen, found);
+  found.verdicts = seen.verdicts;
   found.picture = largest_signals(seen);
   for (std::size_t i = 0; i < skin.sensels(); ++i) {
     found.clipped += seen.good[i] != 0 && seen.read[i].saturated > 0 ? 1U : 0U;

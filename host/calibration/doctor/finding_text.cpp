@@ -59,9 +59,23 @@ std::string sentence_of(const ArrayFinding& finding) {
     case ArrayFault::column_order:
       return fmt::format("Wiring: {}s out of order: a contact passes {} out of turn", line,
                          fmt::join(lines, ", "));
-    case ArrayFault::row_crosstalk:
-    case ArrayFault::column_crosstalk:
-      return fmt::format("Crosstalk: {:.1f} % of a contact shows all along its {}s", figure, line);
+    case ArrayFault::weak:
+      return fmt::format("Weak: {}, at most {:.1f} % of the response of the neighbours, at {}",
+                         count, figure, places_of(finding));
+    case ArrayFault::rest_after_release:
+      return fmt::format(
+          "Rest: after {} of {} releases {} {} counts up, at {}: rest or a load that you do not "
+          "see",
+          finding.seen, finding.releases,
+          finding.sensels.size() == 1 ? "1 sensel stays" : count + " stay", rounded(figure),
+          places_of(finding));
+    case ArrayFault::followed_baseline:
+      return fmt::format(
+          "Rest: after {} of {} releases {} {} counts below the rest before, at {}: the board "
+          "itself follows the baseline; switch that off",
+          finding.seen, finding.releases,
+          finding.sensels.size() == 1 ? "1 sensel stays" : count + " stay", rounded(figure),
+          places_of(finding));
     case ArrayFault::ghosts:
       return fmt::format(
           "Ghosts: {}, reading up to {} counts only while the other three corners "
@@ -76,13 +90,27 @@ std::string sentence_of(const ArrayFinding& finding) {
 }  // namespace
 
 const char* name_of(ArrayFault fault) {
-  constexpr std::array kNames = {"absent",           "dead",         "stuck",
-                                 "saturated",        "noisy",        "dead row",
-                                 "dead column",      "shorted rows", "shorted columns",
-                                 "row order",        "column order", "row crosstalk",
-                                 "column crosstalk", "ghosts",       "missing frames",
-                                 "repeated frames",  "frozen",       "normalised",
-                                 "two values",       "byte order",   "stuck bit"};
+  constexpr std::array kNames = {"absent",
+                                 "dead",
+                                 "weak",
+                                 "stuck",
+                                 "saturated",
+                                 "noisy",
+                                 "dead row",
+                                 "dead column",
+                                 "shorted rows",
+                                 "shorted columns",
+                                 "row order",
+                                 "column order",
+                                 "ghosts",
+                                 "rest after release",
+                                 "followed baseline",
+                                 "missing frames",
+                                 "repeated frames",
+                                 "frozen",
+                                 "normalised",
+                                 "two values",
+                                 "byte order"};
   return kNames.at(static_cast<std::size_t>(fault));
 }
 
@@ -91,14 +119,9 @@ const char* name_of(Polarity polarity) {
   return polarity == Polarity::rises ? "rises" : "falls";
 }
 
-const char* name_of(ArrayLayout layout) {
-  if (layout == ArrayLayout::unknown) return "unknown";
-  return layout == ArrayLayout::pillars ? "pillars" : "sensels";
-}
-
 bool is_of_rows(ArrayFault fault) {
   return fault == ArrayFault::dead_row || fault == ArrayFault::shorted_rows ||
-         fault == ArrayFault::row_order || fault == ArrayFault::row_crosstalk;
+         fault == ArrayFault::row_order;
 }
 
 void add(Diagnosis& found, ArrayFinding finding) {

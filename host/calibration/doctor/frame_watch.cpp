@@ -17,6 +17,9 @@ constexpr std::size_t kLeastChanges = 8;
 constexpr std::uint64_t kLongestLoss = 8;
 constexpr std::size_t kLeastUniform = 4;  ///< sensels of a uniform frame
 
+/// A reading at an end of the range, where an array may rest.
+bool is_end(float reading) { return reading == 0 || reading == 255 || reading == 65535; }
+
 bool is_same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 }  // namespace
@@ -46,7 +49,7 @@ FrameKind FrameWatch::add(const FrameView& frame) {
     is_uniform = is_uniform && (current_[i] == middle || (number > 0 && !has_changed));
   }
   is_uniform = is_uniform && equal >= kLeastUniform && 2 * equal > numbers_.size();
-  if (changed > 0) all_equal_ = false;
+  if (changed > 0 || (equal == current_.size() && is_end(middle))) all_equal_ = false;
   before_.swap(current_);
   if (numbers_.empty()) {
     empty_.add(number);
@@ -67,6 +70,7 @@ FrameKind FrameWatch::add(const FrameView& frame) {
     return FrameKind::repeated;
   }
   if (number > 0) changes_.push_back(changed);
+  if (2 * equal > numbers_.size()) ++flat_;
   return FrameKind::whole;
 }
 

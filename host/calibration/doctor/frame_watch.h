@@ -38,7 +38,7 @@ class FrameWatch {
 
   /// True if lost frames explain the uniform ones.
   [[nodiscard]] bool uniform_are_lost() const {
-    return lost_.frames > 0 && 5 * lost_.frames >= 4 * uniform_.frames;
+    return lost_.frames > 0 && 5 * lost_.frames >= 4 * uniform_.frames && 20 * flat_ < frames_;
   }
   /// True if the other frames change so much that equal ones are no chance.
   [[nodiscard]] bool repeats_are_odd() const;
@@ -57,9 +57,10 @@ class FrameWatch {
   Count repeated_;
   Count uniform_;
   Count lost_;
-  Count run_;            ///< uniform frames up to now
-  double run_mean_ = 0;  ///< of these
-  double mean_ = 0;      ///< of the last whole frame
+  std::uint64_t flat_ = 0;  ///< whole frames most of whose sensels read the same
+  Count run_;               ///< uniform frames up to now
+  double run_mean_ = 0;     ///< of these
+  double mean_ = 0;         ///< of the last whole frame
   bool has_mean_ = false;
   float value_ = 0;
 };

@@ -90,8 +90,17 @@ class GhostSearch {
   /// True if the fourth sensel reads, and less than the corners.
   [[nodiscard]] bool shows(std::uint32_t frame, const RectangleCells& at) const {
     const float ghost = signal(frame, at[0], at[1]);
-    return ghost > kGhostShare * seen_.contact_counts &&
+    return ghost > kGhostShare * seen_.contact_counts && are_apart(frame, at) &&
            ghost < kMostOfCorners * std::ranges::min(corners(frame, at));
+  }
+
+  /// True if nothing joins the corners, which one contact would.
+  [[nodiscard]] bool are_apart(std::uint32_t frame, const RectangleCells& at) const {
+    const float most = signal(frame, at[0], at[1]) / 2;
+    const std::uint32_t row = (at[0] + at[2]) / 2;
+    const std::uint32_t col = (at[1] + at[3]) / 2;
+    return signal(frame, row, at[1]) < most && signal(frame, row, at[3]) < most &&
+           signal(frame, at[0], col) < most && signal(frame, at[2], col) < most;
   }
 
   /// The largest reading of a sensel that reads always with three corners and never with two; 0 if

@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -24,7 +21,6 @@ constexpr std::size_t kLeastPeaks = 3;  ///< different sensels with the largest 
 /// its ratio to that with the bytes swapped back.
 constexpr double kWild = 0.02;
 constexpr double kCalmer = 8;
-constexpr std::size_t kLeastValues = 24;  ///< different readings that use all of their bits
 
 void report_odd(Diagnosis& found, ArrayFault fault, double figure, std::string text) {
   found.findings.push_back({.fault = fault, .figure = figure, .text = std::move(text)});
@@ -77,7 +73,7 @@ void find_two_values(const Examination& seen, Diagnosis& found) {
   const double low = *values.begin();
   const double high = *values.rbegin();
   // Noise without load takes two neighbouring values, too.
-  if (high - low <= 1 && low != 0 && seen.statistics.type() != SenselType::f32) return;
+  if (high - low <= 1) return;
   report_odd(
       found, ArrayFault::two_values, high,
       fmt::format("Two values: sensels read {} or {}, which shows contact, not force; record "
@@ -110,59 +106,21 @@ double relative_change(const Examination& seen, bool swap) {
   return most > least ? changes / count / (most - least) : 0;
 }
 
-using SeenNumbers = std::bitset<65536>;
-
-/// True if numbers without a bit, or with it, are dense up to the gaps that the others leave.
-bool shows_stuck_bit(const SeenNumbers& numbers, std::uint32_t mask, bool is_set) {
-  const std::uint32_t edge = std::max(1U, mask / 4);
-  const auto is_dense = [&](std::uint32_t first) {
-    std::uint32_t count = 0;
-    for (std::uint32_t n = first; n < first + edge; ++n) count += numbers.test(n) ? 1U : 0U;
-    return 4 * count >= 3 * edge;
-  };
-  std::size_t gaps = 0;
-  for (std::uint32_t gap = is_set ? 2 * mask : mask; gap + mask + edge <= numbers.size();
-       gap += 2 * mask) {
-    gaps += is_dense(gap - edge) && is_dense(gap + mask) ? 1U : 0U;
-  }
-  return gaps >= (mask < 16 ? 4U : 1U);
-}
-
-/// Bytes in the wrong order and bits that never change, of readings that are 16-bit numbers.
-void find_odd_bits(const Examination& seen, Diagnosis& found) {
-  const auto numbers = std::make_unique<SeenNumbers>();
+/// Bytes in the wrong order, of readings that are 16-bit numbers.
+void find_byte_order(const Examination& seen, Diagnosis& found) {
   bool are_whole = true;
+  float most = 0;
   for_each_varying(seen, [&](std::size_t, std::size_t, float reading) {
     are_whole = are_whole && reading >= 0 && reading < 65536 && reading == std::floor(reading);
-    if (are_whole) numbers->set(static_cast<std::size_t>(reading));
+    most = std::max(most, reading);
   });
-  if (!are_whole || numbers->count() < kLeastValues) return;
-  std::uint32_t set = 0;
-  std::uint32_t always_set = 65535;
-  for (std::uint32_t number = 0; number < numbers->size(); ++number) {
-    if (!numbers->test(number)) continue;
-    set |= number;
-    always_set &= number;
-  }
-  if (set > 255) {
-    const double change = relative_change(seen, false);
-    if (change > kWild && change > kCalmer * relative_change(seen, true)) {
-      report_odd(found, ArrayFault::byte_order, 100 * change,
-                 fmt::format("Byte order: readings jump by {:.0f} % of their range from frame to "
-                             "frame, and do not with the two bytes of each swapped; swap them",
-                             100 * change));
-      return;
-    }
-  }
-  for (std::uint32_t bit = 0; bit < 16; ++bit) {
-    const std::uint32_t mask = 1U << bit;
-    const bool is_set = (always_set & mask) != 0;
-    if ((!is_set && (set & mask) != 0) || !shows_stuck_bit(*numbers, mask, is_set)) continue;
-    report_odd(found, ArrayFault::stuck_bit, bit,
-               fmt::format("Stuck bit: bit {} (value {}) is {} in every reading while others "
-                           "change; check the converter and its wiring",
-                           bit, mask, is_set ? 1 : 0));
-  }
+  if (!are_whole || most < 256) return;
+  const double change = relative_change(seen, false);
+  if (change < kWild || change < kCalmer * relative_change(seen, true)) return;
+  report_odd(found, ArrayFault::byte_order, 100 * change,
+             fmt::format("Byte order: readings jump by {:.0f} % of their range from frame to "
+                         "frame, and do not with the two bytes of each swapped; swap them",
+                         100 * change));
 }
 
 }  // namespace
@@ -192,7 +150,7 @@ void find_odd_frames(const Examination& seen, const FrameWatch& watch, Diagnosis
          "equal the one before although readings are noisy");
   find_normalised(seen, found);
   find_two_values(seen, found);
-  find_odd_bits(seen, found);
+  find_byte_order(seen, found);
 }
 
 }  // namespace pillarfield

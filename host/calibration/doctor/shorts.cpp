@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,199 +12,142 @@
 namespace pillarfield {
 namespace {
 
-/// Largest difference of two shorted lines, relative to their signals, where contacts swept over
-/// the lines and where they did not, and relative to the difference from their neighbours.
-constexpr double kMostUnequalSwept = 0.12;
-constexpr double kMostUnequal = 0.04;
-constexpr double kShortRatio = 0.2;
-constexpr std::size_t kLeastShared = 3;  ///< sensels of a line
-constexpr double kLeastPower = 4;        ///< of the signals of loaded sensels, over that of noise
-constexpr double kMostProducts = 4e9;
-/// Lines by which the centre of pressure must move: contacts at rest can load lines equally.
-constexpr double kLeastMove = 0.2;
+/// Power of the difference of two shorted lines, in that which the lines beside them foretell.
+constexpr double kShortedPower = 0.05;
+/// The same in their own power, of the first and the last line.
+constexpr double kShortedEnds = 0.01;
+/// Largest difference of shorted lines, in their signals.
+constexpr double kShortedDifference = 0.1;
+/// Difference of the lines beside a pair, in its load, of a load that tells.
+constexpr double kTellingSlope = 0.3;
+/// Different places of loads of either shape.
+constexpr std::size_t kShapePlaces = 5;
+constexpr double kPowerOverNoise = 20;
+constexpr std::size_t kComparedFrames = 1024;
+constexpr std::size_t kLeastShortLines = 6;
 
-/// Frames of contacts, thinned so that all pairs of lines can be compared.
-std::vector<std::uint32_t> compared_frames(const Examination& seen, LineAxis axis) {
-  const double each =
-      static_cast<double>(seen.lines(axis)) * static_cast<double>(seen.kept.sensels());
-  const auto most = static_cast<std::size_t>(std::max(8.0, kMostProducts / each));
-  const std::size_t step = seen.contacts.size() / most + 1;
-  std::vector<std::uint32_t> frames;
-  for (std::size_t i = 0; i < seen.contacts.size(); i += step) frames.push_back(seen.contacts[i]);
-  return frames;
-}
+/// Loads of one shape on a pair of lines: more load before the pair, or behind it.
+struct ShapeOfLoad {
+  double difference = 0;  ///< squares, less those of noise
+  double expected = 0;
+  double noise = 0;
+  std::set<std::pair<long, long>> places = {};
 
-struct LineDifference {
-  double unequal;
-  double unexplained;  ///< by gains of single sensels
+  [[nodiscard]] bool tells() const {
+    return places.size() >= kShapePlaces && expected > kPowerOverNoise * noise;
+  }
 };
 
-/// Signals of contacts as [along, line, frame].
-class LineSignals {
+class PairOfLines {
  public:
-  LineSignals(const Examination& seen, LineAxis axis)
-      : seen_(seen), axis_(axis), frames_(compared_frames(seen, axis)) {
-    signals_.reserve(frames_.size() * seen.kept.sensels());
-    const std::size_t lines = seen.lines(axis);
-    for (std::size_t along = 0; along < seen.kept.sensels() / lines; ++along) {
-      for (std::size_t line = 0; line < lines; ++line) {
-        const std::size_t sensel = seen.sensel(axis, line, along);
-        for (const std::uint32_t frame : frames_) {
-          signals_.push_back(std::as_const(seen.kept).frame(frame)[sensel]);
-        }
-      }
-    }
+  PairOfLines(const Examination& seen, LineAxis axis, std::uint32_t first, std::uint32_t second)
+      : seen_(seen), axis_(axis), first_(first), second_(second) {
+    const std::size_t step = seen.contacts.size() / kComparedFrames + 1;
+    for (std::size_t n = 0; n < seen.contacts.size(); n += step) add(seen.contacts[n]);
   }
 
-  /// Difference of the signals of two lines, relative to those of the weaker line: the root of the
-  /// mean squares of the differences, without noise, and of the smaller eigenvalues of the second
-  /// moments, which no gain of a single sensel changes. Unset: too little signal.
-  [[nodiscard]] std::optional<LineDifference> difference(std::size_t a, std::size_t b) const {
-    const std::size_t lines = seen_.lines(axis_);
-    double unequal = 0;
-    double unexplained = 0;
-    double first_power = 0;
-    double second_power = 0;
-    double noise = 0;
-    std::size_t shared = 0;
-    for (std::size_t along = 0; along < seen_.kept.sensels() / lines; ++along) {
-      const std::size_t first = seen_.sensel(axis_, a, along);
-      const std::size_t second = seen_.sensel(axis_, b, along);
-      if (seen_.good[first] == 0 || seen_.good[second] == 0) continue;
-      if (seen_.touched[first] < 3 || seen_.touched[second] < 3) continue;
-      const float* const x = &signals_[(along * lines + a) * frames_.size()];
-      const float* const y = &signals_[(along * lines + b) * frames_.size()];
-      const auto least_x = static_cast<float>(seen_.threshold(first));
-      const auto least_y = static_cast<float>(seen_.threshold(second));
-      float frames = 0;
-      float xx = 0;
-      float xy = 0;
-      float yy = 0;
-      for (std::size_t i = 0; i < frames_.size(); ++i) {
-        const float weight = x[i] > least_x || y[i] > least_y ? 1 : 0;
-        frames += weight;
-        xx += weight * x[i] * x[i];
-        xy += weight * x[i] * y[i];
-        yy += weight * y[i] * y[i];
-      }
-      unequal += (xx + yy - 2 * xy) / 2;
-      unexplained += (xx + yy) / 2 - std::hypot((xx - yy) / 2, xy);
-      first_power += xx;
-      second_power += yy;
-      const auto deviation =
-          std::max<double>({seen_.noise[first], seen_.noise[second], seen_.typical_noise});
-      noise += frames * deviation * deviation;
-      ++shared;
+  /// True if the lines read the same under loads of unlike shape.
+  [[nodiscard]] bool are_shorted() const {
+    bool tells = true;
+    for (std::size_t side = 0; side < 2; ++side) {
+      // At a border nothing is beside the pair on one side.
+      if (!are_ends() && !(side == 0 ? first_ > 0 : second_ + 1 < seen_.lines(axis_))) continue;
+      const ShapeOfLoad& shape = shapes_.at(side);
+      tells = tells && shape.tells() &&
+              shape.difference < (are_ends() ? kShortedEnds : kShortedPower) * shape.expected;
     }
-    const double power = std::min(first_power, second_power);
-    if (shared < kLeastShared || power < kLeastPower * noise) return std::nullopt;
-    const auto relative = [&](double sum) {
-      return std::sqrt(std::max(0.0, sum - noise) / (power - noise));
-    };
-    return LineDifference{relative(unequal), relative(unexplained)};
+    return tells && difference() < kShortedDifference;
   }
-
-  /// The least difference of line `a` or `b` from its neighbours other than the two.
-  [[nodiscard]] double difference_from_neighbours(std::size_t a, std::size_t b) const {
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t line : {a, b}) {
-      for (const std::size_t other : {line - 1, line + 1}) {
-        if (other >= seen_.lines(axis_) || other == a || other == b) continue;
-        if (const auto found = difference(line, other)) least = std::min(least, found->unequal);
-      }
-    }
-    return least;
+  /// Root of the power of the difference in that of the signals.
+  [[nodiscard]] double difference() const {
+    return std::sqrt(std::max(0.0, shapes_[0].difference + shapes_[1].difference) / power_);
   }
 
  private:
+  [[nodiscard]] bool are_ends() const { return second_ - first_ > 1; }
+
+  /// Signal of a sensel, at least 0; unset where it is not good.
+  [[nodiscard]] std::optional<double> signal(std::uint32_t frame, std::size_t line,
+                                             std::size_t along) const {
+    if (line >= seen_.lines(axis_)) return std::nullopt;
+    const std::size_t i = seen_.sensel(axis_, line, along);
+    if (seen_.good[i] == 0) return std::nullopt;
+    return std::as_const(seen_.kept).frame(frame)[i];
+  }
+
+  void add(std::uint32_t frame) {
+    std::size_t most = 0;
+    double peak = 0;
+    for (std::size_t along = 0; along < seen_.kept.sensels() / seen_.lines(axis_); ++along) {
+      const double load =
+          signal(frame, first_, along).value_or(0) + signal(frame, second_, along).value_or(0);
+      if (load > peak) most = along;
+      peak = std::max(peak, load);
+    }
+    for (std::size_t along = 0; along < seen_.kept.sensels() / seen_.lines(axis_); ++along) {
+      const auto x = signal(frame, first_, along);
+      const auto y = signal(frame, second_, along);
+      const double noise = std::max(seen_.noise_of(seen_.sensel(axis_, first_, along)),
+                                    seen_.noise_of(seen_.sensel(axis_, second_, along)));
+      if (!x || !y || std::max(*x, *y) < 1.5 * kBeyondIdleNoise * noise) continue;
+      add(frame, along, most, *x, *y, noise);
+    }
+  }
+
+  void add(std::uint32_t frame, std::size_t along, std::size_t most, double x, double y,
+           double noise) {
+    const double mean = (x + y) / 2;
+    const auto before = signal(frame, are_ends() ? first_ + 1 : first_ - 1, along);
+    const auto behind = signal(frame, are_ends() ? second_ - 1 : second_ + 1, along);
+    if (!before && !behind) return;
+    double slope = 0;
+    if (are_ends()) {
+      if (!before || !behind) return;
+      const auto middle = signal(frame, seen_.lines(axis_) / 2, along);
+      if (!middle || *middle > mean / 2) return;
+      slope = *before > *behind ? -mean : mean;
+    } else if (before && behind) {
+      slope = (*behind - *before) / 3;
+    } else {
+      slope = (behind ? *behind - mean : mean - *before) / 1.5;
+    }
+    if (std::abs(slope) < kTellingSlope / 3 * mean) return;
+    ShapeOfLoad& shape = shapes_.at(slope < 0 ? 0 : 1);
+    shape.difference += (x - y) * (x - y) - 2 * noise * noise;
+    shape.expected += slope * slope;
+    shape.noise += noise * noise;
+    power_ += mean * mean;
+    if (along == most) {
+      shape.places.insert({static_cast<long>(along), std::lround(2 * slope / mean)});
+    }
+  }
+
   const Examination& seen_;
   LineAxis axis_;
-  std::vector<std::uint32_t> frames_;
-  std::vector<float> signals_;
+  std::uint32_t first_;
+  std::uint32_t second_;
+  std::array<ShapeOfLoad, 2> shapes_;
+  double power_ = 0;
 };
-
-bool share_pillars(const Diagnosis& found, std::uint32_t a, std::uint32_t b) {
-  return may_have_pillars(found) && a % 2 == 0 && b == a + 1;
-}
-
-/// The loads of lines in frames of contacts, and where their centre of pressure lies.
-class LineCentres {
- public:
-  LineCentres(const Examination& seen, LineAxis axis) {
-    for (const std::uint32_t frame : seen.contacts) {
-      const auto signals = std::as_const(seen.kept).frame(frame);
-      std::vector<float>& loads = loads_.emplace_back(seen.lines(axis));
-      double sum = 0;
-      double moment = 0;
-      for (std::size_t i = 0; i < signals.size(); ++i) {
-        if (seen.good[i] == 0 || signals[i] < seen.threshold(i)) continue;
-        const std::size_t line = axis == LineAxis::rows ? i / seen.cols : i % seen.cols;
-        loads[line] += signals[i];
-        sum += signals[i];
-        moment += static_cast<double>(signals[i]) * static_cast<double>(line);
-      }
-      centres_.push_back(sum > 0 ? moment / sum : 0);
-    }
-  }
-
-  /// Way of the centre across the lines, but for its ends, while a line is loaded.
-  [[nodiscard]] double way(std::size_t line) const {
-    std::vector<double> centres;
-    for (std::size_t i = 0; i < centres_.size(); ++i) {
-      if (loads_[i][line] > 0) centres.push_back(centres_[i]);
-    }
-    return centres.empty() ? 0 : quantile(centres, 0.95) - quantile(centres, 0.05);
-  }
-
- private:
-  std::vector<std::vector<float>> loads_;  ///< [frame][line]
-  std::vector<double> centres_;
-};
-
-void find_shorted_lines(Examination& seen, LineAxis axis, Diagnosis& found) {
-  const LineCentres centres(seen, axis);
-  const double most = is_swept(seen, axis) ? kMostUnequalSwept : kMostUnequal;
-  const LineSignals signals(seen, axis);
-  for (std::uint32_t a = 0; a < seen.lines(axis); ++a) {
-    for (std::uint32_t b = a + 1; b < seen.lines(axis); ++b) {
-      if (share_pillars(found, a, b)) continue;
-      const auto difference = signals.difference(a, b);
-      if (!difference || difference->unequal > most || centres.way(a) < kLeastMove) continue;
-      const double others = signals.difference_from_neighbours(a, b);
-      if (!std::isfinite(others) || difference->unequal > kShortRatio * others) continue;
-      seen.shorted.push_back({axis, a, b});
-      const bool are_rows = axis == LineAxis::rows;
-      add(found, {.fault = are_rows ? ArrayFault::shorted_rows : ArrayFault::shorted_columns,
-                  .lines = {a, b},
-                  .figure = 100 * difference->unequal});
-    }
-  }
-}
 
 }  // namespace
 
-std::vector<std::optional<double>> neighbour_differences(const Examination& seen, LineAxis axis) {
-  const LineSignals signals(seen, axis);
-  std::vector<std::optional<double>> differences;
-  for (std::size_t line = 0; line + 1 < seen.lines(axis); ++line) {
-    const auto difference = signals.difference(line, line + 1);
-    differences.push_back(difference ? std::optional(difference->unexplained) : std::nullopt);
-  }
-  return differences;
-}
-
 void find_shorts(Examination& seen, Diagnosis& found) {
-  if (seen.contacts.size() < 10) return;
-  find_shorted_lines(seen, LineAxis::rows, found);
-  find_shorted_lines(seen, LineAxis::columns, found);
-  // Lines that lie apart show contacts in two places; one of them is wrong.
-  for (const auto& [axis, first, second] : seen.shorted) {
-    if (second - first == 1) continue;
-    for (const std::uint32_t line : {first, second}) {
-      for (std::size_t along = 0; along < seen.kept.sensels() / seen.lines(axis); ++along) {
-        seen.good[seen.sensel(axis, line, along)] = 0;
-      }
-    }
+  if (seen.statistics.skin().has_pillars()) return;
+  for (const LineAxis axis : {LineAxis::rows, LineAxis::columns}) {
+    const auto lines = static_cast<std::uint32_t>(seen.lines(axis));
+    if (lines < 3) continue;
+    const auto judge = [&](std::uint32_t first, std::uint32_t second) {
+      const PairOfLines pair(seen, axis, first, second);
+      if (!pair.are_shorted()) return;
+      seen.shorted.push_back({axis, first, second});
+      const bool are_rows = axis == LineAxis::rows;
+      add(found, {.fault = are_rows ? ArrayFault::shorted_rows : ArrayFault::shorted_columns,
+                  .lines = {first, second},
+                  .figure = 100 * pair.difference()});
+    };
+    for (std::uint32_t line = 0; line + 1 < lines; ++line) judge(line, line + 1);
+    if (lines >= kLeastShortLines) judge(0, lines - 1);
   }
 }
 

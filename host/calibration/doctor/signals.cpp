@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
@@ -20,11 +22,23 @@ constexpr std::size_t kLeastLoaded = 3;
 constexpr double kSingleShare = 0.3;
 /// Share of the largest span up to which a sensel may be at rest: drift is below a quarter.
 constexpr double kAtRest = 0.35;
+constexpr double kRestNoise = 7;  ///< range of the noise, in deviations
 constexpr double kMostDrift = 0.3;
-constexpr std::size_t kLeastRest = 10;  ///< frames
-constexpr double kOddSpans = 0.01;      ///< share of the sensels
-/// Deviation of a rounded number.
-const double kRounding = 1 / std::sqrt(12.0);
+constexpr std::size_t kLeastRest = 10;      ///< frames
+constexpr std::size_t kLoadedAtRest = 500;  ///< one of so many sensels
+constexpr double kOddSpans = 0.01;          ///< share of the sensels
+/// Sudden change of a load, in the range of its sensel and in noise.
+constexpr double kSudden = 0.25;
+constexpr double kSuddenNoise = 8;
+/// Multiples of the usual noise, and of that around, of sensels that do not tell of load.
+constexpr double kUnsteady = 7;
+constexpr double kUnsteadyAround = 5;
+constexpr double kManyChanges = 0.6;  ///< share of the changes from frame to frame
+constexpr double kFewChanges = 0.1;
+constexpr double kMostOfJitter = 3;        ///< slow noise, in that from frame to frame
+constexpr double kLeastDriftSeconds = 30;  ///< of frames without load
+/// Least deviation of a whole number: rounding and a flicker.
+constexpr double kRounding = 0.5;
 
 /// A sensel's readings without load in each window of frames, as far as there are enough of them.
 using RestWindows = std::vector<std::optional<double>>;
@@ -45,18 +59,62 @@ std::size_t window_count(std::size_t frames) {
   return std::clamp<std::size_t>(frames / kLeastWindowFrames, 1, kWindows);
 }
 
-/// The lower quartile of the windows' differences from frame to frame.
+/// The lower quartile of the windows' standard deviations: slow noise and hum count, too.
 double noise_of_windows(const std::vector<float>& readings) {
   std::vector<double> squares;
   const std::size_t count = window_count(readings.size());
   for (std::size_t w = 0; w < count; ++w) {
     const std::size_t first = w * readings.size() / count;
     const std::size_t end = (w + 1) * readings.size() / count;
+    double mean = 0;
     double sum = 0;
-    for (std::size_t n = first + 1; n < end; ++n) sum += std::pow(readings[n] - readings[n - 1], 2);
-    if (end - first >= 2) squares.push_back(sum / (2.0 * static_cast<double>(end - first - 1)));
+    for (std::size_t n = first; n < end; ++n) {
+      const double step = readings[n] - mean;
+      mean += step / static_cast<double>(n - first + 1);
+      sum += step * (readings[n] - mean);
+    }
+    if (end - first >= 2) squares.push_back(sum / static_cast<double>(end - first - 1));
   }
   return squares.empty() ? 0 : std::sqrt(quantile(squares, 0.25));
+}
+
+/// Deviation from frame to frame of a share of the changes: load changes more slowly. `skipped`:
+/// readings at an end of the range, which cuts their noise.
+double jitter_of(const std::vector<float>& readings, float skipped, double share) {
+  std::vector<float> changes;
+  for (std::size_t n = 1; n < readings.size(); ++n) {
+    if (readings[n] == skipped || readings[n - 1] == skipped) continue;
+    changes.push_back(std::abs(readings[n] - readings[n - 1]));
+  }
+  if (changes.size() < kLeastWindowFrames) return 0;
+  // Quantiles of a normal distribution's magnitude.
+  const double deviations = share == kManyChanges ? 0.8416 : 0.1257;
+  return quantile(changes, share) / (deviations * std::sqrt(2.0));
+}
+
+/// The reading at an end of the range that most readings have; NaN: there is none.
+float reading_at_end(const std::vector<float>& readings, float lowest, float highest) {
+  for (const float end : {lowest, highest}) {
+    if (2 * std::ranges::count(readings, end) > std::ssize(readings)) return end;
+  }
+  return std::numeric_limits<float>::quiet_NaN();
+}
+
+/// The largest change between means of three readings, five frames apart: loads come and go so
+/// fast, drift does not.
+double largest_step(const std::vector<float>& readings) {
+  double largest = 0;
+  for (std::size_t n = 0; n + 8 <= readings.size(); ++n) {
+    double step = 0;
+    for (std::size_t k = 0; k < 3; ++k) step += readings[n + 5 + k] - readings[n + k];
+    largest = std::max(largest, std::abs(step) / 3);
+  }
+  // A jump at the first frames, too, if it stays.
+  for (std::size_t n = 0; n + 4 <= readings.size() && n < 3; ++n) {
+    const auto [low, high] = std::minmax({readings[n + 1], readings[n + 2], readings[n + 3]});
+    largest = std::max<double>({largest, low - readings[n], readings[n] - high});
+  }
+  return largest;
 }
 
 /// Median slope between windows, counts per window.
@@ -79,7 +137,7 @@ SenselFigure figure_of(const Examination& seen, const std::vector<float>& values
     if (seen.constant[i] == 0) varying.push_back(values[i]);
   }
   SenselFigure figure;
-  if (varying.empty()) return figure;
+  if (varying.empty()) varying = values;
   figure.median = median(varying);
   double farthest = -1;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -121,24 +179,40 @@ double seconds_per_frame(const KeptFrames& kept) {
 void find_noisy(Examination& seen) {
   std::vector<float> around;
   for (std::size_t i = 0; i < seen.noise.size(); ++i) {
-    if (seen.noise[i] <= kNoisy * seen.typical_noise) continue;
+    if (seen.noise[i] <= kUnsteady * seen.typical_noise) continue;
     around.clear();
     for (const std::size_t n : Neighbours(seen.statistics.skin(), i).all()) {
       if (seen.constant[n] == 0) around.push_back(seen.noise[n]);
     }
-    seen.noisy[i] = around.empty() || seen.noise[i] > kNoisy * median(around) ? 1 : 0;
+    seen.noisy[i] = around.empty() || seen.noise[i] > kUnsteadyAround * median(around) ? 1 : 0;
   }
 }
 
 /// Noise of the sensels, and the range of what they read.
 void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   const std::size_t sensels = seen.kept.sensels();
+  std::vector<double> steps(sensels);
+  seen.sudden.resize(sensels);
+  float lowest = std::numeric_limits<float>::infinity();
+  float highest = -lowest;
+  for (std::size_t i = 0; i < sensels; ++i) {
+    if (seen.constant[i] != 0) continue;
+    lowest = std::min(lowest, seen.read[i].lowest);
+    highest = std::max(highest, seen.read[i].highest);
+  }
   SenselReadings readings;
   for (std::size_t i = 0; i < sensels; ++i) {
     if (seen.constant[i] != 0) continue;
     seen.kept.read_sensel(i, readings);
     if (readings.values.empty()) continue;
-    seen.noise[i] = static_cast<float>(noise_of_windows(readings.values));
+    steps[i] = largest_step(readings.values);
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    seen.jitter[i] = static_cast<float>(jitter_of(readings.values, none, kManyChanges));
+    const float end = reading_at_end(readings.values, lowest, highest);
+    double noise = noise_of_windows(readings.values);
+    if (seen.jitter[i] > 0) noise = std::min(noise, kMostOfJitter * seen.jitter[i]);
+    seen.noise[i] = static_cast<float>(
+        std::max(noise, std::isnan(end) ? 0 : jitter_of(readings.values, end, kFewChanges)));
     // Without the one lowest and the one highest reading, which may be a slip.
     const auto second =
         static_cast<std::ptrdiff_t>(std::min<std::size_t>(1, readings.values.size() - 1));
@@ -156,9 +230,23 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   find_noisy(seen);
   std::vector<double> spans;
   for (std::size_t i = 0; i < sensels; ++i) {
-    if (seen.is_steady(i)) spans.push_back(double{seen.highest[i]} - seen.lowest[i]);
+    if (!seen.is_steady(i)) continue;
+    const double span = double{seen.highest[i]} - seen.lowest[i];
+    if (steps[i] < std::max(kSudden * span, kSuddenNoise * seen.noise_of(i))) continue;
+    seen.sudden[i] = 1;
+    seen.has_load = true;
+    spans.push_back(span);
   }
   if (!spans.empty()) seen.span = quantile(spans, 1 - kOddSpans);
+}
+
+/// The largest reading that may be without load, but for drift.
+double most_at_rest(const Examination& seen, std::size_t sensel) {
+  if (!seen.has_load) return std::numeric_limits<double>::infinity();
+  const double most = kAtRest * seen.span;
+  const double range = double{seen.highest[sensel]} - seen.lowest[sensel];
+  const double noise = std::min(most, kRestNoise * seen.noise_of(sensel));
+  return seen.lowest[sensel] + (seen.sudden[sensel] != 0 ? std::max(kAtRest * range, noise) : most);
 }
 
 /// Readings without load as a function of time: one curve for all sensels, a slope for each.
@@ -188,9 +276,9 @@ class Baseline {
            slopes_[sensel] * (place_of(frame) - place_of(0));
   }
 
-  /// Counts per kept frame.
-  [[nodiscard]] std::optional<std::vector<float>> drifts() const {
-    if (windows_ < kLeastDriftWindows) return std::nullopt;
+  /// Counts per kept frame; empty: too few frames.
+  [[nodiscard]] std::vector<float> drifts() const {
+    if (windows_ < kLeastDriftWindows) return {};
     const RestWindows curve(common_.begin(), common_.end());
     const double slope = slope_of(curve, std::vector<double>(windows_));
     std::vector<float> drifts = slopes_;
@@ -212,7 +300,7 @@ class Baseline {
     RestWindows rest(windows_);
     if (!seen_.is_steady(sensel)) return rest;
     const std::size_t frames = seen_.kept.frames();
-    const double most = seen_.lowest[sensel] + kAtRest * seen_.span;
+    const double most = most_at_rest(seen_, sensel);
     std::vector<float> part;
     for (std::size_t w = 0; w < windows_; ++w) {
       const std::size_t first = w * frames / windows_;
@@ -267,7 +355,7 @@ class Baseline {
     }
     // A curve that goes as far as loads do is load.
     const auto [least, most] = std::ranges::minmax(common_);
-    if (most - least > kMostDrift * seen_.span) common_.assign(windows_, 0);
+    if (seen_.has_load && most - least > kMostDrift * seen_.span) common_.assign(windows_, 0);
   }
 
   const Examination& seen_;
@@ -276,13 +364,13 @@ class Baseline {
   std::vector<float> slopes_;   ///< counts per window
 };
 
-void report_drift(const Examination& seen, const Baseline& baseline, Diagnosis& found) {
-  const auto drifts = baseline.drifts();
-  if (!drifts) return;
+/// Reports drift if enough frames are without load.
+void report_drift(const Examination& seen, const std::vector<float>& drifts, Diagnosis& found) {
+  const std::size_t idle = seen.kept.frames() - seen.loaded_frames;
   const double seconds = seconds_per_frame(seen.kept);
-  const double factor = (found.polarity == Polarity::falls ? -1 : 1) *
-                        (seconds > 0 ? 60 / seconds : static_cast<double>(seen.kept.frames()));
-  SenselFigure drift = figure_of(seen, *drifts);
+  if (drifts.empty() || !(seconds * static_cast<double>(idle) >= kLeastDriftSeconds)) return;
+  const double factor = (found.polarity == Polarity::falls ? -1 : 1) * 60 / seconds;
+  SenselFigure drift = figure_of(seen, drifts);
   drift.median *= factor;
   drift.worst *= factor;
   found.drift = drift;
@@ -305,12 +393,12 @@ std::vector<std::uint8_t> frames_at_rest(const Examination& seen, const Baseline
   std::size_t count = 0;
   for (std::size_t frame = 0; frame < at_rest.size(); ++frame) {
     const auto readings = std::as_const(seen.kept).frame(frame);
-    for (std::size_t i = 0; i < readings.size() && at_rest[frame] != 0; ++i) {
-      const double most = seen.lowest[i] + kAtRest * seen.span;
-      if (seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most) {
-        at_rest[frame] = 0;
-      }
+    std::size_t loaded = 0;
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const double most = most_at_rest(seen, i);
+      loaded += seen.is_steady(i) && readings[i] - baseline.of(i, frame) > most ? 1U : 0U;
     }
+    at_rest[frame] = kLoadedAtRest * loaded <= readings.size() ? 1 : 0;
     count += at_rest[frame];
   }
   if (count < kLeastRest) at_rest.clear();
@@ -329,7 +417,7 @@ void take_signals(Examination& seen, const Baseline& baseline, float sign) {
     rest.clear();
     for (std::size_t n = 0; n < readings.values.size(); ++n) {
       readings.values[n] -= static_cast<float>(baseline.of(i, readings.frames[n]));
-      const float most = seen.lowest[i] + static_cast<float>(kAtRest * seen.span);
+      const auto most = static_cast<float>(most_at_rest(seen, i));
       const bool is_rest =
           at_rest.empty() ? readings.values[n] < most : at_rest[readings.frames[n]] != 0;
       if (is_rest) rest.push_back(readings.values[n]);
@@ -365,12 +453,14 @@ LoadOfFrame load_of(const Examination& seen, std::size_t frame) {
 void find_contacts(Examination& seen, Diagnosis& found) {
   std::vector<LoadOfFrame> loads;
   std::vector<float> peaks;
+  if (!seen.has_load) return;
   for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
     loads.push_back(load_of(seen, frame));
     if (loads.back().loaded > 0) peaks.push_back(loads.back().peak);
   }
+  seen.loaded_frames = peaks.size();
   if (peaks.empty()) return;
-  const double usual = quantile(peaks, 0.9);
+  const double usual = seen.usual_peak = quantile(peaks, 0.9);
   peaks.clear();
   for (std::uint32_t frame = 0; frame < loads.size(); ++frame) {
     const LoadOfFrame& load = loads[frame];
@@ -395,25 +485,19 @@ void find_contacts(Examination& seen, Diagnosis& found) {
 
 }  // namespace
 
-double Examination::threshold(std::size_t sensel) const {
-  return kBeyondIdleNoise * noise_of(sensel);
-}
-
-bool Examination::is_steady(std::size_t sensel) const {
-  return constant[sensel] == 0 && noisy[sensel] == 0;
-}
-
 void find_signals(Examination& seen, Diagnosis& found) {
   find_noise_and_ranges(seen, found);
-  found.polarity = find_polarity(seen);
+  if (seen.has_load) found.polarity = find_polarity(seen);
   if (found.polarity == Polarity::falls) turn_over(seen);
   const Baseline baseline(seen);
-  report_drift(seen, baseline, found);
+  const std::vector<float> drifts = baseline.drifts();
   take_signals(seen, baseline, found.polarity == Polarity::falls ? -1 : 1);
   found.idle_counts = figure_of(seen, seen.idle).median;
   found.idle_frames = found.frames;
-  find_contacts(seen, found);
+  if (found.polarity != Polarity::unknown) find_contacts(seen, found);
+  if (found.polarity == Polarity::unknown && seen.has_load) found.idle_frames = 0;
   if (seen.contacts.empty()) found.polarity = Polarity::unknown;
+  if (!seen.contacts.empty() || !seen.has_load) report_drift(seen, drifts, found);
   found.contact_counts = seen.contact_counts;
   found.contact_frames = seen.contacts.size();
 }

@@ -18,42 +18,34 @@ namespace pillarfield {
 /// The direction of readings under load.
 enum class Polarity : std::uint8_t { rises, falls, unknown };
 
-/// The structure on the sensels, as the readings show it.
-enum class ArrayLayout : std::uint8_t {
-  pillars,  ///< groups of 2 x 2 sensels share the load of a pillar
-  sensels,  ///< each sensel is loaded by itself
-  unknown,  ///< nothing decides it
-};
-
 /// A fault of an array.
 enum class ArrayFault : std::uint8_t {
-  absent,            ///< sensels without a reading, or that always read 0 where all others do not
-  dead,              ///< sensels that do not respond although their neighbours do
-  stuck,             ///< sensels whose reading is constant while those of the others vary
-  saturated,         ///< sensels that are at full scale most of the time
-  noisy,             ///< sensels that vary far more than the others without load
-  dead_row,          ///< a row of dead, absent or stuck sensels
-  dead_column,       ///< the same for a column
-  shorted_rows,      ///< two rows that show the same contacts
-  shorted_columns,   ///< the same for columns
-  row_order,         ///< rows that are wired in another order than they lie
-  column_order,      ///< the same for columns
-  row_crosstalk,     ///< a contact shows in all of its rows
-  column_crosstalk,  ///< a contact shows in all of its columns
-  ghosts,            ///< sensels that read only while the other corners of a rectangle do
-  missing_frames,    ///< frames without readings of their own: NaN, or one value everywhere
-  repeated_frames,   ///< frames that repeat the one before
-  frozen,            ///< all frames are equal
-  normalised,        ///< every frame has the same largest reading
-  two_values,        ///< sensels read one of two values only
-  byte_order,        ///< the two bytes of a reading are swapped
-  stuck_bit,         ///< a bit of the readings never changes
+  absent,              ///< sensels without a reading, or that always read 0 where all others do not
+  dead,                ///< sensels that do not respond although their neighbours do
+  weak,                ///< sensels that respond far less than their neighbours and than most
+  stuck,               ///< sensels whose reading is constant while those of the others vary
+  saturated,           ///< sensels that are at full scale most of the time
+  noisy,               ///< sensels that vary far more than the others without load
+  dead_row,            ///< a row of dead, absent or stuck sensels
+  dead_column,         ///< the same for a column
+  shorted_rows,        ///< two rows that show the same contacts
+  shorted_columns,     ///< the same for columns
+  row_order,           ///< rows that are wired in another order than they lie
+  column_order,        ///< the same for columns
+  ghosts,              ///< sensels that read only while the other corners of a rectangle do
+  rest_after_release,  ///< sensels that stay up after releases: rest, or a load nobody sees
+  followed_baseline,   ///< sensels that go below rest at releases: the board follows its baseline
+  missing_frames,      ///< frames without readings of their own: NaN, or one value everywhere
+  repeated_frames,     ///< frames that repeat the one before
+  frozen,              ///< all frames are equal
+  normalised,          ///< every frame has the same largest reading
+  two_values,          ///< sensels read one of two values only
+  byte_order,          ///< the two bytes of a reading are swapped
 };
 
 /// "absent", "dead", "dead row", ...
 [[nodiscard]] const char* name_of(ArrayFault fault);
 [[nodiscard]] const char* name_of(Polarity polarity);
-[[nodiscard]] const char* name_of(ArrayLayout layout);
 
 /// A place, [row, col]; rows and columns count from 0.
 using SenselPlace = std::pair<std::uint32_t, std::uint32_t>;
@@ -65,11 +57,13 @@ struct ArrayFinding {
   std::vector<std::uint32_t> lines = {};  ///< rows or columns of faults of lines
   /// absent, stuck, saturated: median reading, counts. dead and dead lines: largest response in
   /// per cent of that of the neighbours. Shorted lines: difference of the lines in per cent of
-  /// their signal. Order: number of lines out of place. Crosstalk: per cent of the largest signal
-  /// of the row or column. noisy: multiple of the noise of the others. ghosts: largest reading,
-  /// counts. Frames: their number. normalised, two_values: the largest reading. byte_order: change
-  /// from frame to frame in per cent of the range. stuck_bit: its number, from 0.
+  /// their signal. Order: number of lines out of place. noisy: multiple of the noise of the others.
+  /// ghosts: largest reading, counts. Rests: change from before the touch, counts. Frames: their
+  /// number. normalised, two_values: the largest reading. byte_order: change from frame to frame in
+  /// per cent of the range.
   double figure = 0;
+  std::size_t releases = 0;  ///< of rests: releases of a sensel
+  std::size_t seen = 0;      ///< of rests: releases after which the rest was another
   /// One sentence for people, with the figure and the place.
   std::string text = {};
 };
@@ -108,21 +102,18 @@ struct Diagnosis {
   Polarity polarity = Polarity::unknown;
   double idle_counts = 0;   ///< median reading of sensels without load
   SenselFigure noise = {};  ///< counts
-  /// Counts per minute, or over all frames if there are no times. Unset: too few frames.
+  /// Counts per minute. Unset: fewer than 30 s of frames without a contact, or no times.
   std::optional<SenselFigure> drift = {};
   double contact_counts = 0;         ///< largest change of a frame under load, median of the frames
   std::uint64_t contact_frames = 0;  ///< kept frames with a contact
   std::uint64_t idle_frames = 0;     ///< first frames without a contact
   std::uint64_t clipped = 0;  ///< sensels that were at full scale in some frames, not in most
-  std::vector<SenselPlace> untouched = {};  ///< sensels that nothing tested
-  ArrayLayout layout = ArrayLayout::unknown;
-  /// Disagreement of sensels that may share a pillar, relative to that of others; around 1 for bare
-  /// sensels.
-  std::optional<double> layout_ratio = {};
-  bool row_order_tested = false;  ///< a small contact swept over most rows
+  std::vector<SenselPlace> untouched = {};   ///< sensels that differ, but nothing tested
+  std::vector<SenselPlace> touch_here = {};  ///< a few of these, far apart
+  std::uint64_t never_differ = 0;            ///< sensels without two different readings
+  SkinLayout layout = SkinLayout::sensels;   ///< as the frames state it
+  bool row_order_tested = false;             ///< a small contact swept over most rows
   bool column_order_tested = false;
-  std::optional<double> row_crosstalk_percent = {};  ///< unset: no small contact showed it
-  std::optional<double> column_crosstalk_percent = {};
   std::vector<ArrayFinding> findings = {};
   std::vector<std::optional<SenselFault>> verdicts = {};  ///< of each sensel; unset: may be sound
   /// True if the readings show no force, whatever is done: they are all equal, scaled frame by

@@ -27,6 +27,7 @@ inline constexpr double kCovered = 0.8;
 /// with a followed baseline the first 4096.
 [[nodiscard]] std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source);
 
+class LineCheck;
 class ParityCheck;
 
 /// Notices solved frames whose readings were probably not what the plan takes them for: no tare,
@@ -65,6 +66,7 @@ class ReadingCheck final : public ForceSink {
   std::uint64_t sensels_seen_ = 0;
   Counts most_;
   std::shared_ptr<ParityCheck> parity_;
+  std::shared_ptr<LineCheck> lines_;
 };
 
 }  // namespace pillarfield
