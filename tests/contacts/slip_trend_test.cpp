@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 namespace pillarfield {
@@ -80,6 +81,35 @@ TEST(SlipTrend, FollowsARampAfterARestAndAfterASwing) {
       if (left_s < 0.25) {
         EXPECT_GT(found.probability[1], 0.5) << frame;
       }
+    }
+  }
+}
+
+/// Of any load: probabilities do not fall with the horizon, and times are in order.
+TEST(SlipTrend, ProbabilitiesDoNotFallWithTheHorizon) {
+  std::mt19937 random(1);
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  for (int history = 0; history < 2000; ++history) {
+    SlipTrend trend;
+    const double noise = std::pow(10, draw(-4, 0));
+    const double slope = draw(-3, 3);
+    const double swing = draw(0, 1);
+    double time_s = draw(-1e3, 1e3);
+    for (int frame = 0; frame < 40; ++frame) {
+      time_s += std::pow(10, draw(-4, 0));
+      trend.add(time_s, std::abs(0.5 + slope * time_s + swing * std::sin(4 * time_s) +
+                                 draw(-noise, noise)));
+      const auto found = trend.forecast(draw(0.05, 3), std::pow(10, draw(-3, 0)));
+      if (!found) continue;
+      const auto& [tenth, third, whole] = found->probability;
+      EXPECT_TRUE(0 <= tenth && tenth <= third && third <= whole && whole <= 1)
+          << history << ": " << tenth << ", " << third << ", " << whole;
+      if (!found->time_s) continue;
+      EXPECT_LE(found->low_s.value_or(0), *found->time_s) << history;
+      EXPECT_GE(found->high_s.value_or(HUGE_VAL), *found->time_s) << history;
+      EXPECT_TRUE(*found->time_s > 0 || tenth >= 0.5) << history;
     }
   }
 }
