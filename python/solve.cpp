@@ -71,7 +71,8 @@ class IteratorStream final : public FrameStream {
 /// Collects planes, times and contacts.
 class Collector final : public ForceSink {
  public:
-  explicit Collector(const SolverPlan& plan) : planes_(plan.skin), check_(plan) {}
+  explicit Collector(const SolverPlan& plan, bool judges_errors = false)
+      : planes_(plan.skin), check_(plan, judges_errors) {}
 
   void reserve(std::size_t frames) {
     planes_.reserve(frames);
@@ -134,7 +135,7 @@ py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
 
 py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool contacts,
                         const std::string& device, bool falling) {
-  Collector collector(plan);
+  Collector collector(plan, true);
   IteratorStream stream(frames, plan, falling);
   {
     const py::gil_scoped_release unlocked;

@@ -34,8 +34,9 @@ class ParityCheck;
 /// noise than is stated, gains that are off.
 class ReadingCheck final : public ForceSink {
  public:
-  /// `plan` must outlive the check.
-  explicit ReadingCheck(const SolverPlan& plan);
+  /// `plan` must outlive the check. `judges_errors`: by parity, of frames that come once, which
+  /// allow_for_errors() cannot read first.
+  explicit ReadingCheck(const SolverPlan& plan, bool judges_errors = false);
 
   /// Counts a frame. Looks at its readings only where hardly any pillar is in contact.
   void append(const SolvedFrame& frame) override;
