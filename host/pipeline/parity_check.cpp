@@ -150,6 +150,11 @@ Loads loads_of(const std::vector<const Pillar*>& pillars, double noise, double s
   return loads;
 }
 
+/// The squares of the parity that neither curve nor leak explains, counts^2.
+double unshared_of(const Loads& loads) {
+  return without(without(loads.all, ParityCheck::kCurve), ParityCheck::kLeak)[0][0];
+}
+
 ParityCheck::Error contradiction(double counts) {
   return {
       fmt::format("The readings of pillars contradict each other by about {:.2g} counts", counts),
@@ -164,7 +169,7 @@ void judge_shared(const Loads& loads, bool is_own, double stated, ParityCheck::F
   constexpr double kLeast = 0.02;   // of these errors; and the largest, beyond which it is neither
   constexpr double kMost = 0.5;
   constexpr double kPossible = 1;  // deviations from zero
-  constexpr double kShown = 3.5;
+  constexpr double kShown = 4;
   constexpr double kSure = 7;
   std::vector<Products> own = loads.pillars;
   for (std::size_t term = 1; is_own && term < ParityCheck::kCurve; ++term) {
@@ -187,16 +192,16 @@ void judge_shared(const Loads& loads, bool is_own, double stated, ParityCheck::F
       {fmt::format("Sensels read about {:.2g} % of their neighbours' load", 100 * leak.value),
        "'pillarfield calibrate leak' measures it."});
   if (found.relative > 0 && found.errors.empty() && !is_own) {
-    found.errors.push_back(
-        contradiction(found.relative * std::sqrt(loads.squares / loads.samples) / 2));
+    const double shown = loads.all[0][0] - unshared_of(loads);
+    found.errors.push_back(contradiction(std::sqrt(shown / loads.samples) / 2));
   }
 }
 
 /// Adds the errors that each pillar has by itself to `found`. A cause is named if it leaves little
-/// of them, and less than half of what the next one leaves.
+/// of them, and the next one more: loads that stay tell tares from gains no more than from drift.
 void judge_own(const Loads& loads, double noise, ParityCheck::Found& found) {
   constexpr double kMostLeft = 0.05;
-  constexpr double kOfNext = 0.4;
+  constexpr double kMoreLeft = 0.02;  // by the next one, beside 2.5 times as much
   constexpr double kNoPattern = 0.8;
   constexpr double kNow = 1.3;  // a drift late in the recording, over its mean
   std::array<std::pair<double, std::size_t>, 3> left;
@@ -208,7 +213,8 @@ void judge_own(const Loads& loads, double noise, ParityCheck::Found& found) {
   }
   std::ranges::sort(left);
   const auto [least, best] = left[0];
-  const std::size_t cause = least < kMostLeft && least < kOfNext * left[1].first ? best : 0;
+  const bool is_named = least < kMostLeft && left[1].first > 2.5 * std::max(least, 0.0) + kMoreLeft;
+  const std::size_t cause = is_named ? best : 0;
   const double counts = std::sqrt(loads.excess / loads.samples) / 2;
   const double gains = std::sqrt(loads.excess / loads.squares);
   const bool is_noise = found.noise > 0 && least > kNoPattern;  // of rows that hardly rested
@@ -232,9 +238,8 @@ void judge_own(const Loads& loads, double noise, ParityCheck::Found& found) {
 void judge(const Loads& loads, double noise, double stated, ParityCheck::Found& found) {
   constexpr double kLeast = 0.25;  // excess, of the variance of noise
   constexpr double kUnshared = 0.3;
-  const Products unshared = without(without(loads.all, ParityCheck::kCurve), ParityCheck::kLeak);
   const bool is_own = loads.excess > kLeast * loads.noise &&
-                      unshared[0][0] - loads.noise > kUnshared * loads.excess;
+                      unshared_of(loads) - loads.noise > kUnshared * loads.excess;
   judge_shared(loads, is_own, stated, found);
   if (is_own) judge_own(loads, noise, found);
 }
