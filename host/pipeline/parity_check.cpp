@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/error.h"
@@ -17,15 +19,12 @@
 namespace pillarfield {
 namespace {
 
-using Pillar = ParityCheck::Pillar;
-using Products = ParityCheck::Products;
+using Check = ParityCheck;
+using Pillars = std::vector<Check::Pillar>;
+using Products = Check::Products;
 
-constexpr std::uint64_t kMostPillars = 2048;  // of a frame
-constexpr std::size_t kMostSamples = std::size_t{1} << 21U;
 constexpr double kInside = 4;     // distance from the ends of the range, deviations of a reading
 constexpr double kClearly = 1.4;  // times what is stated
-constexpr double kFewSamples = 300;
-constexpr std::size_t kFewPillars = 12;
 constexpr std::array<double, 4> kSigns = {1, -1, -1, 1};  // of V in the parity, row by row
 
 /// Standard deviation of a reading, counts, if the plan states one, else zero.
@@ -49,31 +48,27 @@ float value_at(const std::vector<float>& plane, std::size_t sensel, float otherw
   return plane.empty() ? otherwise : plane[sensel];
 }
 
-double samples_of(const Pillar& pillar) { return pillar.products[1][1]; }
-
-/// Variance of a reading by the changes of a pillar; zero if there are too few.
-double variance_of(const Pillar& pillar) {
-  constexpr double kFewChanges = 5;
-  return pillar.changes < kFewChanges ? 0 : pillar.change_squares / (8 * pillar.changes);
-}
-
-/// The pillars without outliers such as those of a stuck sensel: less than a twentieth of them,
-/// beyond 55 medians (7.4 squared) of `mean`.
-template <class Mean>
-std::vector<const Pillar*> without_outliers(std::vector<const Pillar*> pillars, const Mean& mean) {
-  constexpr double kOutlier = 55;
-  std::ranges::sort(pillars, {}, mean);
-  const std::size_t count = pillars.size();
-  std::size_t kept = count - count / 20;
-  while (kept < count && mean(pillars[kept]) <= kOutlier * mean(pillars[count / 2])) ++kept;
-  pillars.resize(kept);
-  return pillars;
-}
+double samples_of(const Check::Pillar& pillar) { return pillar.products[1][1]; }
+double changes_of(const Check::Pillar& pillar) { return pillar.changes; }
+double change_squares_of(const Check::Pillar& pillar) { return pillar.change_squares; }
+double parity_squares_of(const Check::Pillar& pillar) { return pillar.products[0][0]; }
 
 template <class Value>
-double sum_of(const std::vector<const Pillar*>& pillars, const Value& value) {
-  return std::accumulate(pillars.begin(), pillars.end(), 0.0,
-                         [&](double sum, const Pillar* each) { return sum + value(*each); });
+double sum_of(const Pillars& pillars, const Value& value) {
+  return std::transform_reduce(pillars.begin(), pillars.end(), 0.0, std::plus<>(), value);
+}
+
+/// The pillars with samples, without outliers such as those of a stuck sensel: less than a
+/// twentieth of them, beyond 7.4 medians of the root mean square. None if they are too few.
+template <class Count, class Squares>
+Pillars chosen(Pillars pillars, const Count& count, const Squares& squares) {
+  std::erase_if(pillars, [&](const Check::Pillar& each) { return !(count(each) > 0); });
+  const auto mean = [&](const Check::Pillar& each) { return squares(each) / count(each); };
+  std::ranges::sort(pillars, {}, mean);
+  std::size_t kept = pillars.size() - pillars.size() / 20;
+  while (kept < pillars.size() && mean(pillars[kept]) < 55 * mean(pillars[kept / 2])) ++kept;
+  pillars.resize(kept);
+  return kept < 12 || sum_of(pillars, count) < 300 ? Pillars() : pillars;
 }
 
 /// The products of what the least-squares multiple of a term leaves.
@@ -86,11 +81,11 @@ Products without(const Products& products, std::size_t term) {
   return left;
 }
 
-Products sum_of(const std::vector<Products>& pillars) {
+Products sum_of(const Pillars& pillars) {
   Products sum{};
-  for (const Products& each : pillars) {
+  for (const Check::Pillar& each : pillars) {
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[i][k] += each[i][k];
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[i][k] += each.products[i][k];
     }
   }
   return sum;
@@ -104,8 +99,7 @@ struct Shared {
 
 /// By least squares beside another term. Deviations are those of whole pillars, whose errors last,
 /// but not below those of noise, the variance of a parity.
-Shared shared(const std::vector<Products>& pillars, std::size_t term, std::size_t beside,
-              double noise) {
+Shared shared(const Pillars& pillars, std::size_t term, std::size_t beside, double noise) {
   const Products all = sum_of(pillars);
   const Products alone = without(all, beside);
   const double square = alone[term][term];
@@ -113,136 +107,139 @@ Shared shared(const std::vector<Products>& pillars, std::size_t term, std::size_
   const double value = alone[0][term] / square;
   const double slope = all[term][beside] / all[beside][beside];
   const double other = (all[0][beside] - value * all[term][beside]) / all[beside][beside];
-  double variance = 0;
-  for (const Products& each : pillars) {
+  const double variance = sum_of(pillars, [&](const Check::Pillar& each) {
     const auto rest = [&](std::size_t with) {
-      return each[0][with] - value * each[term][with] - other * each[beside][with];
+      const auto& row = each.products[with];
+      return row[0] - value * row[term] - other * row[beside];
     };
-    variance += std::pow(rest(term) - slope * rest(beside), 2);
-  }
+    return std::pow(rest(term) - slope * rest(beside), 2);
+  });
   return {value, std::abs(value) * square / std::sqrt(std::max(variance, noise * square))};
 }
 
-/// Sums over the loaded frames of all pillars.
-struct Loads {
-  std::vector<Products> pillars;
-  Products all{};
-  double samples = 0;
-  double squares = 0;  ///< of V, counts^2
-  double noise = 0;    ///< variances of the parity by noise, counts^2
-  double excess = 0;   ///< of parity^2 over them and what is stated
-};
-
-/// `noise` is the standard deviation of a reading, `stated` ResidualError::relative.
-Loads loads_of(const std::vector<const Pillar*>& pillars, double noise, double stated) {
-  Loads loads;
-  for (const Pillar* each : pillars) {
-    loads.pillars.push_back(each->products);
-    loads.noise += 4 * samples_of(*each) * std::max(noise * noise, variance_of(*each));
+/// Judges the parity of loaded pillars.
+class Judge {
+ public:
+  /// `noise` is the standard deviation of a reading, `stated` ResidualError::relative.
+  Judge(Pillars pillars, double noise, double stated, Check::Found& found)
+      : pillars_(std::move(pillars)),
+        all_(sum_of(pillars_)),
+        least_(kClearly * stated),
+        found_(found) {
+    constexpr double kFewChanges = 5;
+    constexpr double kLeastExcess = 0.25;  // of the variance of noise
+    noise_ = noise;
+    samples_ = all_[Check::kTare][Check::kTare];
+    noises_ = sum_of(pillars_, [&](const Check::Pillar& each) {
+      const bool is_known = each.changes >= kFewChanges;
+      const double own = is_known ? each.change_squares / (8 * each.changes) : 0;
+      return 4 * samples_of(each) * std::max(noise * noise, own);
+    });
+    for (const auto term : {Check::kParity, Check::kSum, Check::kX, Check::kY}) {
+      squares_ += all_[term][term] / 4;  // The four are orthogonal.
+    }
+    excess_ = all_[0][0] - noises_ - least_ * least_ * squares_;
+    unshared_ = without(without(all_, Check::kCurve), Check::kLeak)[0][0];
+    is_own_ = excess_ > kLeastExcess * noises_ && unshared_ - noises_ > 0.3 * excess_;
   }
-  loads.all = sum_of(loads.pillars);
-  loads.samples = loads.all[ParityCheck::kTare][ParityCheck::kTare];
-  for (const auto term :
-       {ParityCheck::kParity, ParityCheck::kSum, ParityCheck::kX, ParityCheck::kY}) {
-    loads.squares += loads.all[term][term] / 4;  // The four are orthogonal.
+
+  void run() {
+    judge_shared();
+    if (is_own_) judge_own();
   }
-  loads.excess = loads.all[0][0] - loads.noise - std::pow(kClearly * stated, 2) * loads.squares;
-  return loads;
-}
 
-/// The squares of the parity that neither curve nor leak explains, counts^2.
-double unshared_of(const Loads& loads) {
-  return without(without(loads.all, ParityCheck::kCurve), ParityCheck::kLeak)[0][0];
-}
-
-ParityCheck::Error contradiction(double counts) {
-  return {
-      fmt::format("The readings of pillars contradict each other by about {:.2g} counts", counts),
-      "'pillarfield doctor' looks for faults."};
-}
-
-/// Adds the curve and the leak, which all pillars share, to `found`. Beside errors that each pillar
-/// has by itself, or noise, they are allowed for where they are possible, and named where sure.
-void judge_shared(const Loads& loads, bool is_own, double stated, ParityCheck::Found& found) {
-  constexpr double kOfCurve = 1.3;  // relative errors of N: of a load far from the scale's own,
-  constexpr double kOfLeak = 5;     // and with the leak within a pillar, which keeps parity
-  constexpr double kLeast = 0.02;   // of these errors; and the largest, beyond which it is neither
-  constexpr double kMost = 0.5;
-  constexpr double kPossible = 1;  // deviations from zero
-  constexpr double kShown = 4;
-  constexpr double kSure = 7;
-  std::vector<Products> own = loads.pillars;
-  for (std::size_t term = 1; is_own && term < ParityCheck::kCurve; ++term) {
-    for (Products& each : own) each = without(each, term);
+ private:
+  /// Curve and leak, which all pillars share. Beside errors that each pillar has by itself, or
+  /// noise, they are allowed for where they are possible, and named where sure.
+  void judge_shared() {
+    constexpr double kOfCurve = 1.3;  // relative errors of N: of a load far from the scale's own,
+    constexpr double kOfLeak = 5;     // and with the leak within a pillar, which keeps parity
+    Pillars own = pillars_;
+    for (std::size_t term = 1; is_own_ && term < Check::kCurve; ++term) {
+      for (Check::Pillar& each : own) each.products = without(each.products, term);
+    }
+    const Shared curve = shared(own, Check::kCurve, Check::kLeak, noises_ / samples_);
+    const Shared leak = shared(own, Check::kLeak, Check::kCurve, noises_ / samples_);
+    const bool has_others = is_own_ || found_.noise > 0;
+    add(curve, kOfCurve * std::abs(curve.value), has_others,
+        {fmt::format("Readings grow about as load^{:.2g}", 1 + curve.value),
+         "'pillarfield calibrate equilibrate' at several pressures measures the curve."});
+    add(leak, kOfLeak * leak.value, has_others,
+        {fmt::format("Sensels read about {:.2g} % of their neighbours' load", 100 * leak.value),
+         "'pillarfield calibrate leak' measures it."});
+    if (found_.relative > 0 && found_.errors.empty() && !is_own_)
+      contradict(all_[0][0] - unshared_);
   }
-  const double noise = loads.noise / loads.samples;
-  const Shared curve = shared(own, ParityCheck::kCurve, ParityCheck::kLeak, noise);
-  const Shared leak = shared(own, ParityCheck::kLeak, ParityCheck::kCurve, noise);
-  const bool has_others = is_own || !found.errors.empty();
-  const auto add = [&](const Shared& each, double relative, ParityCheck::Error error) {
+
+  void add(const Shared& each, double relative, bool has_others, Check::Error error) {
+    constexpr double kLeast = 0.02;
+    constexpr double kMost = 0.5;    // beyond it is another error
+    constexpr double kPossible = 1;  // deviations from zero
+    constexpr double kShown = 4;
+    constexpr double kSure = 7;
     if (each.deviations < (has_others ? kPossible : kShown) || relative > kMost) return;
-    if (relative < std::max(kLeast, kClearly * stated)) return;
-    found.relative = std::hypot(found.relative, relative);
-    if (each.deviations > kSure) found.errors.push_back(std::move(error));
-  };
-  add(curve, kOfCurve * std::abs(curve.value),
-      {fmt::format("Readings grow about as load^{:.2g}", 1 + curve.value),
-       "'pillarfield calibrate equilibrate' at several pressures measures the curve."});
-  add(leak, kOfLeak * leak.value,
-      {fmt::format("Sensels read about {:.2g} % of their neighbours' load", 100 * leak.value),
-       "'pillarfield calibrate leak' measures it."});
-  if (found.relative > 0 && found.errors.empty() && !is_own) {
-    const double shown = loads.all[0][0] - unshared_of(loads);
-    found.errors.push_back(contradiction(std::sqrt(shown / loads.samples) / 2));
+    if (relative < std::max(kLeast, least_)) return;
+    found_.relative = std::hypot(found_.relative, relative);
+    if (each.deviations > kSure) found_.errors.push_back(std::move(error));
   }
-}
 
-/// Adds the errors that each pillar has by itself to `found`. A cause is named if it leaves little
-/// of them, and the next one more: loads that stay tell tares from gains no more than from drift.
-void judge_own(const Loads& loads, double noise, ParityCheck::Found& found) {
-  constexpr double kMostLeft = 0.05;
-  constexpr double kMoreLeft = 0.02;  // by the next one, beside 2.5 times as much
-  constexpr double kNoPattern = 0.8;
-  constexpr double kNow = 1.3;  // a drift late in the recording, over its mean
-  std::array<std::pair<double, std::size_t>, 3> left;
-  for (std::size_t term = 1; term <= left.size(); ++term) {
-    double rest = 0;
-    for (const Products& each : loads.pillars) rest += without(each, term)[0][0];
-    rest /= 1 - static_cast<double>(loads.pillars.size()) / loads.samples;
-    left[term - 1] = {(rest - loads.noise) / loads.excess, term};
+  void contradict(double squares) {
+    found_.errors.push_back(
+        {fmt::format("The readings of pillars contradict each other by about {:.2g} counts",
+                     std::sqrt(squares / samples_) / 2),
+         "'pillarfield doctor' looks for faults."});
   }
-  std::ranges::sort(left);
-  const auto [least, best] = left[0];
-  const bool is_named = least < kMostLeft && left[1].first > 2.5 * std::max(least, 0.0) + kMoreLeft;
-  const std::size_t cause = is_named ? best : 0;
-  const double counts = std::sqrt(loads.excess / loads.samples) / 2;
-  const double gains = std::sqrt(loads.excess / loads.squares);
-  const bool is_noise = found.noise > 0 && least > kNoPattern;  // of rows that hardly rested
-  if (cause != ParityCheck::kSum) {
-    found.noise = std::hypot(noise, cause == ParityCheck::kDrift ? kNow * counts : counts);
-  }
-  if (is_noise) return;
-  if (cause == 0 || cause == ParityCheck::kSum) found.relative = std::hypot(found.relative, gains);
-  const std::array<ParityCheck::Error, 4> errors = {{
-      contradiction(counts),
-      {fmt::format("Tares are off by about {:.2g} counts", counts), "Take the tare again."},
-      {fmt::format("Sensels drift by about {:.2g} counts", counts),
-       "Let the tare follow with --follow-baseline (in Python baseline_time_s=)."},
-      {fmt::format("Gains are off by about {:.2g} %", 100 * gains),
-       "'pillarfield calibrate equilibrate' measures gains."},
-  }};
-  found.errors.push_back(errors[cause]);
-}
 
-/// Adds what the parity of loaded pillars shows to `found`.
-void judge(const Loads& loads, double noise, double stated, ParityCheck::Found& found) {
-  constexpr double kLeast = 0.25;  // excess, of the variance of noise
-  constexpr double kUnshared = 0.3;
-  const bool is_own = loads.excess > kLeast * loads.noise &&
-                      unshared_of(loads) - loads.noise > kUnshared * loads.excess;
-  judge_shared(loads, is_own, stated, found);
-  if (is_own) judge_own(loads, noise, found);
-}
+  /// Errors that each pillar has by itself. A cause is named if it leaves little of them, and the
+  /// next one clearly more: loads that stay do not tell tares from gains.
+  void judge_own() {
+    constexpr double kMostLeft = 0.05;
+    constexpr double kNoPattern = 0.8;
+    constexpr double kNow = 1.3;  // a drift late in the recording, over its mean
+    std::array<std::pair<double, std::size_t>, 3> left;
+    for (std::size_t term = 1; term <= left.size(); ++term) {
+      const double rest = sum_of(
+          pillars_, [&](const Check::Pillar& each) { return without(each.products, term)[0][0]; });
+      const double freedom = 1 - static_cast<double>(pillars_.size()) / samples_;
+      left[term - 1] = {(rest / freedom - noises_) / excess_, term};
+    }
+    std::ranges::sort(left);
+    const auto [least, best] = left[0];
+    const bool is_named = least < kMostLeft && left[1].first > 2.5 * std::max(least, 0.0) + 0.02;
+    const std::size_t cause = is_named ? best : Check::kParity;
+    const double counts = std::sqrt(excess_ / samples_) / 2;
+    const double gains = std::sqrt(excess_ / squares_);
+    const bool is_noise = found_.noise > 0 && least > kNoPattern;  // of rows that hardly rested
+    if (cause != Check::kSum) {
+      found_.noise = std::hypot(noise_, cause == Check::kDrift ? kNow * counts : counts);
+    }
+    if (is_noise) return;
+    if (cause != Check::kTare && cause != Check::kDrift) {
+      found_.relative = std::hypot(found_.relative, gains);
+    }
+    if (cause == Check::kParity) return contradict(excess_);
+    const std::array<Check::Error, 3> errors = {{
+        {fmt::format("Tares are off by about {:.2g} counts", counts), "Take the tare again."},
+        {fmt::format("Sensels drift by about {:.2g} counts", counts),
+         "Let the tare follow with --follow-baseline (in Python baseline_time_s=)."},
+        {fmt::format("Gains are off by about {:.2g} %", 100 * gains),
+         "'pillarfield calibrate equilibrate' measures gains."},
+    }};
+    found_.errors.push_back(errors[cause - 1]);
+  }
+
+  Pillars pillars_;
+  Products all_;
+  double least_;  ///< relative error that is clearly more than stated
+  Check::Found& found_;
+  double noise_ = 0;
+  double samples_ = 0;
+  double noises_ = 0;    ///< sums over all samples, counts^2: variances of the parity by noise,
+  double squares_ = 0;   ///< V^2,
+  double excess_ = 0;    ///< parity^2 over noise and what is stated,
+  double unshared_ = 0;  ///< and that which neither curve nor leak explains
+  bool is_own_ = false;  ///< errors of single pillars are seen
+};
 
 /// Two digits, as messages have them: recordings of one sensor share their kernels.
 double two_digits(double number) {
@@ -262,7 +259,8 @@ ParityCheck::ParityCheck(const SolverPlan& plan)
 }
 
 void ParityCheck::add(const FrameView& readings, bool follows) {
-  if (!(noise_ > 0) || samples_ > kMostSamples) return;
+  if (!(noise_ > 0)) return;
+  constexpr std::uint64_t kMostPillars = 2048;  // of a frame
   const Calibration& planes = plan_.calibration;
   const std::uint64_t pillars = plan_.skin.elements();
   const std::uint64_t step = (pillars + kMostPillars - 1) / kMostPillars;
@@ -349,38 +347,23 @@ void ParityCheck::add_load(const FrameView& readings, std::size_t row, std::size
   for (std::size_t i = 0; i < terms.size(); ++i) {
     for (std::size_t k = 0; k < terms.size(); ++k) pillar.products[i][k] += terms[i] * terms[k];
   }
-  ++samples_;
 }
 
 ParityCheck::Found ParityCheck::found() const {
-  const auto chosen = [&](const auto& count, const auto& squares) {
-    std::vector<const Pillar*> pillars;
-    for (const Pillar& each : pillars_) {
-      if (count(each) > 0) pillars.push_back(&each);
-    }
-    pillars = without_outliers(std::move(pillars),
-                               [&](const Pillar* each) { return squares(*each) / count(*each); });
-    if (pillars.size() < kFewPillars || sum_of(pillars, count) < kFewSamples) pillars.clear();
-    return pillars;
-  };
-  const auto changes = [](const Pillar& each) { return each.changes; };
-  const auto change_squares = [](const Pillar& each) { return each.change_squares; };
-  double noise = noise_;
   Found found;
-  if (const auto steady = chosen(changes, change_squares); !steady.empty()) {
-    noise = std::sqrt(sum_of(steady, change_squares) / (8 * sum_of(steady, changes)));
-  }
+  const Pillars steady = chosen(pillars_, changes_of, change_squares_of);
+  const double noise =
+      std::sqrt(sum_of(steady, change_squares_of) / std::max(8 * sum_of(steady, changes_of), 1.0));
   if (noise > kClearly * noise_) {
     found.noise = noise;
-    found.errors.push_back({fmt::format("The readings' noise is about {:.2g} counts, and {:.3g} is "
-                                        "stated",
-                                        without_rounding(noise), without_rounding(noise_)),
-                            "Give --noise (in Python noise_counts=), or take the tare again."});
+    found.errors.push_back(
+        {fmt::format("The readings' noise is about {:.2g} counts, and {:.3g} is stated",
+                     without_rounding(noise), without_rounding(noise_)),
+         "Give --noise (in Python noise_counts=), or take the tare again."});
   }
-  const auto loaded = chosen(samples_of, [](const Pillar& each) { return each.products[0][0]; });
+  Pillars loaded = chosen(pillars_, samples_of, parity_squares_of);
   const double stated = plan_.calibration.effects.residual.value_or(ResidualError{}).relative;
-  const double least = std::max(noise, noise_);
-  if (!loaded.empty()) judge(loads_of(loaded, least, stated), least, stated, found);
+  if (!loaded.empty()) Judge(std::move(loaded), std::max(noise, noise_), stated, found).run();
   return found;
 }
 
@@ -389,9 +372,9 @@ double ParityCheck::without_rounding(double noise) const {
   return std::sqrt(std::max(noise * noise - rounding, 0.0));
 }
 
-std::vector<std::string> ParityCheck::warnings(bool allowed_for) const {
+std::vector<std::string> ParityCheck::Found::sentences(bool allowed_for) const {
   std::vector<std::string> sentences;
-  for (const auto& [fault, mend] : found().errors) {
+  for (const auto& [fault, mend] : errors) {
     sentences.push_back(fmt::format("{}, by the parity of pillars: deviations and intervals {}. {}",
                                     fault, allowed_for ? "allow for it" : "are too narrow", mend));
   }
@@ -421,7 +404,6 @@ std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source)
       next = i + 1;
     }
   }
-  std::vector<std::string> sentences = check.warnings(true);
   const ParityCheck::Found found = check.found();
   if (found.noise > 0) {
     const double factor = found.noise / check.stated_noise();
@@ -433,7 +415,7 @@ std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source)
     residual = residual.value_or(ResidualError{});
     residual->relative = std::min(two_digits(std::hypot(residual->relative, found.relative)), 1.0);
   }
-  return sentences;
+  return found.sentences(true);
 }
 
 }  // namespace pillarfield

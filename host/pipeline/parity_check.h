@@ -29,15 +29,15 @@ class ParityCheck {
     double noise = 0;     ///< standard deviation of a reading, counts, with rounding
     double relative = 0;  ///< ResidualError::relative
     std::vector<Error> errors;
+
+    /// One for each error, which deviations allow for or not.
+    [[nodiscard]] std::vector<std::string> sentences(bool allowed_for) const;
   };
   [[nodiscard]] Found found() const;
 
   /// Standard deviation of a reading that the plan states, counts, with rounding; zero: none.
   [[nodiscard]] double stated_noise() const { return noise_; }
   [[nodiscard]] double without_rounding(double noise) const;
-
-  /// One sentence for each error found, which deviations allow for or not.
-  [[nodiscard]] std::vector<std::string> warnings(bool allowed_for) const;
 
   /// What the parity of a pillar is compared with, for each cause that makes one.
   enum Term : std::size_t { kParity, kTare, kDrift, kSum, kX, kY, kCurve, kLeak, kTerms };
@@ -65,7 +65,6 @@ class ParityCheck {
   float most_ = 0;    ///< reading from which on none is, counts
   std::vector<Pillar> pillars_;
   double frames_ = 0;
-  std::size_t samples_ = 0;
 };
 
 }  // namespace pillarfield

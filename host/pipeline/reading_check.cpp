@@ -109,7 +109,7 @@ std::vector<std::string> ReadingCheck::warnings() const {
         "'pillarfield doctor' counts lost and repeated frames.",
         sunken_frames_, frames_));
   }
-  if (parity_) std::ranges::move(parity_->warnings(false), std::back_inserter(sentences));
+  if (parity_) std::ranges::move(parity_->found().sentences(false), std::back_inserter(sentences));
   if (share >= kCovered) {
     sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));
   }
