@@ -181,7 +181,7 @@ void bind_solve(py::module_& module) {
       "'warnings' about their readings.";
   module.def(
       "allow_for_errors", &allow_for_frames, py::arg("plan"), py::arg("source"),
-      "Raises the noise and the error of gains that the plan states to what the frames show; "
+      "Raises the noise and the relative error that the plan states to what the frames show; "
       "returns a sentence about each.");
   module.def("solve_source", &solve_source, py::arg("source"), py::arg("plan"), py::arg("contacts"),
              py::arg("device"), kText);

@@ -128,7 +128,7 @@ class Parity(unittest.TestCase):
                 self.assertLessEqual(wrong, 0.05 * SEEDS)
                 if kind.startswith("right"):
                     self.assertLessEqual(SEEDS - silent, max(0.01 * SEEDS, 1))
-                elif kind not in ("leak", "curve", *KINDS[-3:]):  # The others may keep parity.
+                elif kind not in ("leak", "curve", *KINDS[-3:]):  # which may keep parity
                     self.assertLessEqual(silent, 0.1 * SEEDS)
                     self.assertGreater(np.mean(held), 0.9)
                 if held_told and kind != "hysteresis":
