@@ -173,7 +173,7 @@ class Judge {
 
   void add(const Shared& each, double relative, bool has_others, Check::Error error) {
     constexpr double kLeast = 0.02;
-    constexpr double kMost = 0.5;    // beyond it is another error
+    constexpr double kMost = 0.5;      // beyond it is another error
     constexpr double kPossible = 0.5;  // deviations from zero
     constexpr double kShown = 4;
     constexpr double kSure = 7;
