@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/number_text.h"
 #include "pillarfield/contact_columns.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/error.h"
@@ -87,12 +88,12 @@ void add_quantities(Class& bound, Get get) {
 std::string contact_text(const TrackedContact& contact) {
   const ContactQuantities& q = contact.quantities;
   if (!q.has_shear) {
-    return fmt::format("<Contact {}: {} sensels, {:.3g} N, at most {:.3g} kPa>", contact.track_id,
-                       q.pillars, q.normal_n, q.peak_pressure_kpa());
+    return fmt::format("<Contact {}: {}, {:.3g} N, at most {:.3g} kPa>", contact.track_id,
+                       counted(q.pillars, "sensel"), q.normal_n, q.peak_pressure_kpa());
   }
-  return fmt::format("<Contact {}: {} pillars, shear ({:.3g}, {:.3g}) N, normal {:.3g} N, {}>",
-                     contact.track_id, q.pillars, q.shear_x_n, q.shear_y_n, q.normal_n,
-                     name_of(q.slip));
+  return fmt::format("<Contact {}: {}, shear ({:.3g}, {:.3g}) N, normal {:.3g} N, {}>",
+                     contact.track_id, counted(q.pillars, "pillar"), q.shear_x_n, q.shear_y_n,
+                     q.normal_n, name_of(q.slip));
 }
 
 std::string total_text(const ContactQuantities& q) {
@@ -261,8 +262,8 @@ void bind_contacts(py::module_& module) {
       .def("__getitem__", &contact_at, py::arg("index"))
       .def("__repr__",
            [](const FrameContacts& self) {
-             return fmt::format("<FrameContacts: {} contacts, {:.3g} N>", self.contacts.size(),
-                                self.total.normal_n);
+             return fmt::format("<FrameContacts: {}, {:.3g} N>",
+                                counted(self.contacts.size(), "contact"), self.total.normal_n);
            })
       .def(py::pickle(&contacts_state, &contacts_from));
   module.def("contact_columns", &columns_of, py::arg("frames"), py::arg("totals"),

@@ -43,7 +43,7 @@ class ProcessBound {
 [[noreturn]] void throw_foreign(const std::string& what);
 
 /// The device of this name, opened once a process. Throws Error in a fork of a process that opened
-/// a device.
+/// a device, but for "host".
 [[nodiscard]] Device device_named(const std::string& name);
 
 }  // namespace pillarfield::python

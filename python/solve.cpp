@@ -71,7 +71,8 @@ class IteratorStream final : public FrameStream {
 /// Collects planes, times and contacts.
 class Collector final : public ForceSink {
  public:
-  explicit Collector(const SolverPlan& plan) : planes_(plan.skin), check_(plan) {}
+  explicit Collector(const SolverPlan& plan, bool judges_errors = false)
+      : planes_(plan.skin), check_(plan, judges_errors) {}
 
   void reserve(std::size_t frames) {
     planes_.reserve(frames);
@@ -134,7 +135,7 @@ py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
 
 py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool contacts,
                         const std::string& device, bool falling) {
-  Collector collector(plan);
+  Collector collector(plan, true);
   IteratorStream stream(frames, plan, falling);
   {
     const py::gil_scoped_release unlocked;
@@ -180,7 +181,7 @@ void bind_solve(py::module_& module) {
       "'warnings' about their readings.";
   module.def(
       "allow_for_errors", &allow_for_frames, py::arg("plan"), py::arg("source"),
-      "Raises the noise and the error of gains that the plan states to what the frames show; "
+      "Raises the noise and the relative error that the plan states to what the frames show; "
       "returns a sentence about each.");
   module.def("solve_source", &solve_source, py::arg("source"), py::arg("plan"), py::arg("contacts"),
              py::arg("device"), kText);

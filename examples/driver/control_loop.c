@@ -136,8 +136,9 @@ static void act(const PillarfieldResultSlot* result) {
   alarmed = alarm ? first->track_id : 0;
   if (seconds_now() - printed < 0.1) return;
   printed = seconds_now();
-  printf("frame %llu: %.3f N, %u contacts, lowest slip margin %.2f, ",
-         (unsigned long long)result->sequence, result->total.normal_n, result->contacts, lowest);
+  printf("frame %llu: %.3f N, %u contact%s, lowest slip margin %.2f, ",
+         (unsigned long long)result->sequence, result->total.normal_n, result->contacts,
+         result->contacts == 1 ? "" : "s", lowest);
   if (first != NULL) {
     printf("slips in %.2f s (%.2f to %.2f), ", first->time_to_slip_s, first->time_to_slip_low_s,
            first->time_to_slip_high_s);

@@ -291,9 +291,9 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   if (info.first_frame > 0) return forces.frames();
   const std::uint64_t frames = std::min(forces.frames(), recording.frames());
   if (forces.frames() != recording.frames()) {
-    fmt::print(stderr, "{}: it has {} frames and {} has {}; the first {} are compared\n",
-               printable(options.forces), forces.frames(), printable(options.recording),
-               recording.frames(), frames);
+    fmt::print(stderr, "{}: it has {} and {} has {}; what both have is compared\n",
+               printable(options.forces), counted(forces.frames(), "frame"),
+               printable(options.recording), recording.frames());
   }
   return frames;
 }

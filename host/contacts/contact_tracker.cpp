@@ -107,20 +107,22 @@ struct Track {
   SlipTrend trend = {};
 };
 
-/// Slip margin above which a contact that slides turns about a point within it: its shear cancels.
-constexpr double kSpinMargin = 0.5;
-
-/// Adds a frame to the trend of a contact, and sets its forecast: now, where it slides, and none,
-/// where it spins.
+/// Adds a frame to the trend of a contact, and sets its forecast: now, where it slides or spins.
 void set_forecast(ContactQuantities& contact, double time_s, SlipTrend& trend) {
   if (!(contact.normal_n > 0)) return;
   trend.add(time_s, std::hypot(contact.shear_x_n, contact.shear_y_n) / contact.normal_n);
-  if (!contact.friction_deviation) return;
-  if (contact.slip != SlipState::sliding) {
-    contact.slip_forecast = trend.forecast(*contact.friction, *contact.friction_deviation);
-  } else if (contact.slip_margin.value_or(0) <= kSpinMargin) {
+  if (contact.slip == SlipState::sliding) {
     contact.slip_forecast = {.time_s = 0, .low_s = 0, .high_s = 0, .probability = {1, 1, 1}};
+  } else if (contact.friction_deviation) {
+    contact.slip_forecast = trend.forecast(*contact.friction, *contact.friction_deviation);
   }
+}
+
+/// True for a contact of one pillar whose force is below five deviations of a reading.
+bool is_noise(const ContactSum& sum, double noise_n) {
+  constexpr double kDeviations = 5;
+  return sum.pillars == 1 &&
+         std::hypot(sum.shear_x, sum.shear_y, sum.normal) < kDeviations * noise_n;
 }
 
 }  // namespace
@@ -227,8 +229,8 @@ void ContactTracker::State::measure_wrenches(const ForceFieldView& forces) {
   frame.total.wrench = total;
 }
 
-/// Measures the total and the contacts of at least minimum_pillars. Estimates the friction of each
-/// contact, unless `friction` holds it.
+/// Measures the total and the contacts that are listed. Estimates the friction of each contact,
+/// unless `friction` holds it.
 void ContactTracker::State::measure(const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
   const bool has_shear = options.layout == SkinLayout::pillars;
@@ -252,6 +254,7 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
     total.add(sum);
     indices.push_back(kNoContact);
     if (static_cast<std::uint64_t>(sum.pillars) < options.minimum_pillars) continue;
+    if (is_noise(sum, noise_n)) continue;
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
     contact.label = label;

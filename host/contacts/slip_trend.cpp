@@ -47,7 +47,7 @@ void SlipTrend::remember_swing() {
 
 void SlipTrend::add(double time_s, double ratio) {
   if (frames_ > 0 && !(time_s > time_s_)) *this = {};
-  const double step_s = time_s - time_s_;
+  const double step_s = frames_ > 0 ? time_s - time_s_ : 0;
   const double change = ratio - ratio_;
   if (turns(step_s, change)) {
     line_ = {};
@@ -71,12 +71,15 @@ std::optional<SlipForecast> SlipTrend::forecast(double friction, double deviatio
   const bool swings = swing_ > 0 && !slides;
   const double goes_on = swings ? kSwingGoesOn : 1;
 
-  // P(slip within t) = Phi((rate t - left) / sqrt(variance + rate_variance t^2)), if it goes on.
+  // P(slip within t): the largest of Phi((rate t - left) / sqrt(variance + rate_variance t^2)) from
+  // now until then, if it goes on.
   SlipForecast found;
+  double largest = normal_probability(-left / std::sqrt(variance));
   for (std::size_t i = 0; i < found.probability.size(); ++i) {
     const double t = SlipForecast::kWithinS[i];
     const double sigma = std::sqrt(variance + rate_variance * t * t);
-    found.probability[i] = goes_on * normal_probability((rate * t - left) / sigma);
+    largest = std::max(largest, normal_probability((rate * t - left) / sigma));
+    found.probability[i] = goes_on * largest;
   }
   const double z = kEndsDeviations * kEndsDeviations;
   const double a = rate * rate - z * rate_variance;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/number_text.h"
 #include "calibration/wire_correction.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
@@ -27,7 +28,7 @@ void FileSource::read_truth(std::uint64_t, ForceField&) {
 void FileSource::require_frame(std::uint64_t index) const {
   if (index < frames_) return;
   throw Error(path_.string(), fmt::format("has no frame {}", index),
-              fmt::format("it holds {} frames, counted from 0", frames_));
+              fmt::format("it holds {}, counted from 0", counted(frames_, "frame")));
 }
 
 void FileSource::require_fitting(const FrameBuffer& frame) const {
@@ -135,7 +136,7 @@ void FileSource::note_absent() {
 
 void FileSource::measure_tare(const ReadOptions& options) {
   if (options.tare_frames > frames_) {
-    throw Error(path_.string(), fmt::format("has {} frames", frames_),
+    throw Error(path_.string(), "has " + counted(frames_, "frame"),
                 fmt::format("give a --tare-frames below {}", options.tare_frames));
   }
   WireCorrection correct(path_.string(), skin_, type_, calibration_.effects.wires, {});

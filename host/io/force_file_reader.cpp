@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/number_text.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/hdf5/attribute.h"
@@ -293,7 +294,7 @@ void OpenForces::count_frames() {
 void OpenForces::require_frame(std::uint64_t index) const {
   if (index < frames) return;
   throw Error(file.path.string(), fmt::format("has no frame {}", index),
-              fmt::format("it holds {} frames, counted from 0", frames));
+              fmt::format("it holds {}, counted from 0", counted(frames, "frame")));
 }
 
 }  // namespace

@@ -20,11 +20,18 @@ class ParityCheck {
   /// Judges some of a frame's pillars; `follows`: the frame before was the last.
   void add(const FrameView& readings, bool follows = true);
 
+  struct Error {
+    std::string fault;  ///< a clause
+    std::string mend;   ///< a sentence
+  };
   /// Errors that are clearly larger than stated; zero: none.
   struct Found {
-    double noise = 0;       ///< standard deviation of a reading, counts, with rounding
-    bool is_drift = false;  ///< seen under load alone, not from frame to frame
-    double gain_error = 0;  ///< standard deviation of the gains, relative
+    double noise = 0;     ///< standard deviation of a reading, counts, with rounding
+    double relative = 0;  ///< ResidualError::relative
+    std::vector<Error> errors;
+
+    /// One for each error, which deviations allow for or not.
+    [[nodiscard]] std::vector<std::string> sentences(bool allowed_for) const;
   };
   [[nodiscard]] Found found() const;
 
@@ -32,31 +39,32 @@ class ParityCheck {
   [[nodiscard]] double stated_noise() const { return noise_; }
   [[nodiscard]] double without_rounding(double noise) const;
 
-  /// One sentence for each error found, which deviations allow for or not.
-  [[nodiscard]] std::vector<std::string> warnings(bool allowed_for) const;
+  /// What the parity of a pillar is compared with, for each cause that makes one.
+  enum Term : std::size_t { kParity, kTare, kDrift, kSum, kX, kY, kCurve, kLeak, kTerms };
+  using Products = std::array<std::array<double, kTerms>, kTerms>;
+
+  /// Sums over the frames of a pillar.
+  struct Pillar {
+    std::array<float, 4> tare{};     ///< which may follow a drift
+    std::array<float, 4> earlier{};  ///< readings of the frame before
+    Products products{};             ///< of terms while all sensels are usable
+    double change_squares = 0;       ///< of the parity's change from frame to frame
+    double changes = 0;
+  };
 
  private:
-  /// A pillar whose sensels are all usable, or its change from frame to frame.
-  struct Sample {
-    double parity = 0;  ///< V1 + V3 - V2 - V4, counts; of a mean its square
-    double square = 0;  ///< sum of V^2, counts^2
-    double lowest = 0;  ///< V, counts
-    std::size_t pillar = 0;
-  };
-  void compare(const std::array<float, 4>& now, const std::array<float, 4>& before,
-               std::size_t pillar);
-  void keep(std::vector<Sample>& samples, const Sample& sample);
-  [[nodiscard]] static Sample mean_of(const std::vector<Sample>& samples, double noise,
-                                      double least, double most);
+  void compare(const std::array<float, 4>& now, Pillar& pillar) const;
+  [[nodiscard]] float load_of(const FrameView& readings, std::size_t row, std::size_t col) const;
+  void add_load(const FrameView& readings, std::size_t row, std::size_t col,
+                const std::array<float, 4>& load, Pillar& pillar);
 
   const SolverPlan& plan_;
   double noise_;
   bool judges_loads_;
-  std::vector<std::array<float, 4>> earlier_;  ///< readings of sampled pillars, the frame before
-  std::vector<std::array<float, 4>> tares_;    ///< theirs, which may follow a drift
-  std::vector<Sample> changes_;
-  std::vector<Sample> loads_;
-  std::size_t seen_ = 0;
+  float usable_ = 0;  ///< least V that is judged, counts
+  float most_ = 0;    ///< reading from which on none is, counts
+  std::vector<Pillar> pillars_;
+  double frames_ = 0;
 };
 
 }  // namespace pillarfield

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
+#include <iterator>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/status.h"
@@ -34,11 +34,12 @@ std::string coverage_words(double share, bool has_tare, SkinLayout layout) {
                            "or live with --tare or the viewer's key Z.");
 }
 
-ReadingCheck::ReadingCheck(const SolverPlan& plan)
+ReadingCheck::ReadingCheck(const SolverPlan& plan, bool judges_errors)
     : plan_(plan),
       present_(plan.skin.elements() - count_absent_elements(plan.calibration, plan.skin)),
-      parity_(std::make_shared<ParityCheck>(plan)),
-      lines_(std::make_shared<LineCheck>(plan)) {}
+      lines_(std::make_shared<LineCheck>(plan)) {
+  if (judges_errors) parity_ = std::make_shared<ParityCheck>(plan);
+}
 
 void ReadingCheck::append(const SolvedFrame& frame) {
   const std::uint64_t touched = count_in_contact(frame.forces.status);
@@ -52,7 +53,7 @@ void ReadingCheck::append(const SolvedFrame& frame) {
   const bool is_nearly_idle =
       static_cast<double>(touched) <= kHardlyAny * static_cast<double>(present_);
   if (is_nearly_idle && frame.readings.data != nullptr) look_at(frame.readings);
-  if (frame.readings.data != nullptr) parity_->add(frame.readings);
+  if (parity_ && frame.readings.data != nullptr) parity_->add(frame.readings);
   if (frame.readings.data != nullptr && touched > 0) lines_->add(frame.readings);
 }
 
@@ -111,8 +112,8 @@ std::vector<std::string> ReadingCheck::warnings() const {
         "'pillarfield doctor' counts lost and repeated frames.",
         sunken_frames_, frames_));
   }
-  for (std::string& sentence : parity_->warnings(false)) sentences.push_back(std::move(sentence));
-  for (std::string& sentence : lines_->warnings()) sentences.push_back(std::move(sentence));
+  if (parity_) std::ranges::move(parity_->found().sentences(false), std::back_inserter(sentences));
+  std::ranges::move(lines_->warnings(), std::back_inserter(sentences));
   if (share >= kCovered) {
     sentences.push_back(coverage_words(share, !plan_.calibration.tare.empty(), plan_.skin.layout));
   }

@@ -147,7 +147,7 @@ class Contacts(_core.Tracker):
     >>> frame[4:8, 4:8] = 64
     >>> contacts = pf.Contacts(pf.Plan(pf.Skin(16, 24)))
     >>> contacts.update(pf.solve(frame, counts_per_newton=320, layout="pillars"))
-    <FrameContacts: 1 contacts, 0.8 N>
+    <FrameContacts: 1 contact, 0.8 N>
     """
 
     def update(self, forces: ForceField) -> _core.FrameContacts:

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 namespace pillarfield {
@@ -80,6 +81,29 @@ TEST(SlipTrend, FollowsARampAfterARestAndAfterASwing) {
       if (left_s < 0.25) {
         EXPECT_GT(found.probability[1], 0.5) << frame;
       }
+    }
+  }
+}
+
+/// Of any load: probabilities do not fall with the horizon.
+TEST(SlipTrend, ProbabilitiesDoNotFallWithTheHorizon) {
+  std::mt19937 random(1);
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  for (int history = 0; history < 2000; ++history) {
+    SlipTrend trend;
+    const double slope = draw(-3, 3);
+    const double noise = std::pow(10, draw(-4, 0));
+    double time_s = draw(-1e3, 1e3);
+    for (int frame = 0; frame < 40; ++frame) {
+      time_s += std::pow(10, draw(-4, 0));
+      trend.add(time_s, std::abs(slope * time_s + draw(0, noise)));
+      const auto found = trend.forecast(draw(0.05, 3), std::pow(10, draw(-3, 0)));
+      if (!found) continue;
+      const auto& [tenth, third, whole] = found->probability;
+      ASSERT_TRUE(0 <= tenth && tenth <= third && third <= whole && whole <= 1) << history;
+      ASSERT_TRUE(found->time_s != 0 || tenth >= 0.5) << history;
     }
   }
 }

@@ -374,7 +374,7 @@ TEST(Recording, RefusesAbsentFramesAndUnfitBuffers) {
   FrameBuffer fitting(SenselType::u8, 2, 2);
   FrameBuffer wide(SenselType::u16, 2, 2);
   ForceField truth;
-  EXPECT_TRUE(has_all(error_of([&] { source->read(1, fitting); }), {"no frame 1", "1 frames"}));
+  EXPECT_TRUE(has_all(error_of([&] { source->read(1, fitting); }), {"no frame 1", "1 frame,"}));
   EXPECT_TRUE(has_all(error_of([&] { source->read(0, wide); }), {"uint16", "uint8"}));
   EXPECT_TRUE(has_all(error_of([&] { source->read_truth(0, truth); }), {"no true forces"}));
 }

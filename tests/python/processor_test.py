@@ -156,6 +156,7 @@ class Ring(unittest.TestCase):
                 except pf.Error as error:
                     refused += "forked" in str(error)
             fits = self.equal(held, 0)  # Memory came along.
+            fits &= self.equal(pf.solve(self.simulation, device="host", outputs=["angles"], estimator="direct")[0], 0)
             del processor, held
             gc.collect()
             os._exit(0 if (refused, fits) == (4, True) else 1)

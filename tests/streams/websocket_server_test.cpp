@@ -220,12 +220,13 @@ TEST_F(WebSocketServerTest, WebPagesMustBeAllowed) {
   for (const char* origin :
        {"https://evil.example", "null", "http://localhost.evil.example",
         "https://127.0.0.1.evil.example", "https://app.foxglove.dev.evil.example",
-        "http://192.0.2.7:8766", "file://x"}) {
+        "http://192.0.2.7:8766", "file://x", "http://127.0.0.1:80@evil.example",
+        "http://[::1]evil.example", "http://localhost:80/x", "http://localhost:", "http://[::1"}) {
     EXPECT_EQ(status(origin, "127.0.0.1:8765"), "403") << origin;
   }
   EXPECT_EQ(status("", "evil.example:8765"), "403");
   EXPECT_EQ(status("http://evil.example:8766", "evil.example:8766"), "403");
-  EXPECT_EQ(statistics().refused, 9u);
+  EXPECT_EQ(statistics().refused, 14u);
   EXPECT_EQ(statistics().notice,
             "refused the web page https://evil.example; --allow-origin https://evil.example admits "
             "it");

@@ -36,7 +36,8 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
       ->check(origin());
   output.text("--relay", options.relay, "shm:NAME",
               "Put the raw frames into a ring in shared memory, for other programs");
-  output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
+  output.text("--record", options.record, "FILE",
+              "Record the raw frames (HDF5); with --newest those that are solved");
   add_overwrite(command, options.replace);
   Group run(command, "Run");
   run.number("--seconds", options.seconds, "SECONDS", "End after this time [at the source's end]",
@@ -81,9 +82,9 @@ void add_stream(CLI::App& parent, Work& work) {
       input.number("--rate", options->rate_hz, "HZ",
                    "Frames per second of a replayed file [its own], or of the sensor", 0.01, 1e5);
   input.flag("--repeat", options->repeat, "Replay a file again and again");
-  input.flag(
-      "--newest", options->newest,
-      "Where frames of a live source wait, solve the newest alone; the others count as lost");
+  input.flag("--newest", options->newest,
+             "Where frames of a live source wait, solve (and record) the newest alone; the others "
+             "count as lost");
   input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
               100'000'000);
   add_plain_data(command, options->plan.read, false);

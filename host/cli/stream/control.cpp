@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "pillarfield/error.h"
 
@@ -109,11 +110,21 @@ void ControlChannel::accept_clients() {
   for (;;) {
     const int connection = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (connection < 0) return;
-    if (clients_.size() >= kMostClients) {
-      close(connection);
-      continue;
+    if (clients_.size() >= kMostClients) {  // The idle one that is silent for longest gives way.
+      const auto idle = std::ranges::min_element(clients_, {}, [](const Client& client) {
+        return std::pair(client.awaited > 0, client.last_line);
+      });
+      if (idle->awaited > 0) {
+        close(connection);
+        continue;
+      }
+      close_client(*idle);
+      clients_.erase(idle);
     }
-    clients_.push_back({.id = next_id_++, .input = connection, .output = connection});
+    clients_.push_back({.id = next_id_++,
+                        .input = connection,
+                        .output = connection,
+                        .last_line = std::chrono::steady_clock::now()});
   }
 }
 
@@ -137,6 +148,7 @@ bool ControlChannel::read_from(
     client.begun.erase(0, end + 1);
     if (line.ends_with('\r')) line.pop_back();
     ++client.awaited;
+    client.last_line = std::chrono::steady_clock::now();
     if (const std::string said = handle(client.id, line); !said.empty()) answer(client.id, said);
   }
   return client.begun.size() <= kMostLineBytes;

@@ -39,6 +39,7 @@ class ControlChannel {
     bool has_ended = false;     ///< sends no more lines
     std::uint64_t awaited = 0;  ///< answers that it has not got
     std::chrono::steady_clock::time_point next_blank = {};
+    std::chrono::steady_clock::time_point last_line = {};  ///< the start, before its first
   };
 
   void accept_clients();

@@ -90,9 +90,8 @@ struct ContactQuantities {
   /// contact slides in a straight line. A spin, whose shear cancels, does not lower it. Unset
   /// without friction_deviation, or if normal_n is not above zero.
   std::optional<double> slip_margin;
-  /// Set with friction_deviation: of a contact that slides, time 0 and probability 1; of one that
-  /// spins, whose slip margin stays above 0.5 while it slides, unset; else from the fourth frame of
-  /// a track on.
+  /// Set with friction_deviation: of a contact that slides or spins, time 0 and probability 1; else
+  /// from the fourth frame of a track on.
   std::optional<SlipForecast> slip_forecast;
 };
 

@@ -36,7 +36,7 @@ struct FrameContacts {
   double time_s = 0;
   std::vector<TrackedContact> contacts;
   std::vector<EndedContact> ended;  ///< by track_id
-  /// The total over all loaded pillars of the patch, contacts below minimum_pillars included. Its
+  /// The total over all loaded pillars of the patch, contacts that are not listed included. Its
   /// friction is FrictionKnowledge::given, since contacts may differ in friction.
   ContactQuantities total;
 };
@@ -45,8 +45,9 @@ struct FrameContacts {
 struct ContactOptions {
   std::uint64_t minimum_pillars = 1;  ///< smaller contacts are neither listed nor tracked
   FrictionKnowledge friction = {};    ///< prior of their friction
-  /// Standard deviation of a reading as a force, N, 0 to 1e6: reading_noise_n(). Unset: 1/64 of the
-  /// largest force of each contact.
+  /// Standard deviation of a reading as a force, N, 0 to 1e6: reading_noise_n(). A contact of one
+  /// pillar with a force below five of it is neither listed nor tracked. Unset: all are, and for
+  /// the friction it is 1/64 of the largest force of each contact.
   std::optional<double> noise_n = {};
   /// Normal force that an inactive sensel may hide below the threshold, N, 0 to 1e6:
   /// hidden_normal_n().

@@ -21,8 +21,8 @@ inline constexpr double kCovered = 0.8;
 /// The sentence for a user where contact covers this share of the array.
 [[nodiscard]] std::string coverage_words(double share, bool has_tare, SkinLayout layout);
 
-/// Raises the noise and the error of gains that a plan states to what its frames show by the parity
-/// of pillars, where that is clearly more, and returns a sentence about each
+/// Raises the noise and the relative error that a plan states to what its frames show by the parity
+/// of pillars, where that is clearly more, and returns a sentence about each error
 /// (docs/derivations/uncertainty.md, section 5). Reads 64 to 256 of the frames, spread over all, or
 /// with a followed baseline the first 4096.
 [[nodiscard]] std::vector<std::string> allow_for_errors(SolverPlan& plan, FrameSource& source);
@@ -32,11 +32,12 @@ class ParityCheck;
 
 /// Notices solved frames whose readings were probably not what the plan takes them for: no tare,
 /// readings that fall under load, a threshold above all readings, frames without readings, more
-/// noise than is stated, gains that are off.
+/// noise than is stated, readings that contradict each other.
 class ReadingCheck final : public ForceSink {
  public:
-  /// `plan` must outlive the check.
-  explicit ReadingCheck(const SolverPlan& plan);
+  /// `plan` must outlive the check. `judges_errors`: by parity, of frames that come once, which
+  /// allow_for_errors() cannot read first.
+  explicit ReadingCheck(const SolverPlan& plan, bool judges_errors = false);
 
   /// Counts a frame. Looks at its readings only where hardly any pillar is in contact.
   void append(const SolvedFrame& frame) override;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/number_text.h"
 #include "io/hdf5/stored_frames.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
@@ -54,9 +55,10 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
     assume_times(options);
   } else {
     if (times_s_.size() != frames_) {
-      throw Error(array_->place(),
-                  fmt::format("has {} frames and {} times", frames_, times_s_.size()),
-                  "store one time per frame");
+      throw Error(
+          array_->place(),
+          fmt::format("has {} and {}", counted(frames_, "frame"), counted(times_s_.size(), "time")),
+          "store one time per frame");
     }
     settle_times(times_s_, options);
   }

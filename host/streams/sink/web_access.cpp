@@ -16,10 +16,16 @@ bool same_name(std::string_view a, std::string_view b) {
   return a.size() == b.size() && strncasecmp(a.data(), b.data(), a.size()) == 0;
 }
 
-/// "NAME" of "NAME:PORT", "[ADDRESS]:PORT" and "NAME".
+/// "NAME" of "NAME:PORT", "[ADDRESS]:PORT" and "NAME"; "" of anything else.
 std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(1, host.find(']') - 1);
-  return host.substr(0, host.find(':'));
+  const bool is_bracketed = host.starts_with('[');
+  const std::size_t end = is_bracketed ? host.find(']') : std::min(host.find(':'), host.size());
+  if (end == std::string_view::npos) return {};
+  const std::string_view name = host.substr(is_bracketed ? 1 : 0, is_bracketed ? end - 1 : end);
+  const std::string_view behind = host.substr(is_bracketed ? end + 1 : end);
+  const bool has_port = behind.size() > 1 && behind[0] == ':' &&
+                        behind.find_first_not_of("0123456789", 1) == std::string_view::npos;
+  return behind.empty() || has_port ? name : std::string_view();
 }
 
 /// The part after "http://" or "https://"; none for another origin.
@@ -63,7 +69,8 @@ bool may_be_asked(std::string_view host, std::span<const std::string> allowed) {
   }
   return std::ranges::any_of(allowed, [&](const std::string& each) {
     const auto page = host_of_page(each);
-    return page && same_name(without_port(*page), without_port(host));
+    const std::string_view name = page ? without_port(*page) : "";
+    return !name.empty() && same_name(name, without_port(host));
   });
 }
 
@@ -80,7 +87,7 @@ std::string refusal_of(std::string_view origin, std::string_view host,
     return fmt::format(
         "refused a client that asked for the host '{0}'; --allow-origin http://{0} "
         "admits it",
-        without_port(host).substr(0, kMostShown));
+        host.substr(0, std::min(host.rfind(':'), kMostShown)));
   }
   return "";
 }

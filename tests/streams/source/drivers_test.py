@@ -45,7 +45,7 @@ class Drivers(DriverTest):
         def next_frame():
             while (line := loop.stdout.readline()).startswith("alarm:"):
                 pass
-            found = re.fullmatch(r"frame (\d+): ([\d.]+) N, 1 contacts, .*\n", line)
+            found = re.fullmatch(r"frame (\d+): ([\d.]+) N, 1 contact, .*\n", line)
             self.assertIsNotNone(found, line)
             self.assertGreater(float(found[2]), 1)
             return int(found[1])
