@@ -122,14 +122,14 @@ class VideoPace {
     return pictures_before(index + 1) - pictures_before(index);
   }
 
- private:
-  static constexpr double kMostFps = 60;
-
   [[nodiscard]] std::uint64_t pictures_before(std::uint64_t index) const {
     constexpr double kTolerance = 1e-9;
     return static_cast<std::uint64_t>(
         std::ceil(static_cast<double>(index) / step_ * (1 - kTolerance)));
   }
+
+ private:
+  static constexpr double kMostFps = 60;
 
   double fps_;
   double step_;  ///< frames of the source from a picture to the next
@@ -138,7 +138,9 @@ class VideoPace {
 /// "0.6 s long; --speed 0.1 makes it slower".
 std::string length_words(const Options& options, const FrameRange& span, double rate_hz) {
   constexpr double kShortS = 3;
-  const double length_s = static_cast<double>(span.end - span.begin) / (rate_hz * options.speed);
+  const VideoPace pace(options, rate_hz);
+  const auto pictures = static_cast<double>(pace.pictures_before(span.end - span.begin));
+  const double length_s = pictures / pace.fps();
   return fmt::format(
       "{:.3g} s long{}", length_s,
       length_s < kShortS && options.speed >= 1 ? "; --speed 0.1 makes it slower" : "");

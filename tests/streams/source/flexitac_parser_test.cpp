@@ -35,7 +35,10 @@ void feed(FlexitacParser& parser, const std::string& bytes, std::mt19937& random
   Packet packet;
   for (std::size_t fed = 0; fed < bytes.size();) {
     const auto space = parser.space();
-    const auto size = std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
+    const auto size =
+        parsed.arrived == 0s
+            ? 1
+            : std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
     std::memcpy(space.data(), &bytes[fed], size);
     parser.commit(size, parsed.arrived += 1s);
     fed += size;
@@ -264,7 +267,8 @@ TEST(FlexitacParser, ABoardOpenedInsideAFrameLosesNothing) {
   std::mt19937 random(1);
   for (int seed = 0; seed < 200; ++seed) {
     // What waited since before ends anywhere, and the line goes on anywhere.
-    const std::string waited = joined(quiet_frames(0, 1 + random() % 9));
+    const std::string waited =
+        joined(quiet_frames(0, 1 + static_cast<std::uint32_t>(random() % 9)));
     const std::string bytes = waited.substr(random() % 100, random() % waited.size()) +
                               quiet_readings(99).substr(random() % kBoard.bytes());
     FlexitacParser parser(kBoard);

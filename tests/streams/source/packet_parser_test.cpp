@@ -66,7 +66,7 @@ TEST(PacketParser, FindsEveryPacketBetweenRubbish) {
         bytes += packet.bytes().substr(0, 64 + random() % (packet.readings.size() - 3));
         ++runs;
       } else if (fate == 1) {
-        runs += bytes.empty() ? 0 : 1;  // At first it is the rest of a packet.
+        runs += bytes.empty() ? 0U : 1U;  // At first it is the rest of a packet.
         bytes += rubbish(random);
       } else if (fate == 2 && (packet.header.content & PILLARFIELD_CHECKED) != 0) {
         packet.readings[random() % packet.readings.size()] ^= 1;
