@@ -327,29 +327,14 @@ double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
   return widest;
 }
 
-/// Number of charts in a row that makes them large, and wider than high.
-std::size_t charts_beside(std::size_t charts, double wide, double high, double least_width) {
-  std::size_t best = 1;
-  double largest = 0;
-  for (std::size_t beside = 1; beside <= charts; ++beside) {
-    const double width = wide / static_cast<double>(beside);
-    const double height =
-        high / std::ceil(static_cast<double>(charts) / static_cast<double>(beside));
-    const double size = std::min(width, 2 * height);
-    if (size <= largest || (beside > 1 && width < least_width)) continue;
-    best = beside;
-    largest = size;
-  }
-  return best;
-}
-
-/// Charts in rows that fill the height that is left.
+/// Charts in rows that fill the height that is left, as many per row as fit; in a place that is
+/// high below each other.
 void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const PanelStyle& style) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
-  const std::size_t beside = charts_beside(charts.size(), wide, static_cast<double>(available.y),
-                                           kChartWidth * style.unit);
+  const auto fitting = static_cast<std::size_t>(std::max(wide / (kChartWidth * style.unit), 1.0));
+  const std::size_t beside = available.x > available.y ? std::min(fitting, charts.size()) : 1;
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   for (const Chart& chart : charts) {
