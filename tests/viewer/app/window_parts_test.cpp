@@ -45,7 +45,6 @@ TEST(Screen, ItsPartsTileTheWindow) {
 TEST(Screen, FieldAndCurvesHaveTheirRoom) {
   for (const double scale : {1.0, 1.5}) {
     for (const double aspect : {0.42, 1.0, 2.0}) {
-      SCOPED_TRACE(aspect);
       const auto divided = [&](double width, double height) {
         return divide(static_cast<std::uint32_t>(scale * width),
                       static_cast<std::uint32_t>(scale * height), scale, sides_beside(aspect, 1));
