@@ -122,31 +122,43 @@ class VideoPace {
     return pictures_before(index + 1) - pictures_before(index);
   }
 
- private:
-  static constexpr double kMostFps = 60;
-
   [[nodiscard]] std::uint64_t pictures_before(std::uint64_t index) const {
     constexpr double kTolerance = 1e-9;
     return static_cast<std::uint64_t>(
         std::ceil(static_cast<double>(index) / step_ * (1 - kTolerance)));
   }
 
+ private:
+  static constexpr double kMostFps = 60;
+
   double fps_;
   double step_;  ///< frames of the source from a picture to the next
 };
 
+/// "0.6 s long; --speed 0.1 makes it slower".
+std::string length_words(const Options& options, const FrameRange& span, double rate_hz) {
+  constexpr double kShortS = 3;
+  const VideoPace pace(options, rate_hz);
+  const auto pictures = static_cast<double>(pace.pictures_before(span.end - span.begin));
+  const double length_s = pictures / pace.fps();
+  return fmt::format(
+      "{:.3g} s long{}", length_s,
+      length_s < kShortS && options.speed >= 1 ? "; --speed 0.1 makes it slower" : "");
+}
+
 void tell_written(const Options& options, const std::vector<std::filesystem::path>& pictures,
-                  const FrameRange& span, std::uint64_t frames) {
+                  const FrameRange& span, const SourceInfo& source) {
   const auto tell = [](const std::string& words) { fmt::print("Wrote {}\n", printable(words)); };
-  const std::string which =
-      options.has_frame ? ""
-                        : fmt::format(": frame {} of {}, the most loaded", span.begin + 1, frames);
+  const std::string which = options.has_frame ? ""
+                                              : fmt::format(": frame {} of {}, the most loaded",
+                                                            span.begin + 1, source.frames);
   if (!options.csv.empty()) tell(options.csv.string() + which);
   if (pictures.size() == 1) tell(pictures.front().string() + which);
   if (pictures.size() > 1) {
     tell(fmt::format("{} to {}", pictures.front().string(), pictures.back().filename().string()));
   }
-  if (!options.video.empty()) tell(options.video.string());
+  if (options.video.empty()) return;
+  tell(options.video.string() + ": " + length_words(options, span, source.rate_hz));
 }
 
 /// Complete pictures stay; an incomplete video is removed.
@@ -257,11 +269,11 @@ void run_headless(const Options& options) {
               visible_pillars({picture, &source}, settings), replace);
   }
   if (options.png.empty() && options.video.empty()) {
-    tell_written(options, pictures, span, source.frames);
+    tell_written(options, pictures, span, source);
     return;
   }
   write_pictures(options, shown, settings, span, pictures);
-  tell_written(options, pictures, span, source.frames);
+  tell_written(options, pictures, span, source);
 }
 
 }  // namespace pillarfield::viewer

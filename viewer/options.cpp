@@ -175,10 +175,6 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
   require(!options.headless || (!is_live_source(options.source.string()) &&
                                 !is_live_source(options.beside.string())),
           "a sensor needs the window; record it with 'pillarfield stream --record' first");
-  const bool may_be_sensor = options.source.empty() || is_live_source(options.source.string());
-  require(options.calibration.empty() || may_be_sensor,
-          "--calibration is that of a sensor; solve a recording with it: 'pillarfield solve "
-          "--calibration', and show the forces");
   require(!options.headless || writes,
           "--headless needs something to write: --png, --video or --csv");
 }
@@ -197,8 +193,9 @@ void add_layers(CLI::App& app, Options& options) {
   layers.flag("--sectors,--fans", options.look.sectors,
               "Uncertainty sectors of ambiguous shear, at large zoom");
   clear("--no-hatch", options.look.hatch, "No hatching of ambiguous pillars");
-  layers.flag("--contacts", options.look.contacts,
-              "Mark contacts: extent, id, force, centre of pressure, shear");
+  clear("--no-contacts", options.look.contacts,
+        "No marks of contacts: extent, id, force, centre of pressure, shear");
+  app.add_flag("--contacts")->group("");  // Of old command lines; the default.
   layers.flag("--relief", options.look.relief, "In 3-D, raise the surface by the normal force");
   clear("--no-legend", options.look.legend, "Only the field, without axes and colour bar");
 }
@@ -261,7 +258,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option("beside", options.beside, "A second source, shown beside the first");
   app.add_flag("--truth", options.truth,
                "Show the true forces of a simulation beside those solved");
-  app.add_option("--calibration", options.calibration, "Calibration file of a live sensor")
+  app.add_option("--calibration", options.calibration, "Calibration file of a recording or sensor")
       ->type_name("FILE")
       ->check(CLI::ExistingFile)
       ->group("Input");

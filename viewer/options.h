@@ -14,7 +14,7 @@ namespace pillarfield::viewer {
 struct Options {
   std::filesystem::path source;       ///< a file, or a live source; empty: the start page
   std::filesystem::path beside;       ///< a second source, shown at the right; empty: none
-  std::filesystem::path calibration;  ///< of a sensor
+  std::filesystem::path calibration;  ///< of recordings and sensors
   ReadOptions plain;      ///< of plain data: array, times, size of a frame, rate, layout, tare
   PlanSettings settings;  ///< those of the command line that the viewer has, too
   std::string device;     ///< OpenCL device that solves

@@ -38,7 +38,7 @@ def compress(source, target):
 
 def draw_readme(folder):
     """Draws the README's picture, which moves: an animated PNG with one palette."""
-    run("pillarfield-viewer scenes/touch/hand.toml --headless --frames 1:36 --contacts --range 0:0.2 --size 800x600 "
+    run("pillarfield-viewer scenes/touch/hand.toml --headless --frames 1:36 --range 0:0.2 --size 800x600 "
         "--png hand.png", folder)
     pictures = sorted(folder.glob("hand_*.png"))
     # Mail, search and print show the first frame: the fullest, which compresses least.
@@ -113,7 +113,7 @@ def draw_axes(folder):
 
 def draw_scene(scene, folder):
     picture = folder / f"{scene.stem}.png"
-    options = "--headless --no-legend --size 480x320"
+    options = "--headless --no-legend --no-contacts --size 480x320"
     # The most loaded frame comes before the twist.
     if scene.stem == "twist":
         options += " --frame 7"

@@ -73,6 +73,7 @@ class Application {
   // Input.
   void wait();
   void take_input();
+  [[nodiscard]] bool takes_input();
   void route_to_start_page(const InputEvent& event);
   void serve();
   void serve_open();
@@ -113,9 +114,11 @@ class Application {
 
   Redraws redraws_;
   DrawClock clock_;
+  bool in_place_ = false;  ///< the device reads the solver's memory without a copy
   std::string last_notice_;
   bool source_was_given_ = false;  ///< on the command line
   bool source_was_shown_ = false;
+  double chosen_s_ = -1;  ///< time when a source was chosen on the start page
   std::optional<RenderSettings> drawn_settings_;
   double last_frame_s_ = 0;
 };
@@ -161,6 +164,7 @@ void Application::take_loaded() {
   } catch (const Error& error) {
     if (state_.source.player == nullptr && source_was_given_) throw;
     state_.window.notice.fail(error.what());
+    gui_input_.clear();  // It was meant for that source.
     redraws_.input(Window::now_s());
   }
 }
@@ -178,8 +182,8 @@ void Application::show(LoadedSource loaded) {
   next.marks.boxes = user_.boxes.on(source.skin);
   next.window.show_panels = state_.window.show_panels;
   next.window.folds_curves = state_.window.folds_curves;
-  next.window.show_counters = state_.window.show_counters;
   state_ = std::move(next);
+  pending_ = {};
   source_was_shown_ = true;
   place_.source = &source;
   arrange();
@@ -220,37 +224,55 @@ void Application::wait() {
 
 void Application::take_input() {
   const bool damaged = window_.take_damage();
-  const auto events = window_.take_events();
-  if (damaged || !events.empty()) redraws_.input(Window::now_s());
+  auto events = window_.take_events();
+  std::erase_if(events, [&](const InputEvent& event) {  // A double click opens a source once.
+    const auto* const button = std::get_if<ButtonEvent>(&event);
+    return button != nullptr && button->time_s < chosen_s_ + kDoubleClickSeconds;
+  });
+  gui_input_.add(events);
+  if (damaged || !gui_input_.is_empty()) redraws_.input(Window::now_s());
   presenter_.gui().use();
   arrange();
-  for (const InputEvent& event : events) {
+  while (takes_input()) {
+    const auto event = gui_input_.next();
+    if (!event) break;
     if (shows_source()) {
-      route(event, command(), screen_.field, controls_, gui_input_);
+      route(*event, command(), screen_.field, controls_);
     } else {
-      route_to_start_page(event);
+      route_to_start_page(*event);
     }
   }
   const auto drops = window_.take_drops();
   if (!drops.empty()) pending_.open = drops.front();
 }
 
+/// False while input waits: for a source, in which only Q acts, its picture, or until the name of a
+/// new box has the keyboard.
+bool Application::takes_input() {
+  if (feed_.loading() != nullptr || (shows_source() && !state_.source.field)) {
+    pending_.quit |= gui_input_.has_pressed(GLFW_KEY_Q);
+    return false;
+  }
+  return !shows_source() || (drawn_settings_ && !state_.marks.names_box);
+}
+
 void Application::route_to_start_page(const InputEvent& event) {
-  gui_input_.take(event);
+  GuiInput::take(event);
   const auto* const key = std::get_if<KeyEvent>(&event);
-  if (key == nullptr || !key->pressed || key->unusable || ImGui::GetIO().WantTextInput) return;
+  if (key == nullptr || !key->pressed || key->unusable || GuiInput::wants_text()) return;
   if (key->key == GLFW_KEY_ESCAPE && state_.source.player != nullptr) at_start_ = false;
   if (key->key == GLFW_KEY_Q) pending_.quit = true;
 }
 
-/// Performs the pending actions; an Error becomes a notice.
+/// Performs the pending actions, those on a picture once there is one; an Error becomes a notice.
 void Application::serve() {
   serve_open();
-  const PendingActions asked = std::exchange(pending_, PendingActions{});
-  pending_.quit = asked.quit;
   keep_boxes();
-  if (asked.start) show_start_page();
-  if (!state_.source.field || !shows_source() || !drawn_settings_ || !asked.anything()) return;
+  if (std::exchange(pending_.start, false)) show_start_page();
+  if (!state_.source.field || !shows_source() || !drawn_settings_) return;
+  const PendingActions asked = std::exchange(pending_, {});
+  pending_.quit = asked.quit;
+  if (!asked.anything()) return;
   writer_.serve(asked, place_, [this] { return pixels(); });
   if (asked.truth) {
     presenter_.clear();
@@ -271,6 +293,7 @@ void Application::serve_open() {
   options_.truth = false;
   options_.first_frame = 0;
   at_start_ = false;
+  chosen_s_ = Window::now_s();
   open(std::exchange(pending_.open, {}));
 }
 
@@ -389,11 +412,9 @@ void Application::begin_gui_frame() {
 
 void Application::measure(double begin_s, bool new_picture) {
   const double now_s = Window::now_s();
-  clock_.add(now_s, 1e3 * (now_s - begin_s), new_picture ? feed_.latency_ms() : std::nullopt);
-  DrawStatistics& draw = state_.window.draw;
-  draw = clock_.lately(now_s);
+  clock_.add(1e3 * (now_s - begin_s), new_picture ? feed_.latency_ms() : std::nullopt);
   const FieldMemory& memory = presenter_.renderer().memory();
-  draw.in_place = memory.fields_in_place() > 0 && memory.bytes_copied() == 0;
+  in_place_ = memory.fields_in_place() > 0 && memory.bytes_copied() == 0;
   redraws_.drawn(now_s);
 }
 
@@ -426,9 +447,8 @@ void Application::print_statistics() const {
              R"("validation_messages":{}}})"
              "\n",
              clock_.frames(), clock_.draw_ms_median(), clock_.latency_ms_median(), played.produced,
-             played.taken, played.not_shown, state_.window.draw.in_place, screen_.field.x,
-             screen_.field.y, screen_.field.width, screen_.field.height,
-             instance_.validation_messages());
+             played.taken, played.not_shown, in_place_, screen_.field.x, screen_.field.y,
+             screen_.field.width, screen_.field.height, instance_.validation_messages());
 }
 
 }  // namespace

@@ -40,14 +40,6 @@ struct Selection {
   std::optional<CachedSums> cached = {};  ///< see selection_sums()
 };
 
-/// Measurements of drawing over about the last second.
-struct DrawStatistics {
-  double frames_hz = 0;
-  double draw_ms_median = 0;     ///< from the begin of recording to the finished picture
-  double latency_ms_median = 0;  ///< from the produced field to its presented picture
-  bool in_place = false;         ///< the device reads the solver's memory without a copy
-};
-
 /// The look of the picture.
 struct ShownLook {
   RenderSettings settings;
@@ -72,13 +64,11 @@ struct Marks {
 
 /// The window around the picture.
 struct WindowState {
-  DrawStatistics draw;
   bool show_help = false;
   Viewport help_place;  ///< in the window, pixels
   bool show_panels = true;
   bool folds_curves = false;
-  bool show_counters = false;  ///< times and counts of solving and drawing
-  bool writing = false;        ///< all frames are being written
+  bool writing = false;  ///< all frames are being written
   Notice notice;
 };
 

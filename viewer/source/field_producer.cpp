@@ -10,7 +10,6 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
-#include "pillarfield/plan_builder.h"
 #include "pillarfield/reading_check.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
@@ -127,7 +126,8 @@ std::vector<std::string> reading_warnings(FrameSource& source, const SolverPlan&
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                                               const ProducerOptions& options) {
-  std::unique_ptr<FrameSource> source = open_frames(path, options.read);
+  const ReadOptions read = frame_options(options.plan);
+  std::unique_ptr<FrameSource> source = open_frames(path, read);
   if (source->frames() == 0) {
     throw Error(path.string(), "it has no frames", "give a recording with at least one frame");
   }
@@ -140,8 +140,8 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
   plan.frame_interval_s = 1 / info.rate_hz;
-  apply(options.settings, plan);
-  plan = shown_plan(std::move(plan));
+  plan = shown_plan(
+      build_plan(std::move(plan), options.plan, path.string(), [&] { return 1 / info.rate_hz; }));
   std::ranges::move(allow_for_errors(plan, *source), std::back_inserter(info.warnings));
   const Device device = open_device(options.device);
   Processor processor = processor_for(device, plan, options);
@@ -153,7 +153,6 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                       std::back_inserter(info.warnings));
   }
   info.frames = source->frames();
-  const ReadOptions read = options.read;
   info.has_truth = source->has_truth();
   auto producer = std::make_unique<SolvedProducer>(
       info, recorded_frames(path, std::move(source), read), plan, std::move(processor));
@@ -216,13 +215,19 @@ ShownContacts FieldProducer::contacts_of(const ShownField& field) {
 std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
                                              const ProducerOptions& options,
                                              const std::function<void(double)>& progress) {
-  if (path.extension() == ".toml") return open_scene(path, options, progress);
-  if (!options.read.dataset.empty()) return open_recording(path, options);
-  if (is_force_file(path)) {
-    auto producer = std::make_unique<ForceFileProducer>(path, options.read);
-    producer->open_again = [path, read = options.read] {
-      return std::make_unique<ForceFileProducer>(path, read);
-    };
+  const ReadOptions& read = options.plan.read;
+  const auto refuse_calibration = [&](const char* why) {
+    if (!options.plan.calibration.empty())
+      throw Error(path.string(), why, "leave out --calibration");
+  };
+  if (path.extension() == ".toml") {
+    refuse_calibration("a scene has a calibration of its own");
+    return open_scene(path, options, progress);
+  }
+  if (read.dataset.empty() && is_force_file(path)) {
+    refuse_calibration("it holds forces, which are calibrated already");
+    auto producer = std::make_unique<ForceFileProducer>(path, read);
+    producer->open_again = [path, read] { return std::make_unique<ForceFileProducer>(path, read); };
     return producer;
   }
   return open_recording(path, options);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "pillarfield/calibration.h"
+#include "pillarfield/plan_builder.h"
 #include "pillarfield/processor.h"
-#include "pillarfield/read_options.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/solver_plan.h"
 #include "viewer/source/curves.h"
@@ -89,8 +89,7 @@ void add_difference(ShownField& field, const FieldProducer::Opener& open_truth);
 struct ProducerOptions {
   std::string device = {};  ///< as open_device() takes it
   Memory memory = Memory::automatic;
-  ReadOptions read = {};       ///< for the first opening of a file
-  PlanSettings settings = {};  ///< of the plan of a recording or sensor
+  PlanOptions plan = {};  ///< of a recording or sensor
   /// Limit on the frames of a scene, which are all simulated beforehand.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   std::uint64_t most_frames = 0;                              ///< of a scene; 0: all

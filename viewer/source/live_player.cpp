@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -41,7 +42,7 @@ PlayerState LiveView::state_after(std::uint64_t frames, double rate_hz) const {
 
 void LiveView::measure(const ShownField& field) {
   curves_->add(field);
-  newest_.count(field.arrived.value());
+  newest_.count();
 }
 
 namespace {
@@ -76,7 +77,16 @@ std::string words_of(const LiveEvent& event) {
   if (event.kind == LiveEvent::Kind::recording) {
     return fmt::format("recorded {}: {}", recorded_words(event.recorded), event.recording);
   }
-  if (!event.error.empty()) return event.error + "; press it again within 10 s to insist";
+  if (!event.error.empty()) {
+    // The remedy of the error is that of other doors.
+    std::string_view why = event.error;
+    why = why.substr(0, why.rfind("; "));
+    if (why.starts_with("tare: ")) why.remove_prefix(6);
+    return fmt::format(
+        "Tare refused: let go of the skin and press Tare again, within 10 s to "
+        "insist. {}",
+        why);
+  }
   return fmt::format("tare taken: {}{}", event.note,
                      event.recording.empty() ? "" : "; the recording keeps that of its start");
 }
@@ -259,15 +269,9 @@ LiveStatus LivePlayer::status() {
   return status;
 }
 
-PlanOptions plan_options(const LiveOptions& options) {
-  return {.read = options.producer.read,
-          .calibration = options.calibration.string(),
-          .settings = options.producer.settings};
-}
-
 /// Options that calibrate, as the command line names them.
 std::vector<std::string> given_constants(const LiveOptions& options) {
-  const ReadOptions& read = options.producer.read;
+  const ReadOptions& read = options.producer.plan.read;
   std::vector<std::string> given;
   for (const auto& [name, is_given] :
        {std::pair("--layout", read.layout.has_value()),
@@ -276,7 +280,7 @@ std::vector<std::string> given_constants(const LiveOptions& options) {
         std::pair("--threshold", read.threshold_counts.has_value()),
         std::pair("--full-scale", read.full_scale_counts.has_value()),
         std::pair("--falling", read.falling),
-        std::pair("--calibration", !options.calibration.empty())}) {
+        std::pair("--calibration", !options.producer.plan.calibration.empty())}) {
     if (is_given) given.emplace_back(name);
   }
   return given;
@@ -303,7 +307,7 @@ std::string recorded_words(const LiveSinkStatistics& recorded) {
 
 SolverPlan live_plan(const FrameStream& stream, const LiveOptions& options) {
   SolverPlan plan =
-      build_plan(plan_of_frames(stream), plan_options(options), options.calibration.string(),
+      build_plan(plan_of_frames(stream), options.producer.plan, options.producer.plan.calibration,
                  [&] { return SolverPlan{}.frame_interval_s; });
   if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
   plan.angles = plan.skin.has_pillars();
@@ -320,7 +324,7 @@ OpenedSensor play_sensor(std::unique_ptr<FrameStream> stream, const std::string&
                        .on_compiling = options.producer.on_compiling});
   auto curves = std::make_shared<Curves>(plan.skin.element_pitch_mm(), kMostLivePoints);
   return {std::make_unique<LivePlayer>(std::move(stream), name, plan, std::move(processor), curves,
-                                       options.producer.read.threshold_counts.has_value()),
+                                       options.producer.plan.read.threshold_counts.has_value()),
           curves};
 }
 
@@ -328,8 +332,8 @@ OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) 
   LiveSourceOptions live;
   live.stop = options.stop;
   live.say = options.say;
-  live.size = stated_size(plan_options(options));
-  live.read = options.producer.read;
+  live.size = stated_size(options.producer.plan);
+  live.read = options.producer.plan.read;
   if (source.starts_with("shm:")) {
     if (auto results = open_result_stream(source, options.stop)) {
       return open_results(std::move(results), source, options);

@@ -60,7 +60,6 @@ class LiveView : public Player, public LiveControl {
 
 struct LiveOptions {
   ProducerOptions producer = {};                     ///< with the constants of the skin
-  std::filesystem::path calibration = {};            ///< a file; empty: none
   std::function<bool()> stop = {};                   ///< gives up waiting for the first frame
   std::function<void(const std::string&)> say = {};  ///< as LiveSourceOptions has it
 };

@@ -16,11 +16,10 @@ Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
 }  // namespace
 
-void NewestField::count(std::chrono::nanoseconds begin) {
+void NewestField::count() {
   const std::scoped_lock lock(mutex_);
   ++produced_;
-  const Time end = now();
-  times_.add(end, std::chrono::duration<double, std::milli>(end - begin).count());
+  times_.add(now());
 }
 
 void NewestField::set(ShownField field) {
@@ -63,8 +62,7 @@ PlayerStatistics NewestField::statistics() const {
           .taken = taken_,
           .not_shown = produced_ - taken_ - waiting,
           .waiting = waiting,
-          .produced_hz = times_.rate_hz(),
-          .produce_ms_median = times_.median_ms()};
+          .produced_hz = times_.rate_hz()};
 }
 
 void NewestField::on_new_field(std::function<void()> wake) {
@@ -178,13 +176,12 @@ void FilePlayer::refresh(std::unique_lock<std::mutex>& lock) {
 void FilePlayer::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
   const bool with_contacts = wants_contacts_;
   lock.unlock();
-  const Time begin = now();
   ShownField field = producer_->produce(frame);
   field.frames = producer_->info().frames;
   if (with_contacts) {
     field.contacts = std::make_shared<const ShownContacts>(producer_->contacts_of(field));
   }
-  newest_.count(begin);
+  newest_.count();
   newest_.set(std::move(field));
   lock.lock();
 }

@@ -16,15 +16,14 @@
 
 namespace pillarfield::viewer {
 
-/// Counts since construction, and rates and times over about the last second.
+/// Counts since construction, and the rate over about the last second.
 /// produced = taken + not_shown + waiting.
 struct PlayerStatistics {
-  std::uint64_t produced = 0;    ///< fields solved or read
-  std::uint64_t taken = 0;       ///< passed to the display
-  std::uint64_t not_shown = 0;   ///< replaced by a newer one before being taken
-  std::uint64_t waiting = 0;     ///< 0 or 1, not taken yet
-  double produced_hz = 0;        ///< recent
-  double produce_ms_median = 0;  ///< recent time to solve or read one field and its contacts
+  std::uint64_t produced = 0;   ///< fields solved or read
+  std::uint64_t taken = 0;      ///< passed to the display
+  std::uint64_t not_shown = 0;  ///< replaced by a newer one before being taken
+  std::uint64_t waiting = 0;    ///< 0 or 1, not taken yet
+  double produced_hz = 0;       ///< recent
 };
 
 /// A copy of the play head's state.
@@ -42,8 +41,7 @@ struct PlayerState {
 /// Thread safe.
 class NewestField {
  public:
-  /// Counts a field, with the time from its begin, or its arrival, until now.
-  void count(std::chrono::nanoseconds begin);
+  void count();  ///< counts a field
   /// Replaces the field that waits, and wakes the display.
   void set(ShownField field);
   /// take() throws `failure`, unless it is null, once after the last field; wakes the display.

@@ -17,26 +17,20 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-void RecentTimes::add(Time end, double took_ms) {
+void RecentTimes::add(Time end) {
   forget_before(end);
-  if (spans_.size() == kMost) spans_.pop_front();
-  spans_.push_back({end, took_ms});
+  if (times_.size() == kMost) times_.pop_front();
+  times_.push_back(end);
 }
 
 void RecentTimes::forget_before(Time now) {
-  while (!spans_.empty() && spans_.front().end < now - kRecent) spans_.pop_front();
+  while (!times_.empty() && times_.front() < now - kRecent) times_.pop_front();
 }
 
 double RecentTimes::rate_hz() const {
-  if (spans_.size() < 2) return 0;
-  const std::chrono::duration<double> span = spans_.back().end - spans_.front().end;
-  return span.count() > 0 ? static_cast<double>(spans_.size() - 1) / span.count() : 0;
-}
-
-double RecentTimes::median_ms() const {
-  std::vector<double> times(spans_.size());
-  std::ranges::transform(spans_, times.begin(), &Span::took_ms);
-  return median_of(std::move(times));
+  if (times_.size() < 2) return 0;
+  const std::chrono::duration<double> span = times_.back() - times_.front();
+  return span.count() > 0 ? static_cast<double>(times_.size() - 1) / span.count() : 0;
 }
 
 }  // namespace pillarfield::viewer

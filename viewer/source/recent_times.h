@@ -9,22 +9,17 @@ namespace pillarfield::viewer {
 /// The upper of the middle values; 0 for none.
 [[nodiscard]] double median_of(std::vector<double> values);
 
-/// Durations of the events of the last second, at most 4096.
+/// Times of the events of the last second, at most 4096.
 class RecentTimes {
  public:
   using Time = std::chrono::nanoseconds;
 
-  void add(Time end, double took_ms);      ///< `end` must not decrease
-  void forget_before(Time now);            ///< drops events older than a second
-  [[nodiscard]] double rate_hz() const;    ///< of ends; 0 for fewer than two
-  [[nodiscard]] double median_ms() const;  ///< 0 for none
+  void add(Time end);                    ///< must not decrease
+  void forget_before(Time now);          ///< drops events older than a second
+  [[nodiscard]] double rate_hz() const;  ///< 0 for fewer than two
 
  private:
-  struct Span {
-    Time end;
-    double took_ms;
-  };
-  std::deque<Span> spans_;
+  std::deque<Time> times_;
 };
 
 }  // namespace pillarfield::viewer

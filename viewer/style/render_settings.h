@@ -18,10 +18,10 @@ struct RenderSettings {
   View view = TopView{};
   Surface surface;
   bool arrows = true;
-  bool sectors = false;   ///< uncertainty sectors of ambiguous shear, once cells are single pillars
-  bool hatch = true;      ///< hatch ambiguous pillars
-  bool contacts = false;  ///< marks of contacts
-  bool relief = false;    ///< in 3-D, the surface is raised by the normal force
+  bool sectors = false;  ///< uncertainty sectors of ambiguous shear, once cells are single pillars
+  bool hatch = true;     ///< hatch ambiguous pillars
+  bool contacts = true;  ///< marks of contacts
+  bool relief = false;   ///< in 3-D, the surface is raised by the normal force
   double relief_full_n = 1;  ///< normal force whose height is 12 % of the skin's shorter side
   /// Mean force per pillar whose arrow is 1.5 cells long; top views use the shear.
   double full_force_n = 1;

@@ -11,6 +11,8 @@ namespace pillarfield {
 namespace {
 
 constexpr std::size_t kLeastSpace = 1 << 16;
+/// Time in which bytes come that had waited since before the source was opened, and were cut.
+constexpr std::chrono::milliseconds kSettling(100);
 
 PillarfieldPacket header_of(const FrameShape& shape, std::uint64_t sequence) {
   PillarfieldPacket header = {};
@@ -47,6 +49,7 @@ std::span<std::byte> FlexitacParser::space() {
 
 void FlexitacParser::commit(std::size_t bytes, std::chrono::nanoseconds arrived) {
   if (bytes == 0) return;
+  if (!opened_) opened_ = arrived;
   end_ += bytes;
   reads_.push_back({end_, arrived});
 }
@@ -125,15 +128,15 @@ void FlexitacParser::lose_step(std::uint64_t place) {
 }
 
 void FlexitacParser::count_rubbish() {
-  if (taken_ > 0 && !std::exchange(in_rubbish_, true)) ++invalid_;
+  if (has_settled_ && !std::exchange(in_rubbish_, true)) ++invalid_;
 }
 
 /// Takes the oldest frame held. Bytes that were skipped before it stand for the frames that they
-/// would have been, and for one at least; those before the first frame do not count.
+/// would have been, and for one at least; those while the source settles do not count.
 void FlexitacParser::take_frame(Packet& packet) {
   const std::uint64_t begin = next_ - (held_ + 1) * frame_bytes_;
   const std::uint64_t end = begin + frame_bytes_;
-  if (const std::uint64_t skipped = begin - taken_; taken_ > 0 && skipped > 0) {
+  if (const std::uint64_t skipped = begin - taken_; has_settled_ && skipped > 0) {
     count_rubbish();
     sequence_ += std::max<std::uint64_t>(1, (skipped + frame_bytes_ / 2) / frame_bytes_);
   }
@@ -144,6 +147,7 @@ void FlexitacParser::take_frame(Packet& packet) {
   packet.header = header_of(shape_, sequence_++);
   packet.bytes = std::span(buffer_).subspan(begin - begin_ + kMarkBytes, shape_.bytes());
   packet.arrived = std::ranges::lower_bound(reads_, end, {}, &Read::end)->arrived;
+  has_settled_ = packet.arrived - *opened_ > kSettling;
 }
 
 void FlexitacParser::finish() {

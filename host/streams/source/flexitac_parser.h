@@ -89,7 +89,9 @@ class FlexitacParser final : public ByteParser {
   std::uint64_t spacing_ = 0;   ///< between the last two marks
   std::uint64_t spacings_ = 0;  ///< how often it was that
 
-  std::uint64_t sequence_ = 0;  ///< of the next frame
+  std::optional<std::chrono::nanoseconds> opened_;  ///< arrival of the first bytes
+  bool has_settled_ = false;                        ///< the last frame came later than that
+  std::uint64_t sequence_ = 0;                      ///< of the next frame
   bool in_rubbish_ = false;
   std::uint64_t invalid_ = 0;
 };

@@ -54,7 +54,7 @@ class PacketParser final : public ByteParser {
   std::optional<FrameShape> shape_;
   std::optional<FrameShape> other_;  ///< of the latest header that is sound
   bool finished_ = false;
-  bool in_rubbish_ = false;
+  bool in_rubbish_ = true;  ///< at first the rest of a packet, which is none of its own
   std::uint64_t invalid_ = 0;
   std::uint64_t rubbish_ = 0;  ///< bytes since the last packet that are none
 };

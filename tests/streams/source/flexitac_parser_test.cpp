@@ -27,16 +27,20 @@ const std::string kMarks = "\xAA\x55";
 struct Parsed {
   std::vector<std::string> frames;
   std::vector<std::uint64_t> sequences;
+  std::chrono::nanoseconds arrived = 0s;  ///< of the last piece
 };
 
-/// Feeds bytes in pieces of random length, and appends the frames found.
+/// Feeds bytes in pieces of random length, a second apart, and appends the frames found.
 void feed(FlexitacParser& parser, const std::string& bytes, std::mt19937& random, Parsed& parsed) {
   Packet packet;
   for (std::size_t fed = 0; fed < bytes.size();) {
     const auto space = parser.space();
-    const auto size = std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
+    const auto size =
+        parsed.arrived == 0s
+            ? 1
+            : std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
     std::memcpy(space.data(), &bytes[fed], size);
-    parser.commit(size, 0s);
+    parser.commit(size, parsed.arrived += 1s);
     fed += size;
     while (parser.next(packet)) {
       ASSERT_EQ(shape_of(packet.header), kBoard);
@@ -257,6 +261,26 @@ TEST(FlexitacParser, AFrameArrivedWithItsLastByte) {
   commit(frame, 9s);
   ASSERT_TRUE(parser.next(packet));
   EXPECT_EQ(packet.arrived, 2s);
+}
+
+TEST(FlexitacParser, ABoardOpenedInsideAFrameLosesNothing) {
+  std::mt19937 random(1);
+  for (int seed = 0; seed < 200; ++seed) {
+    // What waited since before ends anywhere, and the line goes on anywhere.
+    const std::string waited =
+        joined(quiet_frames(0, 1 + static_cast<std::uint32_t>(random() % 9)));
+    const std::string bytes = waited.substr(random() % 100, random() % waited.size()) +
+                              quiet_readings(99).substr(random() % kBoard.bytes());
+    FlexitacParser parser(kBoard);
+    std::memcpy(parser.space().data(), bytes.data(), bytes.size());
+    parser.commit(bytes.size(), 0s);
+    Parsed parsed;
+    feed(parser, joined(quiet_frames(20, 30)) + kMarks, random, parsed);
+    ASSERT_GE(parsed.frames.size(), 10U);
+    EXPECT_EQ(parsed.frames.back(), quiet_readings(29));
+    EXPECT_EQ(parser.invalid(), 0U) << seed;
+    EXPECT_EQ(parsed.sequences.back(), parsed.sequences.size() - 1) << seed;
+  }
 }
 
 TEST(FlexitacParser, TellsWhyNoFrameComes) {

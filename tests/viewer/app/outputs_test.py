@@ -97,7 +97,9 @@ class Outputs(unittest.TestCase):
                               "x.mp4", *options)
             if "Vulkan" in ended.stderr:
                 self.skipTest(ended.stderr)
-            self.assertEqual(ended.stdout, "Wrote x.mp4\n")
+            slower = "; --speed 0.1 makes it slower" if "0.1" not in options else ""
+            self.assertRegex(ended.stdout, rf"^Wrote x.mp4: [0-9.]+ s long{slower}\n$")
+            self.assertAlmostEqual(float(ended.stdout.split()[2]), seconds, delta=0.02)
             probe = subprocess.run(
                 ["ffprobe", "-v", "error", "-show_entries", "stream=nb_frames,duration", "-of",
                  "csv=p=0", "x.mp4"], cwd=self.folder, check=True, capture_output=True, text=True)

@@ -48,13 +48,10 @@ TEST_F(Panels, EachWidgetActs) {
   EXPECT_TRUE(fake.pending.truth);
   press({"View", "light"});
   EXPECT_EQ(settings.theme, Theme::light);
-  press({"View", "view", "3-D"});
+  press({"View", "3-D"});
   EXPECT_TRUE(shows_orbit(settings));
-  press({"View", "surface", "Sphere"});
-  EXPECT_EQ(settings.surface.shape, SurfaceShape::sphere);
   for (const auto& [name, request] :
-       {std::pair{"Picture", &PendingActions::picture},
-        std::pair{"Frames", &PendingActions::sequence}, std::pair{"Video", &PendingActions::video},
+       {std::pair{"Picture", &PendingActions::picture}, std::pair{"Video", &PendingActions::video},
         std::pair{"Table", &PendingActions::table}}) {
     press({"Write", name});
     EXPECT_TRUE(fake.pending.*request) << name;
@@ -178,7 +175,7 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
 }
 
 TEST(StartPage, APictureAndARecentSourceAreChosenByTheirNames) {
-  StartChoices choices{{"old.h5"}, {{"scenes/demo.toml", "scenes/wave.toml"}, {}}, {}};
+  StartChoices choices{{"old.h5"}, {"scenes/demo.toml", "scenes/wave.toml"}, {}};
   choices.pictures.resize(embedded_pictures().size());
   FakeGui gui;
   std::string chosen;

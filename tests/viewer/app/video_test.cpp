@@ -76,6 +76,16 @@ TEST_F(Video, TheErrorHoldsFfmpegsMessage) {
   EXPECT_EQ(message.find('\n'), std::string::npos);
 }
 
+TEST_F(Video, AComplaintOfFfmpegThatExitsWith0IsAFailureAndKeepsTheOldVideo) {
+  std::ofstream(folder_ / "a.mp4") << "good";
+  stand_in("cat > \"$out\"; echo 'Error writing trailer: No space left on device' >&2");
+  VideoWriter video(folder_ / "a.mp4", 4, 4, 25, Replace::anything);
+  video.add(grey(4, 4, 1));
+  const std::string message = error_of([&] { video.finish(); });
+  EXPECT_NE(message.find("No space left on device"), std::string::npos) << message;
+  EXPECT_EQ(fs::file_size(folder_ / "a.mp4"), 4U);
+}
+
 TEST_F(Video, AnUnfinishedVideoLeavesNothing) {
   stand_in("cat > \"$out\"; sleep 60");
   {

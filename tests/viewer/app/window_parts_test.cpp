@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
-#include <tuple>
+#include <cmath>
 #include <vector>
 
 #include "tests/viewer/app/fake_app_state.h"
@@ -17,10 +18,10 @@ namespace {
 
 double area(const Viewport& box) { return box.width * box.height; }
 
-constexpr Sides kBothSides{true, 0.12, 0};
+constexpr Sides kBothSides{true, 131};
 
 /// Both sides beside `pictures` of a skin.
-Sides sides_beside(double aspect, int pictures) { return {true, 0.12, 0, aspect, pictures}; }
+Sides sides_beside(double aspect, int pictures) { return {true, 131, aspect, pictures}; }
 
 TEST(Screen, ItsPartsTileTheWindow) {
   for (const std::uint32_t width : {1u, 100u, 481u, 1280u, 3841u}) {
@@ -41,20 +42,23 @@ TEST(Screen, ItsPartsTileTheWindow) {
   }
 }
 
-TEST(Screen, AWholeSkinFillsItsPlot) {
+TEST(Screen, FieldAndCurvesHaveTheirRoom) {
   for (const double scale : {1.0, 1.5}) {
-    for (const auto& [aspect, pictures, share] :
-         {std::tuple{1.0, 1, 0.8}, {1.0, 2, 0.7}, {0.42, 1, 0.55}, {2.0, 1, 0.7}}) {
-      const Screen screen =
-          divide(static_cast<std::uint32_t>(1280 * scale), static_cast<std::uint32_t>(720 * scale),
-                 scale, sides_beside(aspect, pictures));
+    for (const double aspect : {0.42, 1.0, 2.0}) {
+      const auto divided = [&](double width, double height) {
+        return divide(static_cast<std::uint32_t>(scale * width),
+                      static_cast<std::uint32_t>(scale * height), scale, sides_beside(aspect, 1));
+      };
+      const Screen small = divided(1280, 720);
+      EXPECT_GE(area(small.field), 0.55 * 1280 * 720 * scale * scale);
+      EXPECT_GE(small.row.height, 120 * scale);
+      EXPECT_EQ(small.column.width, 320 * scale);
+      const Viewport field = divided(1920, 1080).field;
       RenderSettings settings;
       settings.scale = scale;
-      settings.colour_bar = pictures == 1;
-      const Viewport place = pictures == 1 ? screen.field : first_half(screen.field, settings);
-      const Viewport plot = layout_of(place.width, place.height, settings).plot;
+      const Viewport plot = layout_of(field.width, field.height, settings).plot;
       const double pixels = fit_top({100 * aspect, 100}, plot).pixels_per_mm;
-      EXPECT_GE(aspect * 1e4 * pixels * pixels, share * area(plot)) << aspect << ", " << pictures;
+      EXPECT_LT(area(plot) - aspect * 1e4 * pixels * pixels, 1920 * 1080 * scale * scale / 3);
     }
   }
 }
@@ -144,6 +148,22 @@ TEST(TimeWindow, FollowsASensorUntilItIsMovedBack) {
   expect_span(window.of({0, 200}, 20), 75, 80);
   window.reset();
   expect_span(window.of({0, 200}, 20), 180, 200);
+}
+
+TEST(Curve, BreaksWhereThereIsNoValue) {
+  const FakeGui gui;
+  const PlotArea area{{0, 0, 100, 50}, {0, 100}, {0, 1}};
+  std::vector<Vec2> places;
+  for (int i = 0; i <= 100; ++i) places.push_back({1.0 * i, i > 40 && i < 60 ? NAN : 0.5});
+  ImDrawList list(ImGui::GetDrawListSharedData());
+  list._ResetForNewFrame();
+  draw_curve(list, area, places, 0xffffffff, 1);
+  const auto x_of = [&](int i) { return list.VtxBuffer[list.IdxBuffer[i]].pos.x; };
+  ASSERT_GT(list.IdxBuffer.Size, 0);
+  for (int i = 0; i < list.IdxBuffer.Size; i += 3) {
+    const auto [from, to] = std::minmax({x_of(i), x_of(i + 1), x_of(i + 2)});
+    EXPECT_TRUE(to < 45 || from > 55);
+  }
 }
 
 /// Draws while due; returns the number of frames.

@@ -116,6 +116,7 @@ Options options_of(const GoldenPicture& picture) {
   std::vector<std::string> words = picture.words;
   words[0] = std::string(PILLARFIELD_SCENES) + "/" + words[0];
   words.insert(words.begin(), "pillarfield-viewer");
+  if (std::ranges::find(words, "--contacts") == words.end()) words.push_back("--no-contacts");
   std::vector<char*> arguments;
   arguments.reserve(words.size());
   for (std::string& word : words) arguments.push_back(word.data());

@@ -9,10 +9,12 @@
 #include <span>
 #include <thread>
 
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/host_solve.h"
+#include "pillarfield/plan_builder.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
@@ -235,6 +237,47 @@ TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
         << "readings of another frame";
   }
   EXPECT_THROW(static_cast<void>(producer->produce(kFrames)), Error);
+}
+
+TEST(RecordingProducer, SolvesEachFormatWithACalibrationAsSolveDoes) {
+  const TemporaryDirectory directory;
+  const Skin skin = small_skin();
+  write_recording(directory / "r.h5", {}, 0.01);
+  std::string header = "{'descr': '<u2', 'fortran_order': False, 'shape': (5, 31, 46), }";
+  header.resize(117, ' ');
+  std::string npy = std::string("\x93NUMPY\x01\x00", 8) + std::string("v\0", 2) + header + '\n';
+  std::string csv;
+  FrameBuffer frame(SenselType::u16, skin.rows, skin.cols);
+  for (std::uint64_t index = 0; index < kFrames; ++index) {
+    fill_frame(index, frame);
+    npy.append(reinterpret_cast<const char*>(frame.bytes().data()), frame.bytes().size());
+    for (const auto reading : frame.readings<std::uint16_t>()) csv += std::to_string(reading) + ",";
+    csv.back() = '\n';
+  }
+  write_bytes(directory / "r.npy", npy);
+  write_bytes(directory / "r.csv", csv);
+  SkinCalibration calibration = blank_calibration(skin);
+  calibration.counts_per_newton = 77;
+  calibration.planes.gain.assign(skin.sensels(), 1.25F);
+  write_calibration_file(directory / "c.h5", calibration);
+  ProducerOptions options;
+  options.plan.calibration = directory / "c.h5";
+  write_forces(directory / "f.h5", false);
+  EXPECT_TRUE(has_all(error_of([&] { (void)open_producer(directory / "f.h5", options); }),
+                      {"f.h5", "leave out --calibration"}));
+  for (const char* const name : {"r.h5", "r.npy", "r.csv"}) {
+    SCOPED_TRACE(name);
+    options.plan.read.layout = SkinLayout::pillars;
+    if (name[2] != 'h') options.plan.read.rate_hz = 100;
+    if (name[2] == 'c') options.plan.read.frame_size = FrameSize{skin.rows, skin.cols};
+    const auto producer = open_producer(directory / name, options);
+    const auto source = open_frames(directory / name, frame_options(options.plan));
+    const SolverPlan plan = build_plan(plan_of_frames(*source), options.plan, name, {});
+    EXPECT_EQ(plan.skin.counts_per_newton, 77);
+    FrameBuffer read(plan.sensel_type, skin.rows, skin.cols);
+    source->read(3, read);
+    expect_same_forces(producer->produce(3).forces, solve_on_host(plan, read.view()).view());
+  }
 }
 
 TEST(SceneProducer, OpensAgainAndHasATruth) {

@@ -157,8 +157,9 @@ TEST(ResultPlayer, HasNoReadingsToRecord) {
   const Program program;
   const ShownResults shown;
   EXPECT_THROW(shown.player.live()->record("recording.h5"), Error);
-  EXPECT_THROW((void)open_sensor(ring_name(), {.producer = {.read = {.counts_per_newton = 100}}}),
-               Error);
+  EXPECT_THROW(
+      (void)open_sensor(ring_name(), {.producer = {.plan = {.read = {.counts_per_newton = 100}}}}),
+      Error);
 }
 
 }  // namespace

@@ -48,13 +48,13 @@ class Display:
     def pixels(self):
         return read_xwd(self.folder / "Xvfb_screen0")
 
-    def still_pixels(self, seconds=600):
+    def still_pixels(self, seconds=60):
         """The screen after a period without changes."""
         deadline = time.monotonic() + seconds
         last = self.pixels()
         since = time.monotonic()
         while time.monotonic() - since < 0.4:
-            assert time.monotonic() < deadline, "the screen does not come to rest"
+            assert time.monotonic() < deadline, f"the screen does not come to rest within {seconds} s"
             time.sleep(0.05)
             now = self.pixels()
             if not numpy.array_equal(now, last):
@@ -63,7 +63,7 @@ class Display:
 
     def xdotool(self, *words):
         return subprocess.run(["xdotool", *map(str, words)], env=self.environment(), check=True,
-                              capture_output=True, text=True, timeout=600).stdout
+                              capture_output=True, text=True, timeout=60).stdout
 
     def environment(self):
         return {**os.environ, "DISPLAY": self.name}

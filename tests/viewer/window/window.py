@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import time
@@ -17,7 +18,7 @@ PROGRAM = os.environ["PILLARFIELD"]
 SCENES = pathlib.Path(os.environ["PILLARFIELD_SOURCE"]) / "scenes"
 PICTURES = pathlib.Path(os.environ.get("PILLARFIELD_PICTURES", tempfile.gettempdir()))
 WIDTH, HEIGHT = 1280, 720
-PATIENCE_S = 600  # of a busy machine
+PATIENCE_S = 60  # of a busy machine
 
 
 class Window:
@@ -32,8 +33,6 @@ class Window:
             stdout=subprocess.PIPE, stderr=self.errors, text=True)
         self.id = self.wait_for_window()
         screen.xdotool("windowfocus", "--sync", self.id)
-        if arguments and not str(arguments[0]).startswith(("-", "udp:")):
-            self.wait_for_source()
 
     def wait_for_window(self):
         deadline = time.monotonic() + PATIENCE_S
@@ -46,14 +45,14 @@ class Window:
             if found:
                 return found[0]
             time.sleep(0.1)
-        raise AssertionError("no window came")
+        raise AssertionError(f"no window came within {PATIENCE_S} s")
 
     def wait_for_source(self):
         """Until it is open, as the window's title tells."""
         deadline = time.monotonic() + PATIENCE_S
         while "–" not in self.screen.xdotool("getwindowname", self.id):
             assert self.process.poll() is None, "the viewer ended: " + self.error_text()
-            assert time.monotonic() < deadline, "the source does not open"
+            assert time.monotonic() < deadline, f"the source does not open within {PATIENCE_S} s"
             time.sleep(0.05)
 
     def error_text(self):
@@ -69,17 +68,20 @@ class Window:
     def drag(self, begin, end, button=1):
         self.move(*begin)
         self.screen.xdotool("mousedown", button)
-        time.sleep(0.15)  # A busy machine draws few frames, and a drag needs several.
-        for share in (0.3, 0.7, 1):
-            self.move(begin[0] + share * (end[0] - begin[0]),
-                      begin[1] + share * (end[1] - begin[1]))
-            time.sleep(0.15)
+        self.move(*end)
         self.screen.xdotool("mouseup", button)
+
+    def sleep(self, sleeps=True):
+        """Draws no more, as if a frame took long, or goes on."""
+        self.process.send_signal(signal.SIGSTOP if sleeps else signal.SIGCONT)
 
     def quit(self):
         """Closes the window by its key; returns the statistics."""
         self.key("q")
-        (output, _) = self.process.communicate(timeout=PATIENCE_S)
+        try:
+            (output, _) = self.process.communicate(timeout=PATIENCE_S)
+        except subprocess.TimeoutExpired as late:
+            raise AssertionError(f"the key Q does not end the viewer within {PATIENCE_S} s") from late
         assert self.process.returncode == 0, self.error_text()
         return json.loads(output)
 
@@ -111,9 +113,11 @@ class WindowTest(unittest.TestCase):
         (width, height) = self.SIZE
         self.screen.xdotool("mousemove", width + 150, height + 110)
 
-    def open(self, *arguments):
+    def open(self, *arguments, waits=True):
         window = Window(self.screen, self.folder, *arguments)
         self.addCleanup(window.kill)
+        if waits and arguments and not str(arguments[0]).startswith(("-", "udp:")):
+            window.wait_for_source()
         return window
 
     def shoot(self, name, still=True):
@@ -125,7 +129,7 @@ class WindowTest(unittest.TestCase):
         """Waits until condition() is true, and returns its value."""
         end = time.monotonic() + PATIENCE_S
         while not (value := condition()):
-            self.assertLess(time.monotonic(), end, what)
+            self.assertLess(time.monotonic(), end, f"{what} within {PATIENCE_S} s")
             time.sleep(0.1)
         return value
 
@@ -134,18 +138,7 @@ class WindowTest(unittest.TestCase):
         def changed():
             pixels = self.shoot(name, still)
             return None if any(numpy.array_equal(each, pixels) for each in before) else [pixels]
-        return self.wait_for(changed, name)[0]
-
-    def act(self, name, action, *before):
-        """Acts until a new picture comes: a window that draws seldom misses short actions."""
-        for _ in range(4):
-            action()
-            end = time.monotonic() + 15
-            while time.monotonic() < end:
-                pixels = self.shoot(name)
-                if not any(numpy.array_equal(each, pixels) for each in before):
-                    return pixels
-        self.fail(name)
+        return self.wait_for(changed, f"no new picture '{name}'")[0]
 
     def wait_for_motion(self, pictures=4):
         """Waits for pictures each of which differs from the one before."""

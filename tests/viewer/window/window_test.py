@@ -26,7 +26,7 @@ class PictureTest(WindowTest):
     def test_field_is_what_headless_writes(self):
         for (name, options) in (("top", []), ("orbit", ["--view", "orbit", "--layer", "shear"]),
                                 ("light", ["--light", "--layer", "region", "--copy"]),
-                                ("contacts", ["--contacts"])):
+                                ("bare", ["--no-contacts"])):
             with self.subTest(name):
                 window = self.open(SCENES / "demo.toml", "--paused", "--frame", 31, *options)
                 pixels = self.shoot("field_" + name)
@@ -44,8 +44,9 @@ class KeyTest(WindowTest):
     def test_keys_change_what_is_seen(self):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20)
         before = self.shoot("opened")
-        for key in ("2", "e", "a", "k", "v", "b", "w", "t", "i", "Tab", "Right", "question", "Escape"):
-            before = self.act("key_" + key, lambda key=key: window.key(key), before)
+        for key in ("2", "e", "a", "k", "v", "b", "w", "t", "Tab", "Right", "question", "Escape"):
+            window.key(key)
+            before = self.shoot_changed("key_" + key, before)
         window.key("space")
         self.wait_for_motion()
         window.key("space")
@@ -141,7 +142,6 @@ class BoxTest(WindowTest):
         before = self.shoot("box_none")
         window.drag((340, 60), (420, 190))  # in the field
         window.key("o")
-        self.wait_for(lambda: "box 1" in self.settings(), "the box is not kept")
         window.key("Return")
         self.shoot_changed("box", before)
         self.assert_quiet(window)
@@ -149,6 +149,24 @@ class BoxTest(WindowTest):
         window = self.open(*arguments)
         self.shoot_changed("box_again", before)
         self.assert_quiet(window)
+
+    def test_nothing_is_lost_while_it_loads_or_draws_slowly(self):
+        window = self.open(SCENES / "demo.toml", "--paused", "--frame", 31, waits=False)
+        for round in ("loads", "draws slowly"):
+            for number in range(2):
+                window.drag((340, 60 + 60 * number), (420, 90 + 60 * number))
+                window.key("o")
+                for name in ("BackSpace", *f"{round[0]}{number}q", "Return"):
+                    window.key(name)
+            window.sleep(False)
+            window.wait_for_source()
+            self.wait_for(lambda: f"{round[0]}1q" in self.settings(), f"no box while it {round}")
+            window.sleep()
+        window.key("q")
+        window.sleep(False)
+        window.process.communicate(timeout=PATIENCE_S)
+        kept = [line for line in self.settings().splitlines() if line.startswith("box ")]
+        self.assertEqual([line.split()[-1] for line in kept], ["l0q", "l1q", "d0q", "d1q"], kept)
 
 
 class WholeWindowTest(WindowTest):

@@ -116,7 +116,8 @@ void VideoWriter::add(const Pixels& pixels) {
 void VideoWriter::finish() {
   if (state_->finished) return;
   state_->finished = true;
-  if (!state_->ffmpeg.finish()) state_->fail();
+  // On a full disk ffmpeg 5.1 complains, and exits with 0.
+  if (!state_->ffmpeg.finish() || !state_->ffmpeg.errors().empty()) state_->fail();
   if (state_->pictures == 0) {
     throw Error(state_->file.path().string(), "the video has no pictures", "add at least one");
   }

@@ -10,10 +10,9 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// The first of NAME_DETAIL, NAME_DETAIL_2, ... for which the file `looked_for` does not exist.
-template <class LookedFor>
+/// The first of NAME_DETAIL, NAME_DETAIL_2, ... that does not exist.
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
-                                 const char* ending, const LookedFor& looked_for) {
+                                 const char* ending) {
   std::string stem = std::filesystem::path(source.name).stem().string();
   if (source.frames == 0) {  // Live, no path: "udp:127.0.0.1:9870".
     stem = source.name;
@@ -23,8 +22,7 @@ std::filesystem::path first_free(const SourceInfo& source, const std::string& de
   }
   if (!detail.empty()) stem += "_" + detail;
   std::filesystem::path path = stem + ending;
-  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
-       ++number) {
+  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(path)); ++number) {
     path = fmt::format("{}_{}{}", stem, number, ending);
   }
   return path;
@@ -37,7 +35,7 @@ struct FileWriter::Frames {
   std::filesystem::path path;
   std::uint64_t count = 0;
   std::uint64_t next = 0;
-  std::unique_ptr<VideoWriter> video = {};  ///< null: pictures
+  std::unique_ptr<VideoWriter> video;
 };
 
 FileWriter::FileWriter(AppState& state) : state_(&state) {}
@@ -59,7 +57,7 @@ void FileWriter::serve(const PendingActions& asked, const FieldPlace& place, con
       write_csv(path, field, visible_pillars(place, look.settings), Replace::nothing);
       notice = "wrote " + path.string();
     }
-    if (asked.sequence || asked.video) begin_frames(asked.video, read);
+    if (asked.video) begin_video(read);
     if (asked.record) toggle_recording();
   } catch (const Error& error) {
     notice.fail(error.what());
@@ -77,34 +75,24 @@ void FileWriter::stop() {
 /// A new name, "demo_normal.png" for the source demo.h5, else "demo_normal_2.png" and so on.
 std::filesystem::path FileWriter::new_file(const std::string& detail, const char* ending,
                                            OutputKind kind) const {
-  auto path = first_free(state_->source.player->info(), detail, ending,
-                         [](const auto& name) { return name; });
+  auto path = first_free(state_->source.player->info(), detail, ending);
   check_outputs({state_->source.name}, {{path, kind}}, Replace::nothing);
   return path;
 }
 
-void FileWriter::begin_frames(bool video, const Read& read) {
+void FileWriter::begin_video(const Read& read) {
   if (frames_ != nullptr) return;
   Player& player = *state_->source.player;
   const SourceInfo& source = player.info();
   if (player.live() != nullptr) {
     throw Error(source.name, "a sensor has no last frame to write", "record it");
   }
-  const std::string quantity = info_of(state_->look.settings.quantity).name;
-  auto frames = std::make_unique<Frames>(Frames{{}, player.state().frames});
-  if (video) {
-    frames->path = new_file(quantity, ".mp4", OutputKind::video);
-    const Pixels size = read();
-    frames->video =
-        std::make_unique<VideoWriter>(frames->path, size.width, size.height,
-                                      source.rate_hz * player.state().speed, Replace::nothing);
-  } else {
-    const auto first = [&](const auto& path) { return numbered(path, 1, source.frames); };
-    frames->path = first_free(source, quantity, ".png", first);
-    check_outputs({state_->source.name}, {{first(frames->path), OutputKind::png}},
-                  Replace::nothing);
-  }
-  frames_ = std::move(frames);
+  const auto path =
+      new_file(info_of(state_->look.settings.quantity).name, ".mp4", OutputKind::video);
+  const Pixels size = read();
+  auto video = std::make_unique<VideoWriter>(
+      path, size.width, size.height, source.rate_hz * player.state().speed, Replace::nothing);
+  frames_ = std::make_unique<Frames>(Frames{path, player.state().frames, 0, std::move(video)});
   state_->window.writing = true;
   player.pause();
   player.seek(0);
@@ -117,7 +105,7 @@ void FileWriter::toggle_recording() {
     throw Error(source.name, "only a sensor can be recorded", "open a live source");
   }
   if (!live->status().recording.empty()) return live->stop_recording();
-  const auto path = first_free(source, "recording", ".h5", [](const auto& name) { return name; });
+  const auto path = first_free(source, "recording", ".h5");
   live->record(path);
   state_->window.notice = "recording " + path.string();
 }
@@ -147,23 +135,13 @@ bool FileWriter::wants_picture() const {
 void FileWriter::add(const Pixels& pixels) {
   Frames& frames = *frames_;
   Notice& notice = state_->window.notice;
-  const auto name = [&](std::uint64_t frame) {
-    return numbered(frames.path, frame, frames.count).string();
-  };
-  if (frames.video != nullptr) {
-    frames.video->add(pixels);
-  } else {
-    write_png(name(frames.next + 1), pixels, Replace::nothing);
-  }
+  frames.video->add(pixels);
   if (++frames.next < frames.count) {
     notice = fmt::format("writing {} of {} (Esc stops)", frames.next, frames.count);
     return state_->source.player->seek(frames.next);
   }
-  if (frames.video != nullptr) frames.video->finish();
-  notice =
-      fmt::format("wrote {} frames: {}", frames.count,
-                  frames.video != nullptr ? frames.path.string()
-                                          : fmt::format("{} to {}", name(1), name(frames.count)));
+  frames.video->finish();
+  notice = fmt::format("wrote {} frames: {}", frames.count, frames.path.string());
   stop();
 }
 

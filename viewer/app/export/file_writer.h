@@ -10,7 +10,7 @@
 namespace pillarfield::viewer {
 
 /// Writes what the user asks for under new names in the current folder: the picture on display, the
-/// visible forces, pictures or a video of all frames, a recording of a sensor.
+/// visible forces, a video of all frames, a recording of a sensor.
 class FileWriter {
  public:
   /// Reads the pixels of the picture on display.
@@ -36,7 +36,7 @@ class FileWriter {
 
   [[nodiscard]] std::filesystem::path new_file(const std::string& detail, const char* ending,
                                                OutputKind kind) const;
-  void begin_frames(bool video, const Read& read);
+  void begin_video(const Read& read);
   void toggle_recording();
   [[nodiscard]] bool wants_picture() const;
   void add(const Pixels& pixels);

@@ -115,11 +115,6 @@ void stop_at_skin(AppState& state, const FieldPlace& place) {
   if (view.distance_mm >= whole.distance_mm) view = whole;
 }
 
-void set_surface(AppState& state, const FieldPlace& place, const Surface& surface) {
-  state.look.settings.surface = surface;
-  if (state.look.view_is_fitted) reset_view(state, place);
-}
-
 void toggle_pin(AppState& state, PillarIndex pillar) {
   auto& pins = state.marks.pins;
   const auto known =

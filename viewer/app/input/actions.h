@@ -32,9 +32,6 @@ void reset_view(AppState& state, const FieldPlace& place);
 /// Ends zooming out at the whole skin.
 void stop_at_skin(AppState& state, const FieldPlace& place);
 
-/// Sets the surface; refits a view that the user has not moved.
-void set_surface(AppState& state, const FieldPlace& place, const Surface& surface);
-
 /// Pins or unpins a pillar.
 void toggle_pin(AppState& state, PillarIndex pillar);
 void select_pillars(AppState& state, const PillarRect& rect);

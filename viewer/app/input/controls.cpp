@@ -9,7 +9,6 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr double kShake = 4;  ///< pixels at scale 1 that a click may move
-constexpr double kDoubleClickSeconds = 0.35;
 constexpr double kZoomOfStep = 1.2;
 
 double distance(Vec2 a, Vec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }

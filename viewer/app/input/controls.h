@@ -6,6 +6,8 @@
 
 namespace pillarfield::viewer {
 
+inline constexpr double kDoubleClickSeconds = 0.35;
+
 /// Translates key and mouse events in the field into actions, independent of a window.
 ///
 /// A click (press and release in one place) toggles a pin; a double click resets the view and

@@ -5,6 +5,8 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
 
 #include "viewer/render/imgui_point.h"
@@ -33,21 +35,54 @@ constexpr std::array kImGuiKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
                                 std::pair{ImGuiKey_V, GLFW_KEY_V},
                                 std::pair{ImGuiKey_X, GLFW_KEY_X}};
 
-}  // namespace
-
-void GuiInput::take_key(const KeyEvent& event) {
+void take_key(const KeyEvent& event) {
   ImGuiIO& io = ImGui::GetIO();
   if (event.key < 0 || event.key >= IM_ARRAYSIZE(io.KeysDown)) return;
   io.KeyCtrl = event.modifiers.control;
   io.KeyShift = event.modifiers.shift;
-  if (event.pressed) {
-    pressed_.push_back(event.key);
-    io.KeysDown[event.key] = true;
-  } else if (std::ranges::find(pressed_, event.key) != pressed_.end()) {
-    released_.push_back(event.key);
-  } else {
-    io.KeysDown[event.key] = false;
-  }
+  io.KeysDown[event.key] = event.pressed;
+}
+
+void take_button(const ButtonEvent& event) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = to_imgui(event.pixel);
+  io.KeyCtrl = event.modifiers.control;
+  io.KeyShift = event.modifiers.shift;
+  io.MouseDown[static_cast<std::size_t>(event.button)] = event.pressed;
+}
+
+}  // namespace
+
+void GuiInput::add(const std::vector<InputEvent>& events) {
+  events_.insert(events_.end(), events.begin(), events.end());
+}
+
+bool GuiInput::has_pressed(int key) const {
+  return std::ranges::any_of(events_, [&](const InputEvent& event) {
+    const auto* const pressed = std::get_if<KeyEvent>(&event);
+    return pressed != nullptr && pressed->pressed && !pressed->unusable && pressed->key == key;
+  });
+}
+
+std::optional<InputEvent> GuiInput::next() {
+  if (events_.empty()) return std::nullopt;
+  const InputEvent event = events_.front();
+  const auto* const button = std::get_if<ButtonEvent>(&event);
+  const auto* const key = std::get_if<KeyEvent>(&event);
+  const bool moves = std::holds_alternative<MotionEvent>(event) ||
+                     std::holds_alternative<LeaveEvent>(event) ||
+                     std::holds_alternative<WheelEvent>(event);
+  // A key that repeats changes nothing, nor does one that is released outside a text.
+  const bool changes =
+      button != nullptr || (key != nullptr && (key->pressed ? key->key != held_ : wants_text()));
+  const bool ends_drag = button != nullptr && !button->pressed && moved_;
+  if ((changed_ && (changes || moves)) || ends_drag) return std::nullopt;
+  changed_ |= changes;
+  moved_ |= moves;
+  if (key != nullptr && key->pressed) held_ = key->key;
+  if (key != nullptr && !key->pressed && key->key == held_) held_ = 0;
+  events_.pop_front();
+  return event;
 }
 
 void GuiInput::take(const InputEvent& event) {
@@ -59,19 +94,20 @@ void GuiInput::take(const InputEvent& event) {
   } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
     io.MousePos = to_imgui(motion->pixel);
   } else if (std::holds_alternative<LeaveEvent>(event)) {
-    const bool holds = std::any_of(buttons_.begin(), buttons_.end(),
-                                   [](const Button& button) { return button.held; });
-    if (!holds) io.MousePos = ImVec2(-1e6f, -1e6f);
+    if (std::ranges::find(io.MouseDown, true) == std::end(io.MouseDown)) {
+      io.MousePos = ImVec2(-1e6f, -1e6f);
+    }
   } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
-    Button& state = buttons_.at(static_cast<std::size_t>(button->button));
-    io.MousePos = to_imgui(button->pixel);
-    io.KeyCtrl = button->modifiers.control;
-    io.KeyShift = button->modifiers.shift;
-    state.held = button->pressed;
-    state.went_down |= button->pressed;
+    take_button(*button);
   } else if (const auto* wheel = std::get_if<WheelEvent>(&event)) {
     io.MouseWheel += static_cast<float>(wheel->steps);
   }
+}
+
+// ImGui's own word for it comes a frame late.
+bool GuiInput::wants_text() {
+  const ImGuiContext& gui = *ImGui::GetCurrentContext();
+  return gui.ActiveId != 0 && gui.ActiveId == gui.InputTextState.ID;
 }
 
 bool GuiInput::has_open_list() {
@@ -86,21 +122,15 @@ void GuiInput::close_lists() {
 void GuiInput::begin_frame(double seconds_since_last) {
   ImGuiIO& io = ImGui::GetIO();
   for (const auto& [name, key] : kImGuiKeys) io.KeyMap[name] = key;
-  for (const int key : ending_) io.KeysDown[key] = false;
-  ending_ = std::exchange(released_, {});
-  pressed_.clear();
+  changed_ = moved_ = false;
   io.DeltaTime = static_cast<float>(std::clamp(seconds_since_last, 1e-4, 0.1));
-  for (std::size_t i = 0; i < buttons_.size(); ++i) {
-    io.MouseDown[i] = buttons_[i].held || buttons_[i].went_down;
-    buttons_[i].went_down = false;
-  }
 }
 
 namespace {
 
-void route_key(const KeyEvent& key, const Command& command, Controls& controls, GuiInput& gui) {
-  const bool types = ImGui::GetIO().WantTextInput;
-  if (types || !key.pressed) gui.take(key);
+void route_key(const KeyEvent& key, const Command& command, Controls& controls) {
+  const bool types = GuiInput::wants_text();
+  if (types || !key.pressed) GuiInput::take(key);
   if (key.pressed && GuiInput::has_open_list()) {
     GuiInput::close_lists();
   } else if (!types) {
@@ -125,12 +155,12 @@ InputEvent in_first_half(InputEvent event, const AppState& state, const Viewport
 }  // namespace
 
 void route(const InputEvent& event, const Command& command, const Viewport& field,
-           Controls& controls, GuiInput& gui) {
+           Controls& controls) {
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
-    return route_key(*key, command, controls, gui);
+    return route_key(*key, command, controls);
   }
   if (std::holds_alternative<TextEvent>(event)) {
-    if (ImGui::GetIO().WantTextInput) gui.take(event);
+    if (GuiInput::wants_text()) GuiInput::take(event);
     return;
   }
   WindowState& window = command.state.window;
@@ -139,12 +169,13 @@ void route(const InputEvent& event, const Command& command, const Viewport& fiel
   const bool presses = button != nullptr && button->pressed;
   const auto* const wheel = std::get_if<WheelEvent>(&event);
   if (window.show_help && (presses || wheel != nullptr)) {  // The help scrolls, or goes.
-    if (wheel != nullptr || contains(window.help_place, button->pixel)) return gui.take(event);
+    if (wheel != nullptr || contains(window.help_place, button->pixel))
+      return GuiInput::take(event);
     window.show_help = false;
     return;
   }
   const bool in_field = wheel != nullptr && contains(field, wheel->pixel) && !covered;
-  if (!in_field) gui.take(event);
+  if (!in_field) GuiInput::take(event);
   if (!covered || (button != nullptr && !presses)) {
     controls.take(in_first_half(event, command.state, field), command);
   }

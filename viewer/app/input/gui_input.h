@@ -1,19 +1,28 @@
 #pragma once
 
-#include <array>
-#include <span>
+#include <deque>
+#include <optional>
 #include <vector>
 
 #include "viewer/app/input/controls.h"
 
 namespace pillarfield::viewer {
 
-/// Passes input events to Dear ImGui. Holds a button or key pressed and released between two frames
-/// for one frame, so that no click and no key is lost.
+/// Queues input events and passes them to Dear ImGui, which looks at keys and buttons once a frame:
+/// a frame sees one press or release, and a click where it was made, however slowly frames follow.
 class GuiInput {
  public:
-  void take(const InputEvent& event);
+  void add(const std::vector<InputEvent>& events);
+  /// The next event of this frame; none: the rest, if any, waits for the next frame.
+  [[nodiscard]] std::optional<InputEvent> next();
+  [[nodiscard]] bool is_empty() const { return events_.empty(); }
+  [[nodiscard]] bool has_pressed(int key) const;
+  void clear() { events_.clear(); }
 
+  static void take(const InputEvent& event);
+
+  /// A text field has the keyboard.
+  [[nodiscard]] static bool wants_text();
   /// Queries and closes popup lists.
   [[nodiscard]] static bool has_open_list();
   static void close_lists();
@@ -22,21 +31,15 @@ class GuiInput {
   void begin_frame(double seconds_since_last);
 
  private:
-  struct Button {
-    bool held = false;
-    bool went_down = false;
-  };
-  void take_key(const KeyEvent& event);
-
-  std::array<Button, 3> buttons_;
-  std::vector<int> pressed_;   ///< keys, since the last frame
-  std::vector<int> released_;  ///< of these
-  std::vector<int> ending_;    ///< released in the frame after the next
+  std::deque<InputEvent> events_;
+  bool changed_ = false;  ///< a key or button, since the last frame
+  bool moved_ = false;    ///< the mouse
+  int held_ = 0;          ///< the key pressed last, which may repeat; 0: released
 };
 
 /// Sends an event to the controls of the field, which lies at `field`, or to Dear ImGui. Text input
 /// suppresses shortcuts; popups and the help take the mouse.
 void route(const InputEvent& event, const Command& command, const Viewport& field,
-           Controls& controls, GuiInput& gui);
+           Controls& controls);
 
 }  // namespace pillarfield::viewer

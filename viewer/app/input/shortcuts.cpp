@@ -170,10 +170,6 @@ constexpr std::array kShortcuts{
     Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
     Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
              ask<&PendingActions::truth>},
-    Shortcut{Group::view, plain(GLFW_KEY_I), "I", "times of solving and drawing",
-             [](const Command& command) {
-               command.state.window.show_counters = !command.state.window.show_counters;
-             }},
     Shortcut{Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
              [](const Command& command) {
                command.state.window.show_panels = !command.state.window.show_panels;
@@ -185,8 +181,6 @@ constexpr std::array kShortcuts{
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
              ask<&PendingActions::picture>},
-    Shortcut{Group::write, with(kControl, GLFW_KEY_P), "Ctrl+P", "write all frames (PNG)",
-             ask<&PendingActions::sequence>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_M), "Ctrl+M", "write all frames (video)",
              ask<&PendingActions::video>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_R), "Ctrl+R", "record a sensor, or stop",

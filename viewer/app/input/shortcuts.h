@@ -13,19 +13,18 @@ namespace pillarfield::viewer {
 /// Actions that the application performs after input handling.
 struct PendingActions {
   bool quit = false;
-  bool picture = false;   ///< write the picture on display
-  bool sequence = false;  ///< write pictures of all frames
-  bool video = false;     ///< write a video of all frames
-  bool table = false;     ///< write the visible pillars as CSV
-  bool stop = false;      ///< stop writing
-  bool record = false;    ///< start or stop recording a sensor
-  bool truth = false;     ///< show or hide the truth beside
-  bool start = false;     ///< show the start page
-  std::string open;       ///< a source to open; empty: none
+  bool picture = false;  ///< write the picture on display
+  bool video = false;    ///< write a video of all frames
+  bool table = false;    ///< write the visible pillars as CSV
+  bool stop = false;     ///< stop writing
+  bool record = false;   ///< start or stop recording a sensor
+  bool truth = false;    ///< show or hide the truth beside
+  bool start = false;    ///< show the start page
+  std::string open;      ///< a source to open; empty: none
 
   /// True if something of the open source is asked for.
   [[nodiscard]] bool anything() const {
-    return picture || sequence || video || table || stop || record || truth;
+    return picture || video || table || stop || record || truth;
   }
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/app/input/gui_input.h"
 #include "viewer/app/input/marks.h"
 #include "viewer/app/panels/format_value.h"
 #include "viewer/app/panels/panel_style.h"
@@ -112,7 +113,7 @@ void boxes_panel(AppState& state) {
     ImGui::PopID();
   }
   ImGui::EndTable();
-  state.marks.names_box = false;
+  state.marks.names_box &= !GuiInput::wants_text();
   if (removed)
     state.marks.boxes.erase(state.marks.boxes.begin() + static_cast<std::ptrdiff_t>(*removed));
 }

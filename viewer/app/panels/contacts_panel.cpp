@@ -133,10 +133,8 @@ std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownCon
 
 void contacts_panel(AppState& state, const FieldPlace& place) {
   const PanelStyle style = panel_style(state.look.settings.scale);
-  if (!state.look.settings.contacts || !state.source.field ||
-      state.source.field->contacts == nullptr) {
-    faint_text(style, "Contacts are off; K shows them.");
-    return;
+  if (!state.source.field || state.source.field->contacts == nullptr) {
+    return faint_text(style, "They come with the next frame.");
   }
   const ShownContacts& contacts = *state.source.field->contacts;
   const SkinLayout layout = state.source.player->info().skin.layout;

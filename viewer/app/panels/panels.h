@@ -56,20 +56,20 @@ void draw_silence(const AppState& state, const Viewport& field);
 /// returns its place. Where it does not fit, it scrolls.
 [[nodiscard]] Viewport help_overlay(const Viewport& area, const SourceInfo& source);
 
-/// Settings of the picture: quantity, range, colours, layers, view, surface, theme.
+/// Settings of the picture: quantity, range, layers, view, theme.
 void view_panel(const Command& command);
 
 /// Buttons that write files.
 void write_panel(const Command& command);
 
-/// Measurements in fixed columns and, at the end, the last notice or else solver and graphics
-/// device. Fills the current ImGui window.
+/// The source and, at the end, the last notice or else solver and graphics device. Fills the
+/// current ImGui window.
 void status_row(const AppState& state, const std::string& gpu);
 
 /// Choices of the start page.
 struct StartChoices {
   std::vector<std::string> recent;
-  ScenesAtHand scenes;
+  std::vector<std::filesystem::path> scenes;
   std::vector<TexturePlace> pictures;  ///< of embedded_pictures(), in the texture of the font
 };
 

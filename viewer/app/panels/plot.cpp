@@ -53,11 +53,21 @@ Span round_span(std::span<const double> values, double rounding) {
   return {step * std::floor(low / step), step * std::ceil(high / step)};
 }
 
+std::vector<std::span<const Vec2>> pieces_of(std::span<const Vec2> curve) {
+  std::vector<std::span<const Vec2>> pieces;
+  const auto is_finite = [](const Vec2& value) { return std::isfinite(value.y); };
+  for (auto begin = curve.begin(); begin != curve.end();) {
+    begin = std::find_if(begin, curve.end(), is_finite);
+    const auto end = std::find_if_not(begin, curve.end(), is_finite);
+    if (begin != end) pieces.emplace_back(begin, end);
+    begin = end;
+  }
+  return pieces;
+}
+
 std::vector<Vec2> thinned(std::span<const Vec2> curve, const PlotArea& area) {
   std::vector<Vec2> pixels;
-  for (const Vec2& value : curve) {
-    if (std::isfinite(value.x) && std::isfinite(value.y)) pixels.push_back(area.at(value));
-  }
+  for (const Vec2& value : curve) pixels.push_back(area.at(value));
   std::vector<Vec2> points;
   for (std::size_t i = 0; i < pixels.size();) {
     const double left = std::floor(pixels[i].x);
@@ -147,13 +157,15 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
 
 void draw_curve(ImDrawList& list, const PlotArea& area, std::span<const Vec2> curve,
                 std::uint32_t colour, double width) {
-  std::vector<ImVec2> points;
-  for (const Vec2& pixel : thinned(curve, area)) points.push_back(to_imgui(pixel));
   const Viewport& box = area.box;
   list.PushClipRect(to_imgui({box.x, box.y - width}),
                     to_imgui({box.x + box.width, box.y + box.height + width}), true);
-  list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
-                   static_cast<float>(width));
+  for (const std::span<const Vec2> piece : pieces_of(curve)) {
+    std::vector<ImVec2> points;
+    for (const Vec2& pixel : thinned(piece, area)) points.push_back(to_imgui(pixel));
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
+                     static_cast<float>(width));
+  }
   list.PopClipRect();
 }
 

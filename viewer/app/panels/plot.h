@@ -58,8 +58,11 @@ struct PlotArea {
 /// [0, 1] where no value is above `rounding`.
 [[nodiscard]] Span round_span(std::span<const double> values, double rounding = 0);
 
-/// Thins a curve in ascending x, in pixels: keeps the first, lowest, highest and last point of each
-/// pixel column; drops NaN.
+/// The stretches of a curve between values that are not finite, which break it.
+[[nodiscard]] std::vector<std::span<const Vec2>> pieces_of(std::span<const Vec2> curve);
+
+/// Thins a finite curve in ascending x, in pixels: keeps the first, lowest, highest and last point
+/// of each pixel column.
 [[nodiscard]] std::vector<Vec2> thinned(std::span<const Vec2> curve, const PlotArea& area);
 
 /// Whole pixel widths in proportion to the counts, with sum `width`; at least one pixel for each
@@ -106,6 +109,7 @@ struct PlotTicks {
 void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
                const PanelStyle& style);
 
+/// Draws the pieces of a curve.
 void draw_curve(ImDrawList& list, const PlotArea& area, std::span<const Vec2> curve,
                 std::uint32_t colour, double width);
 

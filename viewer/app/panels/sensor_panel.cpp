@@ -108,8 +108,12 @@ void sensor_panel(const Command& command) {
     const std::string name = std::filesystem::path(status.recording).filename().string();
     faint_text(style, fmt::format("{}: {}", name, recorded_words(status.recorded)).c_str());
   }
-  for (const std::string& words : {status.health.stream.mismatch, status.health.coverage}) {
-    if (!words.empty()) faint_text(style, words.c_str());
+  if (!status.health.stream.mismatch.empty()) {
+    faint_text(style, status.health.stream.mismatch.c_str());
+  }
+  if (!status.health.coverage.empty()) {
+    faint_text(style,
+               "Press Tare while nothing touches the skin: nearly all of it reads as touched.");
   }
   value_table(style, health_lines(status));
 }

@@ -83,9 +83,8 @@ std::string picture_row(const StartChoices& choices, double scale) {
   for (std::size_t i = 0; i < choices.pictures.size(); ++i) {
     const std::string name(embedded_pictures()[i].scene);
     const auto scene = std::ranges::find_if(
-        choices.scenes.touches,
-        [&](const std::filesystem::path& path) { return path.stem() == name; });
-    if (scene == choices.scenes.touches.end()) continue;
+        choices.scenes, [&](const std::filesystem::path& path) { return path.stem() == name; });
+    if (scene == choices.scenes.end()) continue;
     if (!std::exchange(first, false)) ImGui::SameLine(0, gap);
     if (picture_button(name.c_str(), choices.pictures[i], scale)) chosen = scene->string();
   }
@@ -130,8 +129,7 @@ std::string start_page(const StartChoices& choices, const Viewport& area, const 
   std::string chosen;
   for (const std::string& each :
        {picture_row(choices, scale), name_line(), recent_list(choices.recent),
-        scene_list("Scenes, simulated as they are opened", choices.scenes.touches),
-        scene_list("Recordings for pillarfield calibrate", choices.scenes.calibration)}) {
+        scene_list("Scenes, simulated as they are opened", choices.scenes)}) {
     if (chosen.empty()) chosen = each;
   }
   ImGui::End();

@@ -1,67 +1,42 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
-
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-/// Writes columns from the left: a faint label, then its value, right-aligned in a fixed width.
+/// Writes text from the left, and at the right end of the row.
 class Row {
  public:
-  void add(const char* label, const std::string& value, const char* widest) {
-    const float width = ImGui::CalcTextSize(widest).x;
-    full_ |= x_ + ImGui::CalcTextSize(label).x + gap() * 0.4f + width > right();
-    if (full_) return;
-    write(label, ImGuiCol_TextDisabled);
-    x_ += gap() * 0.4f + width - ImGui::CalcTextSize(value.c_str()).x;
-    write(value.c_str(), ImGuiCol_Text);
-    x_ += gap();
+  /// Writes text, in as many lines as it needs if it `wraps`.
+  void write(const std::string& words, ImGuiCol colour, bool wraps = false) {
+    const float width = wraps ? right() - x_ : -1;
+    const ImVec2 size = ImGui::CalcTextSize(words.c_str(), nullptr, false, width);
+    ImGui::SetCursorPos(ImVec2(x_, 0.5f * (ImGui::GetWindowHeight() - size.y)));
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(colour));
+    ImGui::PushTextWrapPos(wraps ? right() : -1);
+    ImGui::TextUnformatted(words.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    x_ += size.x;
   }
-
-  /// Writes text at the current position, whether it fits or not.
-  void begin(const std::string& words, ImGuiCol colour) { write(words.c_str(), colour); }
 
   /// Writes text at the end of the row; false if it does not fit.
   bool finish(const std::string& words, ImGuiCol colour) {
     const float width = ImGui::CalcTextSize(words.c_str()).x;
     if (right() - width < x_) return false;
     x_ = right() - width;
-    write(words.c_str(), colour);
+    write(words, colour);
     return true;
   }
 
  private:
   static float right() { return ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x; }
-  static float gap() { return 1.4f * ImGui::GetFontSize(); }
 
-  void write(const char* words, ImGuiCol colour) {
-    ImGui::SetCursorPosX(x_);
-    ImGui::SetCursorPosY(0.5f * (ImGui::GetWindowHeight() - ImGui::GetFontSize()));
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(colour));
-    ImGui::TextUnformatted(words);
-    ImGui::PopStyleColor();
-    x_ += ImGui::CalcTextSize(words).x;
-  }
-
-  bool full_ = false;  ///< a column did not fit
   float x_ = ImGui::GetStyle().WindowPadding.x;
 };
-
-void add_measures(Row& row, const AppState& state) {
-  const PlayerStatistics solved = state.source.player->statistics();
-  const DrawStatistics& drawn = state.window.draw;
-  row.add("solve", fmt::format("{:.0f} Hz", solved.produced_hz), "0000 Hz");
-  row.add("", fmt::format("{:.1f} ms", solved.produce_ms_median), "000.0 ms");
-  row.add("show", fmt::format("{:.0f} Hz", drawn.frames_hz), "000 Hz");
-  row.add("draw", fmt::format("{:.1f} ms", drawn.draw_ms_median), "000.0 ms");
-  row.add("latency", fmt::format("{:.1f} ms", drawn.latency_ms_median), "000.0 ms");
-  row.add("not shown", fmt::format("{}", solved.not_shown), "00000");
-  row.add("memory", drawn.in_place ? "in place" : "copied", "in place");
-}
 
 std::string plural(std::uint64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -95,23 +70,18 @@ std::string source_words(const AppState& state) {
                      player.state().rate_hz, size);
 }
 
-bool fits_beside_measures(const std::string& words) {
-  const float measures = ImGui::CalcTextSize("0").x * 100;
-  return ImGui::GetWindowWidth() > measures + ImGui::CalcTextSize(words.c_str()).x;
-}
-
 }  // namespace
 
 void status_row(const AppState& state, const std::string& gpu) {
   Row row;
   const std::string& notice = state.window.notice;
-  const bool fits = notice.empty() || fits_beside_measures(notice);
-  if (fits && state.window.show_counters) add_measures(row, state);
-  if (fits && !state.window.show_counters) row.begin(source_words(state), ImGuiCol_Text);
+  const bool fits = width_of(notice) + width_of(source_words(state)) <
+                    static_cast<double>(ImGui::GetWindowWidth()) - 4 * ImGui::GetFontSize();
+  if (fits || notice.empty()) row.write(source_words(state), ImGuiCol_Text);
   if (!notice.empty()) {
     if (state.window.notice.is_failure)
       ImGui::PushStyleColor(ImGuiCol_CheckMark, packed(kWarningColour));
-    if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
+    if (!row.finish(notice, ImGuiCol_CheckMark)) row.write(notice, ImGuiCol_CheckMark, true);
     if (state.window.notice.is_failure) ImGui::PopStyleColor();
     return;
   }

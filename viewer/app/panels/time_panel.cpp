@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "viewer/app/input/marks.h"
@@ -156,11 +157,17 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   return charts;
 }
 
-std::vector<Vec2> places_of(const Chart& chart, const Curve& curve) {
+/// Times and values of a curve, with NaN in each gap.
+std::vector<Vec2> places_of(const Chart& chart, const Curve& curve, std::span<const Span> gaps) {
   std::vector<Vec2> places;
-  places.reserve(curve.points.size());
-  for (const CurvePoint& point : curve.points)
+  places.reserve(curve.points.size() + gaps.size());
+  auto gap = gaps.begin();
+  for (const CurvePoint& point : curve.points) {
+    for (; gap != gaps.end() && gap->from < point.time_s; ++gap) {
+      places.push_back({gap->from, std::numeric_limits<double>::quiet_NaN()});
+    }
     places.push_back({point.time_s, chart.value(curve, point)});
+  }
   return places;
 }
 
@@ -205,19 +212,6 @@ std::vector<Span> gaps_of(const Points& points, double now_s) {
     if (to - from > least_s) gaps.push_back({from, to});
   }
   return gaps;
-}
-
-/// Draws a curve, interrupted by the gaps.
-void draw_pieces(ImDrawList& list, const PlotArea& area, const Chart& chart, const Curve& curve,
-                 std::span<const Span> gaps, double width) {
-  const std::vector<Vec2> places = places_of(chart, curve);
-  auto begin = places.begin();
-  for (const Span& gap : gaps) {
-    const auto end = std::ranges::upper_bound(begin, places.end(), gap.from, {}, &Vec2::x);
-    draw_curve(list, area, {begin, end}, curve.colour, width);
-    begin = end;
-  }
-  draw_curve(list, area, {begin, places.end()}, curve.colour, width);
 }
 
 /// Exact values of a frame.
@@ -314,7 +308,7 @@ void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& fra
     if (to > from) draw_block(list, {from, area.box.y, to - from, area.box.height}, style.grid);
   }
   for (const Curve& curve : chart.curves) {
-    draw_pieces(list, area, chart, curve, frame.gaps, 1.6 * style.unit);
+    draw_curve(list, area, places_of(chart, curve, frame.gaps), curve.colour, 1.6 * style.unit);
   }
   const double now_s = frame.state.source.field->time_s;
   if (now_s >= area.x.from && now_s <= area.x.to) draw_head(list, area, now_s, style);
@@ -333,13 +327,14 @@ double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
   return widest;
 }
 
-/// Charts in rows, as many per row as fit; the rows fill the height that is left.
+/// Charts in rows that fill the height that is left, as many per row as fit; in a place that is
+/// high below each other.
 void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const PanelStyle& style) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
   const auto fitting = static_cast<std::size_t>(std::max(wide / (kChartWidth * style.unit), 1.0));
-  const std::size_t beside = std::min(fitting, charts.size());
+  const std::size_t beside = available.x > available.y ? std::min(fitting, charts.size()) : 1;
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   for (const Chart& chart : charts) {

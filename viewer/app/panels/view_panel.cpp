@@ -1,13 +1,10 @@
-#include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <array>
 
 #include "viewer/app/input/actions.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/widgets.h"
-#include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -67,52 +64,6 @@ void choose_range(AppState& state) {
   ImGui::Checkbox("each frame", &state.look.fit_each_field);
 }
 
-/// A colour map as a strip over the last item.
-void draw_map(ColourMap map, float left, float right, float top, float bottom) {
-  const auto table = table_of(map);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  constexpr std::size_t kStrips = 64;
-  for (std::size_t i = 0; i < kStrips; ++i) {
-    const auto edge = [&](std::size_t strip) {
-      return left + (right - left) * static_cast<float>(strip) / static_cast<float>(kStrips);
-    };
-    const Colour& colour = table[i * kColours / kStrips];
-    list.AddRectFilled(ImVec2(edge(i), top), ImVec2(edge(i + 1), bottom),
-                       IM_COL32(colour.red, colour.green, colour.blue, 255));
-  }
-}
-
-void draw_map_in_item(ColourMap map, float margin_right) {
-  const ImVec2 low = ImGui::GetItemRectMin();
-  const ImVec2 high = ImGui::GetItemRectMax();
-  const float middle = low.x + 0.45f * (high.x - low.x);
-  const float inset = 0.28f * (high.y - low.y);
-  draw_map(map, middle, high.x - margin_right, low.y + inset, high.y - inset);
-}
-
-bool suits(ColourMap map, Scale scale) {
-  if (scale == Scale::sequential) return map == ColourMap::cividis || map == ColourMap::viridis;
-  return map == default_map(scale);
-}
-
-void choose_map(RenderSettings& settings) {
-  const Scale scale = info_of(settings.quantity).scale;
-  if (scale == Scale::classes) return;
-  labelled("Colours");
-  const bool open = ImGui::BeginCombo("##map", name_of(settings.map));
-  if (!open) {
-    draw_map_in_item(settings.map, ImGui::GetFrameHeight() + ImGui::GetStyle().FramePadding.x);
-    return;
-  }
-  for (int i = 0; i < kColourMaps; ++i) {
-    const auto map = static_cast<ColourMap>(i);
-    if (!suits(map, scale)) continue;
-    if (ImGui::Selectable(name_of(map), map == settings.map)) settings.map = map;
-    draw_map_in_item(map, ImGui::GetStyle().FramePadding.x);
-  }
-  ImGui::EndCombo();
-}
-
 /// Check boxes, two in a row.
 class LayerBoxes {
  public:
@@ -140,6 +91,8 @@ void choose_layers(const Command& command) {
   if (boxes.add("contacts", contacts, "extent, force, centre of pressure (K)")) {
     show_contacts(state, contacts);
   }
+  bool orbit = shows_orbit(settings);
+  if (boxes.add("3-D", orbit, "from the top else (V)")) show_orbit(state, command.place, orbit);
   boxes.add("relief", settings.relief, "in 3-D, the normal force raises the skin (B)");
   if (pillars) {
     boxes.add("hatch", settings.hatch, "ambiguous pillars (X)");
@@ -156,53 +109,18 @@ void choose_layers(const Command& command) {
   }
 }
 
-void choose_view(const Command& command) {
-  constexpr std::array<const char*, 2> kViews{"Top", "3-D"};
-  labelled("View");
-  int chosen = shows_orbit(command.state.look.settings) ? 1 : 0;
-  if (toggle_group("view", kViews, chosen)) show_orbit(command.state, command.place, chosen == 1);
-}
-
-void choose_surface(const Command& command) {
-  constexpr std::array<const char*, 3> kSurfaces{"Plane", "Cylinder", "Sphere"};
-  Surface surface = command.state.look.settings.surface;
-  int chosen = static_cast<int>(surface.shape);
-  labelled("Surface");
-  const double width = command.place.skin().width_mm;
-  if (toggle_group("surface", kSurfaces, chosen)) {
-    surface.shape = static_cast<SurfaceShape>(chosen);
-    if (surface.radius_mm == 0) surface.radius_mm = 0.5 * width;
-    set_surface(command.state, command.place, surface);
-  }
-  if (surface.shape == SurfaceShape::plane) return;
-  labelled("Radius");
-  const auto [unit, factor] = command.state.look.settings.units.of(Dimension::length);
-  auto radius = static_cast<float>(surface.radius_mm * factor);
-  // The smallest radius lets the sheet close around the cylinder.
-  const auto least = static_cast<float>(0.17 * width * factor);
-  const auto most = static_cast<float>(20 * width * factor);
-  if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most,
-                       with_unit("%.1f", unit).c_str(), ImGuiSliderFlags_AlwaysClamp)) {
-    surface.radius_mm = static_cast<double>(radius) / factor;
-    set_surface(command.state, command.place, surface);
-  }
-}
-
 }  // namespace
 
 void view_panel(const Command& command) {
   AppState& state = command.state;
   choose_quantity(state);
   choose_range(state);
-  choose_map(state.look.settings);
   choose_layers(command);
-  choose_view(command);
-  if (shows_orbit(state.look.settings)) choose_surface(command);
 }
 
 void write_panel(const Command& command) {
   const ImGuiStyle& imgui_style = ImGui::GetStyle();
-  const float width = (ImGui::GetContentRegionAvail().x - 3 * imgui_style.ItemSpacing.x) / 4;
+  const float width = (ImGui::GetContentRegionAvail().x - 2 * imgui_style.ItemSpacing.x) / 3;
   const auto button = [&](const char* words, const char* help, bool& request) {
     if (ImGui::Button(words, ImVec2(width, 0))) request = true;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
@@ -213,8 +131,6 @@ void write_panel(const Command& command) {
   }
   PendingActions& pending = command.pending;
   button("Picture", "Write this picture as PNG (P)", pending.picture);
-  ImGui::SameLine();
-  button("Frames", "Write a PNG of every frame (Ctrl+P)", pending.sequence);
   ImGui::SameLine();
   button("Video", "Write a video of all frames, by ffmpeg (Ctrl+M)", pending.video);
   ImGui::SameLine();

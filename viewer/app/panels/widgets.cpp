@@ -48,31 +48,6 @@ void labelled(const char* label) {
   ImGui::SetNextItemWidth(-1);
 }
 
-bool toggle_group(const char* id, std::span<const char* const> words, int& chosen) {
-  ImGui::PushID(id);
-  const float gap = 1;
-  const auto count = static_cast<float>(words.size());
-  const float available = ImGui::GetContentRegionAvail().x;
-  const float width = std::floor((available - gap * (count - 1)) / count);
-  bool changed = false;
-  for (int i = 0; i < static_cast<int>(words.size()); ++i) {
-    if (i > 0) ImGui::SameLine(0, gap);
-    const bool lit = i == chosen;
-    if (lit) {
-      ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(ImGuiCol_Header));
-    } else {
-      ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
-    }
-    if (ImGui::Button(words[static_cast<std::size_t>(i)], ImVec2(width, 0)) && !lit) {
-      chosen = i;
-      changed = true;
-    }
-    ImGui::PopStyleColor();
-  }
-  ImGui::PopID();
-  return changed;
-}
-
 bool icon_button(const char* id, Icon icon, bool lit, const char* help) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();

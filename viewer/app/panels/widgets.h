@@ -21,9 +21,6 @@ namespace pillarfield::viewer {
 /// A label on the left; the next control takes the rest of the line.
 void labelled(const char* label);
 
-/// A group of exclusive toggle buttons; true if the choice changed.
-bool toggle_group(const char* id, std::span<const char* const> words, int& chosen);
-
 /// Draws an icon in a square of `side` pixels about `middle`.
 using Icon = void (*)(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 

@@ -40,7 +40,6 @@ LoadedSource load_sensor(const Options& options, const std::string& name, double
   };
   OpenedSensor opened =
       open_sensor(name, {.producer = producer_options(options, tell),
-                         .calibration = options.calibration,
                          .stop = stop,
                          .say = [&](const std::string& words) { waiting += ": " + words; }});
   if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
@@ -88,8 +87,9 @@ bool ShownSource::is_in_step(std::uint64_t index) const {
 ProducerOptions producer_options(const Options& options, LoadProgress tell) {
   ProducerOptions wanted;
   wanted.device = options.device;
-  wanted.read = frame_options({.read = options.plain, .settings = options.settings});
-  wanted.settings = options.settings;
+  wanted.plan = {.read = frame_options({.read = options.plain, .settings = options.settings}),
+                 .calibration = options.calibration,
+                 .settings = options.settings};
   if (!tell) return wanted;
   wanted.on_compiling = [tell = std::move(tell)](const std::string& line) {
     try {

@@ -105,7 +105,7 @@ std::vector<std::filesystem::path> scenes_in(const std::filesystem::path& folder
 
 }  // namespace
 
-ScenesAtHand scenes_at_hand() {
+std::vector<std::filesystem::path> scenes_at_hand() {
   std::error_code error;
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -115,7 +115,7 @@ ScenesAtHand scenes_at_hand() {
     std::vector<std::filesystem::path> touches = scenes_in(folder);
     if (touches.empty()) continue;
     for (auto& scene : scenes_in(folder / "touch")) touches.push_back(std::move(scene));
-    return {std::move(touches), scenes_in(folder / "calibration")};
+    return touches;
   }
   return {};
 }

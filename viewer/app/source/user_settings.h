@@ -28,12 +28,7 @@ class UserSettings {
   std::vector<std::string> recent_;
 };
 
-struct ScenesAtHand {
-  std::vector<std::filesystem::path> touches;      ///< the demo is the first
-  std::vector<std::filesystem::path> calibration;  ///< recordings for `pillarfield calibrate`
-};
-
-/// Scenes of the working folder, of an installed copy or of the source tree.
-[[nodiscard]] ScenesAtHand scenes_at_hand();
+/// Scenes of the working folder, of an installed copy or of the source tree; the demo is the first.
+[[nodiscard]] std::vector<std::filesystem::path> scenes_at_hand();
 
 }  // namespace pillarfield::viewer

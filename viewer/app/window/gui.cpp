@@ -16,14 +16,15 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kColumn = 284;  ///< nominal pixels, as those below
+constexpr double kColumn = 320;  ///< nominal pixels, as those below
 constexpr double kTransport = 36;
 constexpr double kStatus = 24;
+constexpr double kRow = 131;
 constexpr double kFoldedRow = 28;
-constexpr double kLineOfNames = 16;   ///< of named boxes, in the row
-constexpr double kShareOfRow = 0.12;  ///< of the window's height
-constexpr double kMostOfRow = 0.4;
-constexpr double kMostOfColumn = 0.6;  ///< of the window's width
+constexpr double kLineOfNames = 16;     ///< of named boxes, in the row
+constexpr double kLeastBeside = 300;    ///< width of curves beside the field
+constexpr double kMostOfRow = 0.4;      ///< of the window's height
+constexpr double kLeastOfField = 0.55;  ///< of the window, where curves have more than their least
 constexpr int kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
 bool has_curves(const AppState& state) {
@@ -32,7 +33,6 @@ bool has_curves(const AppState& state) {
 
 /// A panel of the column.
 struct Panel {
-  PanelKind kind = PanelKind::setting;
   const char* title = nullptr;
   bool (*has_contents)(const AppState& state) = nullptr;
   void (*draw)(const Command& command) = nullptr;
@@ -47,27 +47,20 @@ bool has_pins(const AppState& state) {
 }
 
 constexpr std::array kPanels{
-    Panel{PanelKind::setting, "Sensor",
-          [](const AppState& state) { return state.source.player->live() != nullptr; },
+    Panel{"Sensor", [](const AppState& state) { return state.source.player->live() != nullptr; },
           sensor_panel},
-    Panel{PanelKind::setting, "View", always, view_panel},
-    Panel{PanelKind::table, "Selection",
-          [](const AppState& state) { return state.marks.selection.has_value(); },
+    Panel{"View", always, view_panel},
+    Panel{"Selection", [](const AppState& state) { return state.marks.selection.has_value(); },
           [](const Command& command) { selection_panel(command.state); }},
-    Panel{PanelKind::table, "Boxes",
-          [](const AppState& state) { return !state.marks.boxes.empty(); },
+    Panel{"Boxes", [](const AppState& state) { return !state.marks.boxes.empty(); },
           [](const Command& command) { boxes_panel(command.state); },
           [](const AppState& state) { return state.marks.names_box; }},
-    Panel{PanelKind::table, "Contacts",
-          [](const AppState& state) { return state.look.settings.contacts; },
+    Panel{"Contacts", [](const AppState& state) { return state.look.settings.contacts; },
           [](const Command& command) { contacts_panel(command.state, command.place); }},
-    Panel{PanelKind::setting, "Under the cursor", always,
-          [](const Command& command) { hover_panel(command.state); }},
-    Panel{PanelKind::table, "Pillar", has_pins<true>,
-          [](const Command& command) { pillar_panel(command.state); }},
-    Panel{PanelKind::table, "Sensel", has_pins<false>,
-          [](const Command& command) { pillar_panel(command.state); }},
-    Panel{PanelKind::setting, "Write", always, write_panel},
+    Panel{"Under the cursor", always, [](const Command& command) { hover_panel(command.state); }},
+    Panel{"Pillar", has_pins<true>, [](const Command& command) { pillar_panel(command.state); }},
+    Panel{"Sensel", has_pins<false>, [](const Command& command) { pillar_panel(command.state); }},
+    Panel{"Write", always, write_panel},
 };
 
 /// Begins a fixed part of the window and draws its upper and left edge; ImGui::End() ends it.
@@ -89,18 +82,7 @@ void begin_part(const char* name, const Viewport& box, Theme theme, int flags = 
 void draw_column(const Command& command, const Viewport& box) {
   if (box.width < 1) return;
   begin_part("right", box, command.state.look.settings.theme);
-  const double first = kColumn * command.state.look.settings.scale;
-  if (box.width < 2.6 * first) {
-    draw_panels(command);
-  } else {
-    ImGui::BeginChild("settings", to_imgui({first, 0}));
-    draw_panels(command, PanelKind::setting);
-    ImGui::EndChild();
-    ImGui::SameLine();
-    ImGui::BeginChild("tables", ImVec2(0, 0), false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-    draw_panels(command, PanelKind::table);
-    ImGui::EndChild();
-  }
+  draw_panels(command);
   ImGui::End();
 }
 
@@ -128,6 +110,23 @@ void draw_row(const Command& command, const Viewport& box) {
   ImGui::End();
 }
 
+/// The status line, before and so above other parts: a long notice has several lines.
+void draw_status(const AppState& state, Viewport box, const std::string& gpu) {
+  const float width = static_cast<float>(box.width) - 2 * ImGui::GetStyle().WindowPadding.x;
+  const float text = ImGui::CalcTextSize(state.window.notice.c_str(), nullptr, false, width).y;
+  const double further = std::max(static_cast<double>(text - ImGui::GetFontSize()), 0.0);
+  box.y -= further;
+  box.height += further;
+  const Theme theme = state.look.settings.theme;
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, palette_of(theme).background);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  begin_part("status", box, theme, kStill);
+  status_row(state, gpu);
+  ImGui::End();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+}
+
 /// Width and height of the field that whole skins leave free.
 Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
   if (!(sides.aspect > 0)) return {};
@@ -149,9 +148,8 @@ Sides sides_of(const AppState& state) {
               .aspect = skin.width_mm / skin.height_mm,
               .pictures = state.source.beside == nullptr ? 1 : 2};
   if (!has_curves(state)) return sides;
-  const bool folded = state.window.folds_curves;
-  sides.row_share = folded ? 0 : kShareOfRow;
-  sides.row_pixels = folded ? kFoldedRow : state.marks.boxes.empty() ? 0 : kLineOfNames;
+  sides.row = kRow + (state.marks.boxes.empty() ? 0 : kLineOfNames);
+  if (state.window.folds_curves) sides.row = kFoldedRow;
   return sides;
 }
 
@@ -162,21 +160,24 @@ Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Sid
   const double transport = std::min(std::round(kTransport * scale), high - 1 - status);
   const double above = high - status;
   // In a narrow window the column takes about a third, in a low one the row too.
-  double column = sides.column ? std::min(kColumn * scale, 0.36 * wide) : 0;
-  double row = std::min(sides.row_share * above + sides.row_pixels * scale, kMostOfRow * above);
-  const auto spare = [&] {
-    return spare_room({0, 0, wide - column, above - transport - row}, scale, sides);
-  };
-  column =
-      std::round(std::clamp(column + spare().x, column, std::max(column, kMostOfColumn * wide)));
-  if (sides.row_share > 0) row = std::clamp(row + spare().y, row, kMostOfRow * above);
-  row = std::round(row);
+  const double column = sides.column ? std::round(std::min(kColumn * scale, 0.36 * wide)) : 0;
   const double middle = std::max(wide - column, 1.0);
-  const double field = std::max(above - transport - row, 1.0);
-  return {.field = {0, 0, middle, field},
+  const double free = above - transport;
+  const Vec2 spare = spare_room({0, 0, middle, free}, scale, sides);
+  const double least = kLeastOfField * wide * high;
+  const double beside = std::floor(std::min(spare.x, middle - least / std::max(free, 1.0)));
+  const bool stands_beside =
+      sides.row > kFoldedRow && beside >= kLeastBeside * scale && free >= kRow * scale;
+  double row = stands_beside ? 0 : std::min(sides.row * scale, kMostOfRow * above);
+  if (sides.row > kFoldedRow) row = std::max(row, std::min(spare.y, free - least / middle));
+  row = std::round(row);
+  const double left = stands_beside ? middle - beside : middle;
+  const double field = std::max(free - row, 1.0);
+  return {.field = {0, 0, left, field},
           .column = {middle, 0, wide - middle, above},
-          .row = {0, field + transport, middle, above - field - transport},
-          .transport = {0, field, middle, transport},
+          .row = stands_beside ? Viewport{left, 0, beside, above}
+                               : Viewport{0, field + transport, left, above - field - transport},
+          .transport = {0, field, left, transport},
           .status = {0, above, wide, status}};
 }
 
@@ -186,9 +187,9 @@ int fixed_window_flags() {
          ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_NoBringToFrontOnFocus;
 }
 
-void draw_panels(const Command& command, std::optional<PanelKind> kind) {
+void draw_panels(const Command& command) {
   for (const Panel& panel : kPanels) {
-    if (!panel.has_contents(command.state) || panel.kind != kind.value_or(panel.kind)) continue;
+    if (!panel.has_contents(command.state)) continue;
     if (panel.unfolds != nullptr && panel.unfolds(command.state)) ImGui::SetNextItemOpen(true);
     ImGui::PushID(panel.title);
     if (section(panel.title)) panel.draw(command);
@@ -203,6 +204,7 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   draw_marks(state, command.place);
   if (state.source.beside != nullptr) draw_marks(state, beside_place(state, command.place));
   draw_silence(state, command.place.area);
+  draw_status(state, screen.status, gpu);
   draw_column(command, screen.column);
   draw_row(command, screen.row);
 
@@ -213,14 +215,6 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   transport(command);
   ImGui::End();
   ImGui::PopStyleVar();
-
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, palette_of(theme).background);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-  begin_part("status", screen.status, theme, kStill);
-  status_row(state, gpu);
-  ImGui::End();
-  ImGui::PopStyleVar();
-  ImGui::PopStyleColor();
 
   if (!state.window.show_help) return;
   const Viewport window{0, 0, screen.status.width, screen.status.y};

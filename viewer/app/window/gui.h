@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "viewer/app/input/shortcuts.h"
@@ -12,17 +11,16 @@ namespace pillarfield::viewer {
 struct Screen {
   Viewport field;      ///< the picture
   Viewport column;     ///< panels, at the right
-  Viewport row;        ///< curves, below the play head
+  Viewport row;        ///< curves, below the play head or beside the field
   Viewport transport;  ///< the play head, below the field
   Viewport status;     ///< one line at the bottom
 };
 
-/// Sides that are shown. The row has a share of the window's height and some nominal pixels more.
-/// Column and row take the room that the pictures of the whole skin leave.
+/// Sides that are shown. Curves take the room that the pictures of the whole skin leave, beside
+/// them where that is wide.
 struct Sides {
   bool column = false;
-  double row_share = 0;
-  double row_pixels = 0;
+  double row = 0;     ///< least height of the curves, nominal pixels; 0: none
   double aspect = 0;  ///< width over height of the skin; 0: not known
   int pictures = 1;   ///< side by side
 };
@@ -35,12 +33,8 @@ struct Sides {
 /// Flags of a fixed part of the window.
 [[nodiscard]] int fixed_window_flags();
 
-/// In a wide column settings and tables stand side by side.
-enum class PanelKind : std::uint8_t { setting, table };
-
-/// Draws the panels, those of one kind or all, that have something to show into the current ImGui
-/// window.
-void draw_panels(const Command& command, std::optional<PanelKind> kind = {});
+/// Draws the panels that have something to show into the current ImGui window.
+void draw_panels(const Command& command);
 
 /// Builds all of the window except the picture, in the current ImGui frame, between NewFrame() and
 /// Render().

@@ -45,30 +45,4 @@ bool Redraws::notice_is_old(double now_s) const {
   return notice_ends_s_ && now_s >= *notice_ends_s_;
 }
 
-namespace {
-
-RecentTimes::Time time_of(double now_s) {
-  return std::chrono::duration_cast<RecentTimes::Time>(std::chrono::duration<double>(now_s));
-}
-
-}  // namespace
-
-void DrawClock::add(double now_s, double draw_ms, std::optional<double> latency_ms) {
-  draws_.add(time_of(now_s), draw_ms);
-  draw_ms_.push_back(draw_ms);
-  if (!latency_ms) return;
-  latencies_.add(time_of(now_s), *latency_ms);
-  latency_ms_.push_back(*latency_ms);
-}
-
-DrawStatistics DrawClock::lately(double now_s) const {
-  draws_.forget_before(time_of(now_s));
-  latencies_.forget_before(time_of(now_s));
-  DrawStatistics statistics;
-  statistics.frames_hz = draws_.rate_hz();
-  statistics.draw_ms_median = draws_.median_ms();
-  statistics.latency_ms_median = latencies_.median_ms();
-  return statistics;
-}
-
 }  // namespace pillarfield::viewer

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/app/app_state.h"
 #include "viewer/source/recent_times.h"
 
 namespace pillarfield::viewer {
@@ -37,14 +36,14 @@ class Redraws {
   std::optional<double> notice_ends_s_;
 };
 
-/// Statistics of drawing over the last second and over all frames. The caller passes times.
+/// Statistics of drawing over all frames.
 class DrawClock {
  public:
-  /// Adds a frame presented at `now_s`; `latency_ms` only for the first picture of a field.
-  void add(double now_s, double draw_ms, std::optional<double> latency_ms);
-
-  /// Statistics of the second before `now_s`.
-  [[nodiscard]] DrawStatistics lately(double now_s) const;
+  /// Adds a frame; `latency_ms` only for the first picture of a field.
+  void add(double draw_ms, std::optional<double> latency_ms) {
+    draw_ms_.push_back(draw_ms);
+    if (latency_ms) latency_ms_.push_back(*latency_ms);
+  }
 
   [[nodiscard]] std::uint64_t frames() const { return draw_ms_.size(); }
   /// Over all frames, and over all fields; 0 for none.
@@ -52,8 +51,6 @@ class DrawClock {
   [[nodiscard]] double latency_ms_median() const { return median_of(latency_ms_); }
 
  private:
-  mutable RecentTimes draws_;
-  mutable RecentTimes latencies_;
   std::vector<double> draw_ms_;
   std::vector<double> latency_ms_;
 };
