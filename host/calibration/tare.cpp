@@ -81,7 +81,8 @@ void refuse_equal_frames(const FrameStatistics& unloaded) {
               "record frames with the noise of the sensor");
 }
 
-/// The first sensel whose value lies above those of others together with those beside it, if any.
+/// The first sensel whose value lies above those of others together with those beside it, if any: a
+/// cross or a square of four sensels, farther than four sensels of the array are by chance.
 std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<double>& values,
                                         const std::vector<std::uint8_t>& used, double least_spread) {
   std::vector<double> sorted;
@@ -92,22 +93,31 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
   const double middle = median(sorted);
   for (double& each : sorted) each = std::abs(each - middle);
   // The median deviation of a normal distribution is 0.6745 of its standard deviation.
-  const double limit = middle + kStandsOut * std::max(1.4826 * median(sorted), least_spread);
-  const auto stands_out = [&](std::size_t i) { return used[i] != 0 && values[i] > limit; };
-  std::optional<std::size_t> first;
-  double share = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!stands_out(i)) continue;
-    share += 1 / static_cast<double>(sorted.size());
-    const Neighbours around(skin, i);
-    const auto edges = around.edges();
-    const auto tested = std::ranges::count_if(edges, [&](std::size_t n) { return used[n] != 0; });
-    const auto out = std::ranges::count_if(edges, stands_out);
-    if (!first && tested >= 2 && out >= std::min<std::ptrdiff_t>(3, tested)) first = i;
+  const double spread = std::max(1.4826 * median(sorted), least_spread);
+  for (double limit = kStandsOut * spread; limit < 1e3 * kStandsOut * spread; limit *= 1.5) {
+    const auto stands_out = [&](std::size_t i) {
+      return used[i] != 0 && values[i] > middle + limit;
+    };
+    std::optional<std::size_t> first;
+    double share = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!stands_out(i)) continue;
+      share += 1 / static_cast<double>(sorted.size());
+      const Neighbours around(skin, i);
+      const auto edges = around.edges();
+      const auto tested = std::ranges::count_if(edges, [&](std::size_t n) { return used[n] != 0; });
+      const auto out = std::ranges::count_if(edges, stands_out);
+      const std::size_t below = i + skin.cols;
+      const bool is_square = (i + 1) % skin.cols != 0 && below < values.size() &&
+                             stands_out(i + 1) && stands_out(below) && stands_out(below + 1);
+      const bool is_cross = tested >= 2 && out >= std::min<std::ptrdiff_t>(3, tested);
+      if (!first && (is_cross || is_square)) first = i;
+    }
+    const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(share, 4);
+    if (first && by_chance < 0.01) return first;
+    if (share == 0) break;
   }
-  // Where many stand out, four beside each other do so by chance.
-  const double by_chance = 5 * static_cast<double>(sorted.size()) * std::pow(share, 4);
-  return by_chance < 0.01 ? first : std::nullopt;
+  return std::nullopt;
 }
 
 /// Throws if whole pillars are outliers: faults are single sensels or lines, contacts cover
@@ -242,14 +252,15 @@ void refuse_worse_tare(const SkinCalibration& before, const FrameStatistics& unl
 }
 
 /// Fills tare and noise; zero for masked sensels.
-void fill_planes(const SenselJudge& judge, const FindingList& found, Calibration& planes) {
-  const std::size_t sensels = judge.sensels().size();
+void fill_planes(const FrameStatistics& still, const FindingList& found, Calibration& planes) {
+  const std::vector<SenselEvidence> evidence = evidence_without_load(still);
+  const std::size_t sensels = evidence.size();
   planes.tare.assign(sensels, 0);
   planes.noise.assign(sensels, 0);
   for (std::size_t i = 0; i < sensels; ++i) {
     if (!found.good(i)) continue;
-    planes.tare[i] = static_cast<float>(judge.sensels()[i].level);
-    planes.noise[i] = static_cast<float>(judge.sensels()[i].noise);
+    planes.tare[i] = static_cast<float>(evidence[i].level);
+    planes.noise[i] = static_cast<float>(evidence[i].noise);
   }
   planes.mask = found.mask_plane();
 }
@@ -314,7 +325,11 @@ TareResult take_tare(const SkinCalibration& before, const TareFrames& unloaded,
   const ExaminedFrames examined = examine_frames(unloaded, before.planes.mask);
   const FrameStatistics& still = examined.still;
   FindingList found(before.planes.mask, still);
-  const SenselJudge judge(evidence_without_load(still), still.frames(), before.planes.mask);
+  std::vector<SenselEvidence> evidence = evidence_without_load(still);
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    evidence[i].noise = std::max(examined.noises[i], least_noise(still.type()));
+  }
+  const SenselJudge judge(std::move(evidence), still.frames(), before.planes.mask);
   if (judge.typical().count == 0) {
     throw Error(unloaded.name(), "no sensel has a valid tare",
                 "check the sensor, its full scale and its mask");
@@ -335,7 +350,7 @@ TareResult take_tare(const SkinCalibration& before, const TareFrames& unloaded,
   require_majority(found, still);
   TareResult result;
   result.calibration = before;
-  fill_planes(judge, found, result.calibration.planes);
+  fill_planes(still, found, result.calibration.planes);
   set_threshold(result.calibration, options.threshold_factor);
   result.findings = found.findings();
   result.tare_counts = judge.typical().level;

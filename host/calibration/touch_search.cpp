@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/quantile.h"
+#include "calibration/neighbours.h"
 #include "skin/raw_reading.h"
 
 namespace pillarfield {
@@ -14,6 +15,10 @@ namespace {
 
 /// Sum of a patch of 3 x 3 sensels, in its standard deviations, from which it is a touch.
 constexpr double kTouchDeviations = 6.5;
+/// That of the sum without the largest, and of the sum of counts.
+constexpr double kRestDeviations = 4;
+/// Least mean distance in the patch, in noises.
+constexpr double kLeastMean = 1;
 /// Distance of a sensel that takes part in it, in noises.
 constexpr double kPartDeviations = 2;
 constexpr int kLeastParts = 4;
@@ -22,12 +27,20 @@ constexpr double kSpikeDeviations = 8;
 /// Frames that a spike lasts, and the largest share of a sensel's readings that are spikes.
 constexpr std::size_t kSpikeFrames = 2;
 constexpr double kMostSpikes = 0.05;
+/// Factor on the usual change within some frames from which one is sudden.
+constexpr double kSudden = 6;
+/// Least noise, in steps of the converter: that of rounding, and of flicker between two values.
+constexpr double kLeastNoise = 0.4;
+/// Noise of neighbours, relative to the typical one, that is not taken for noise.
+constexpr double kMostNoise = 3;
 /// Frames that noise is measured in.
 constexpr std::size_t kWindow = 5;
 /// The median variance of five normal readings.
 constexpr double kMedianVariance = 0.839;
 /// The median distance of a normal distribution, in standard deviations.
 constexpr double kMedianDistance = 0.6745;
+/// Nine of ten are nearer.
+constexpr double kNinthDistance = 1.645;
 /// Sensels of which medians of a frame are taken.
 constexpr std::size_t kSampled = 4096;
 
@@ -90,15 +103,18 @@ class TouchSearch {
   };
 
   void find_levels(std::span<const std::uint8_t> mask);
+  void limit_noise(double most);
   void find_common_changes();
   void search_array();
   void search_trends();
   void search_sensel(std::size_t i);
   void search_windows(ExaminedFrames& examined);
-  /// Looks for a touch in distances from levels, in noises.
-  void search_map(std::span<const float> map, std::size_t first, std::size_t last);
+  /// Looks for a touch in the sums of distances from levels, in noises, over the root of their
+  /// number.
+  void search_map(std::span<const float> map, std::size_t first, std::size_t last, double root = 1);
   [[nodiscard]] double spread(std::span<const float> map) const;
-  [[nodiscard]] bool is_coherent(std::span<const float> map, std::size_t i, double part) const;
+  [[nodiscard]] bool is_coherent(std::span<const float> map, std::size_t i, double sign,
+                                 double scale, double scale_counts) const;
   /// Distance of a reading from its level, counts; 0 of one that is missing.
   [[nodiscard]] double distance(std::size_t frame, std::size_t i) const {
     const float reading = frames_.readings(frame)[i];
@@ -160,14 +176,30 @@ void TouchSearch::find_levels(std::span<const std::uint8_t> mask) {
     if (used_[i] != 0) noises.push_back(levels_[i].noise);
   }
   if (noises.empty()) return;
-  const double least = std::max(step / std::sqrt(12), 0.2 * median(noises));
+  const double typical = median(noises);
+  const double least = std::max(kLeastNoise * step, 0.2 * typical);
   for (SteadyLevel& each : levels_) each.noise = std::max(each.noise, least);
+  limit_noise(std::max(least, kMostNoise * typical));
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     if (used_[i] != 0) sampled_.push_back(static_cast<std::uint32_t>(i));
   }
   const std::size_t each = 1 + sampled_.size() / kSampled;
   for (std::size_t n = 0; n * each < sampled_.size(); ++n) sampled_[n] = sampled_[n * each];
   sampled_.resize((sampled_.size() + each - 1) / each);
+}
+
+/// A touch that comes and goes in a few frames looks like noise, but of neighbours together.
+void TouchSearch::limit_noise(double most) {
+  std::vector<std::uint8_t> noisy(levels_.size());
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    noisy[i] = used_[i] != 0 && levels_[i].noise > most ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    const Neighbours around(frames_.skin(), i);
+    const auto all = around.all();
+    const auto count = std::ranges::count_if(all, [&](std::size_t n) { return noisy[n] != 0; });
+    if (noisy[i] != 0 && 2 * count >= std::ssize(all)) levels_[i].noise = most;
+  }
 }
 
 void TouchSearch::note(const MovingTouch& found, double deviations) {
@@ -208,6 +240,11 @@ void TouchSearch::search_array() {
     return common_[t] - whole.at(static_cast<double>(t) - middle_);
   };
   const std::size_t near = std::max<std::size_t>(3, count_ / 30);
+  std::vector<double> usual;
+  for (std::size_t t = 0; t + 2 * near < count_; ++t) {
+    usual.push_back(std::abs(change(t + 2 * near) - change(t)));
+  }
+  const double slow = kSudden * quantile(usual, 0.75);
   for (std::size_t t = 0; t < count_; ++t) {
     std::size_t end = t;
     while (end < count_ && std::abs(change(end)) > limit) ++end;
@@ -219,13 +256,13 @@ void TouchSearch::search_array() {
         jump = std::max(jump, std::abs(change(to) - change(from)));
       }
       const double most = std::abs(change((t + end) / 2));
-      if (jump > most / 2) note({0, true, change((t + end) / 2), t, end - 1}, most / median(noises));
+      if (jump > std::max(most / 2, slow)) note({0, true, change((t + end) / 2), t, end - 1}, most / median(noises));
     }
     t = end;
   }
 }
 
-/// Spread of the differences of neighbours, in noises: one, or more where each drifts by itself.
+/// Spread of the differences of neighbours.
 double TouchSearch::spread(std::span<const float> map) const {
   std::vector<double> differences;
   for (const std::size_t i : sampled_) {
@@ -235,34 +272,49 @@ double TouchSearch::spread(std::span<const float> map) const {
       differences.push_back(std::abs(map[i + cols_] - map[i]) / std::sqrt(2));
     }
   }
-  return differences.empty() ? 1 : std::max(1.0, median(differences) / kMedianDistance);
+  if (differences.empty()) return 1;
+  return std::max(median(differences) / kMedianDistance,
+                  quantile(differences, 0.9) / kNinthDistance);
 }
 
-/// True if several sensels of the patch about `i`, not all of one line, leave their level one way.
-bool TouchSearch::is_coherent(std::span<const float> map, std::size_t i, double part) const {
+/// True if several sensels of the patch about `i`, not all of one line, leave their level one way,
+/// in noises and in counts, and not one of them alone.
+bool TouchSearch::is_coherent(std::span<const float> map, std::size_t i, double sign, double scale,
+                              double scale_counts) const {
   const std::size_t row = i / cols_;
   const std::size_t col = i % cols_;
   int parts = 0;
   int present = 0;
   unsigned in_rows = 0;
   unsigned in_cols = 0;
+  double sum = 0;
+  double most = 0;
+  double counts = 0;
   for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, rows_ - 1); ++r) {
     for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= std::min(col + 1, cols_ - 1); ++c) {
-      if (used_[r * cols_ + c] == 0) continue;
+      const std::size_t at = r * cols_ + c;
+      if (used_[at] == 0) continue;
       ++present;
-      if (map[r * cols_ + c] < part) continue;
+      const double value = sign * map[at];
+      sum += value;
+      most = std::max(most, value);
+      counts += value * levels_[at].noise;
+      if (value < kPartDeviations * scale) continue;
       ++parts;
       in_rows |= 1U << (r + 1 - row);
       in_cols |= 1U << (c + 1 - col);
     }
   }
   const auto is_line = [](unsigned bits) { return (bits & (bits - 1)) == 0; };
-  return parts >= std::min(kLeastParts, present - 1) && parts >= 3 && !is_line(in_rows) &&
-         !is_line(in_cols);
+  return parts >= std::clamp(present - 1, 3, kLeastParts) && !is_line(in_rows) &&
+         !is_line(in_cols) && sum - most > kRestDeviations * scale * std::sqrt(present - 1) &&
+         counts > kRestDeviations * scale_counts * std::sqrt(present);
 }
 
-void TouchSearch::search_map(std::span<const float> map, std::size_t first, std::size_t last) {
-  const double scale = spread(map);
+void TouchSearch::search_map(std::span<const float> map, std::size_t first, std::size_t last,
+                             double root) {
+  const double scale = std::max(1.0, spread(map));
+  double scale_counts = 0;
   std::vector<float> across(map.size());
   std::vector<float> number(map.size());
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -283,17 +335,17 @@ void TouchSearch::search_map(std::span<const float> map, std::size_t first, std:
       sum += across[i + cols_];
       count += number[i + cols_];
     }
-    const double deviations = sum / (scale * std::sqrt(count));
-    if (std::abs(deviations) < kTouchDeviations) continue;
-    std::vector<float> upright;
-    std::span<const float> seen = map;
-    if (sum < 0) {
-      upright.resize(map.size());
-      std::ranges::transform(map, upright.begin(), [](float each) { return -each; });
-      seen = upright;
+    const double deviations = std::abs(sum) / (scale * std::sqrt(count));
+    if (deviations < kTouchDeviations || std::abs(sum) < kLeastMean * count * root) continue;
+    if (scale_counts == 0) {
+      std::vector<float> counts(map.begin(), map.end());
+      for (std::size_t n = 0; n < counts.size(); ++n) {
+        counts[n] *= static_cast<float>(levels_[n].noise);
+      }
+      scale_counts = spread(counts);
     }
-    if (!is_coherent(seen, i, kPartDeviations * scale)) continue;
-    note({i, false, map[i] * levels_[i].noise, first, last}, std::abs(deviations));
+    if (!is_coherent(map, i, sum < 0 ? -1 : 1, scale, scale_counts)) continue;
+    note({i, false, map[i] / root * levels_[i].noise, first, last}, deviations);
   }
 }
 
@@ -358,6 +410,7 @@ void TouchSearch::search_sensel(std::size_t i) {
 void TouchSearch::search_windows(ExaminedFrames& examined) {
   std::ranges::sort(spikes_);
   std::vector<float> readings(levels_.size());
+  std::vector<float> last(levels_.size(), std::numeric_limits<float>::quiet_NaN());
   std::array<std::vector<float>, 2> sums;
   for (auto& each : sums) each.assign(levels_.size(), 0);
   constexpr std::array<std::size_t, 2> kLengths = {4, 16};
@@ -368,6 +421,11 @@ void TouchSearch::search_windows(ExaminedFrames& examined) {
       readings[spike->sensel] = std::numeric_limits<float>::quiet_NaN();
     }
     examined.still.add(readings);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      const double change = readings[i] - last[i];  // NaN: a spike
+      if (change * change > 0) examined.noises[i] += change * change / 2;
+    }
+    std::ranges::copy(readings, last.begin());
     for (std::size_t n = 0; n < sums.size(); ++n) {
       for (std::size_t i = 0; i < readings.size(); ++i) {
         if (used_[i] == 0 || std::isnan(readings[i])) continue;
@@ -376,7 +434,7 @@ void TouchSearch::search_windows(ExaminedFrames& examined) {
       if ((t + 1) % kLengths[n] != 0) continue;
       const auto root = static_cast<float>(std::sqrt(static_cast<double>(kLengths[n])));
       for (float& each : sums[n]) each /= root;
-      search_map(sums[n], t + 1 - kLengths[n], t);
+      search_map(sums[n], t + 1 - kLengths[n], t, root);
       std::ranges::fill(sums[n], 0.0F);
     }
   }
@@ -384,7 +442,8 @@ void TouchSearch::search_windows(ExaminedFrames& examined) {
 
 ExaminedFrames TouchSearch::run() {
   ExaminedFrames examined = {
-      {}, FrameStatistics(frames_.name(), frames_.skin(), frames_.type()), 0};
+      {}, FrameStatistics(frames_.name(), frames_.skin(), frames_.type()), {}, 0};
+  examined.noises.assign(levels_.size(), 0);
   if (!sampled_.empty()) {
     find_common_changes();
     search_array();
@@ -394,7 +453,7 @@ ExaminedFrames TouchSearch::run() {
       for (std::size_t i = 0; i < map.size(); ++i) {
         if (used_[i] != 0) map[i] = static_cast<float>(distance(t, i) / levels_[i].noise);
       }
-      spreads_[t] = static_cast<float>(spread(map));
+      spreads_[t] = static_cast<float>(std::max(1.0, spread(map)));
       search_map(map, t, t);
     }
     for (std::size_t i = 0; i < levels_.size(); ++i) {
@@ -402,6 +461,7 @@ ExaminedFrames TouchSearch::run() {
     }
   }
   search_windows(examined);
+  for (double& each : examined.noises) each = std::sqrt(each / static_cast<double>(count_ - 1));
   examined.touch = touch_;
   examined.spikes = spikes_.size();
   return examined;

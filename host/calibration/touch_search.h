@@ -25,7 +25,8 @@ struct MovingTouch {
 /// Frames of the unloaded skin, examined.
 struct ExaminedFrames {
   std::optional<MovingTouch> touch;
-  FrameStatistics still;  ///< of the kept frames without spikes; without frames if there is a touch
+  FrameStatistics still;  ///< of the kept frames, without spikes
+  std::vector<double> noises;  ///< standard deviations from frame to frame
   std::size_t spikes = 0;
 };
 
