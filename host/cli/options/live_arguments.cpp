@@ -46,7 +46,8 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
   run.number("--end-when-idle", options.most_idle_s, "SECONDS",
              "End when no frame came for this time [wait for the sensor]", 0.01, 1e9);
   run.number("--tare", options.tare_s, "SECONDS",
-             "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
+             "Measure the tare of the untouched skin over this time at the start; frames before its end "
+             "go to no sink [0]", 0, 60);
   command
       ->add_option(
           "--control", options.control,
