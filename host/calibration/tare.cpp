@@ -17,16 +17,11 @@
 #include "calibration/touch_search.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
-#include "skin/pillar_sensels.h"
 #include "skin/raw_reading.h"
 
 namespace pillarfield {
 namespace {
 
-/// Least number of outlying pillars, each of at least kTestedSensels sensels, for which the skin
-/// counts as touched.
-constexpr std::size_t kTouchedPillars = 2;
-constexpr int kTestedSensels = 3;
 /// Distance from the typical level, in spreads, of neighbours that stand out together.
 constexpr double kStandsOut = 3;
 
@@ -62,15 +57,6 @@ void refuse(const TareFrames& unloaded, const MovingTouch& touch, const char* ot
          otherwise);
 }
 
-/// True if the sensel reads as if it were touched, or as if most others were and it were not. A
-/// constant low reading is that of a dead sensel.
-bool is_as_if_touched(const SenselJudge& judge, std::size_t i) {
-  const SenselEvidence& sensel = judge.sensels()[i];
-  return judge.verdict(i) != SenselFault::absent &&
-         (judge.is_far_above(i) || is_saturated(sensel.read) ||
-          (judge.is_far_below(i) && !sensel.is_constant()));
-}
-
 /// A board that has stopped repeats one frame.
 void refuse_equal_frames(const FrameStatistics& unloaded) {
   const auto moves = [](const SenselStatistics& read) { return read.lowest < read.highest; };
@@ -84,7 +70,8 @@ void refuse_equal_frames(const FrameStatistics& unloaded) {
 /// The first sensel whose value lies above those of others together with those beside it, if any: a
 /// cross or a square of four sensels, farther than four sensels of the array are by chance.
 std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<double>& values,
-                                        const std::vector<std::uint8_t>& used, double least_spread) {
+                                        const std::vector<std::uint8_t>& used,
+                                        double least_spread) {
   std::vector<double> sorted;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (used[i] != 0) sorted.push_back(values[i]);
@@ -120,35 +107,15 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
   return std::nullopt;
 }
 
-/// Throws if whole pillars are outliers: faults are single sensels or lines, contacts cover
-/// pillars. Or if neighbours stand out together, less far.
+/// Throws if neighbours stand out together.
 void refuse_resting_touch(const FrameStatistics& unloaded, const std::vector<std::uint8_t>& mask,
                           const SenselJudge& judge, const char* otherwise) {
-  const std::uint32_t side = unloaded.skin().has_pillars() ? 1 : 2;  // in elements
-  std::size_t touched = 0;
-  std::string first;
-  for_each_pillar(unloaded.skin(), [&](auto row, auto col, const auto& sensels) {
-    int tested = 0;
-    int out = 0;
-    for (const std::size_t i : sensels) {
-      if ((!mask.empty() && mask[i] != kGood) || unloaded.sensels()[i].readings == 0) continue;
-      ++tested;
-      out += is_as_if_touched(judge, i) ? 1 : 0;
-    }
-    if (tested < kTestedSensels || out < tested) return;
-    if (touched++ == 0) first = fmt::format("row {}, column {}", side * row, side * col);
-  });
-  if (touched >= kTouchedPillars) {
-    refuse(unloaded,
-           fmt::format("{} {} read in all frames as if something touched them, the first at {}",
-                       std::size_t{side} * side * touched, name_of(unloaded.skin().layout), first),
-           otherwise);
-  }
   std::vector<double> levels;
   std::vector<std::uint8_t> used;
   for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
     levels.push_back(judge.sensels()[i].level);
-    used.push_back((mask.empty() || mask[i] == kGood) && !judge.verdict(i) ? 1 : 0);
+    const auto fault = judge.verdict(i).value_or(SenselFault::saturated);  // or none
+    used.push_back((mask.empty() || mask[i] == kGood) && fault == SenselFault::saturated ? 1 : 0);
   }
   for (const char* const side_words : {"above", "below"}) {
     const auto at = standing_out(unloaded.skin(), levels, used, judge.typical().noise);
@@ -204,7 +171,8 @@ TareChange::TareChange(const FrameStatistics& unloaded, const std::vector<float>
     most = std::max(most, change);
   }
   if (before.empty() || beyond > 0) return;
-  const auto together = standing_out(unloaded.skin(), all, used, std::max(median(noises), rounding / 3));
+  const auto together =
+      standing_out(unloaded.skin(), all, used, std::max(median(noises), rounding / 3));
   if (together) beyond = 1;
 }
 
@@ -214,16 +182,17 @@ bool has_tare(const Calibration& planes) {
 
 /// Throws if sensels rose since the tare before, were good in it, or if that had far less noise.
 void refuse_worse_tare(const SkinCalibration& before, const FrameStatistics& unloaded,
-                       const TareResult& result, const TareChange& change,
-                       const char* otherwise) {
+                       const TareResult& result, const TareChange& change, const char* otherwise) {
   if (change.beyond > 0) {
-    refuse(unloaded,
-           fmt::format("{} changed since the tare before by more than noise and drift explain, "
-                       "most by {:.3g} counts at {}; a touch of less than {:.3g} counts on a "
-                       "sensel would not be seen",
-                       counted(change.beyond, "sensel"), change.most,
-                       place_words(unloaded, change.place), change.limit),
-           otherwise);
+    refuse(
+        unloaded,
+        fmt::format(
+            "{} changed since the tare before by more than noise and drift explain, "
+            "most by {:.3g} counts at {}, in all frames; a touch of less than {:.3g} counts on a "
+            "sensel would not be seen",
+            counted(change.beyond, "sensel"), change.most, place_words(unloaded, change.place),
+            change.limit),
+        otherwise);
   }
   // A sensel that was masked has no noise.
   const auto was_good = [&](const SenselFinding& finding) {
@@ -241,8 +210,8 @@ void refuse_worse_tare(const SkinCalibration& before, const FrameStatistics& unl
   }
   const double threshold = *result.calibration.threshold_counts;
   if (before.planes.noise.empty() || !before.threshold_counts || !before.threshold_factor) return;
-  const double known = *before.threshold_counts / *before.threshold_factor *
-                       *result.calibration.threshold_factor;
+  const double known =
+      *before.threshold_counts / *before.threshold_factor * *result.calibration.threshold_factor;
   if (threshold <= kMuchNoise * known) return;
   refuse(unloaded,
          fmt::format("the threshold would be {:.3g} counts, that of the tare before is {:.3g}: "
@@ -283,8 +252,7 @@ void TareFrames::add(const FrameView& frame, double time_s) {
   constexpr std::size_t kMostFrames = 4096;
   constexpr std::size_t kMostReadings = std::size_t{1} << 24U;
   constexpr std::size_t kLeastKept = 32;
-  const std::size_t most =
-      std::clamp(kMostReadings / skin().sensels(), kLeastKept, kMostFrames);
+  const std::size_t most = std::clamp(kMostReadings / skin().sensels(), kLeastKept, kMostFrames);
   FrameStatistics::add(frame);
   if ((frames() - 1) % step_ != 0) return;
   if (kept_.size() == most) {
@@ -406,9 +374,10 @@ StepKind tare_step() {
       StepArgument::number("threshold-factor", "RATIO",
                            "Threshold as a multiple of the noise of a reading [4]",
                            {0, kMaxThresholdFactor}),
-      StepArgument::flag("preloaded",
-                         "Accept what resembles a touch, as of a bent or covered skin, and a tare much "
-                         "worse than the one before")};
+      StepArgument::flag(
+          "preloaded",
+          "Accept what resembles a touch, as of a bent or covered skin, and a tare much "
+          "worse than the one before")};
   step.examples = {kSimulateIdle, kTareIdle,
                    "calibrate tare idle.h5 -o strict.h5 --threshold-factor 6"};
   return step;

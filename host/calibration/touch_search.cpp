@@ -15,8 +15,10 @@ namespace {
 
 /// Sum of a patch of 3 x 3 sensels, in its standard deviations, from which it is a touch.
 constexpr double kTouchDeviations = 6.5;
-/// That of the sum without the largest, and of the sum of counts.
+/// That of the sum without the largest, and of the sum of counts, which errors of noise leave
+/// alone.
 constexpr double kRestDeviations = 4;
+constexpr double kCountDeviations = 5;
 /// Least mean distance in the patch, in noises.
 constexpr double kLeastMean = 1;
 /// Distance of a sensel that takes part in it, in noises.
@@ -125,7 +127,6 @@ class TouchSearch {
 
   const TareFrames& frames_;
   const std::size_t count_;  ///< of kept frames
-  const std::size_t rows_;
   const std::size_t cols_;
   const double middle_;
   std::vector<SteadyLevel> levels_;
@@ -141,11 +142,10 @@ class TouchSearch {
 TouchSearch::TouchSearch(const TareFrames& frames, std::span<const std::uint8_t> mask)
     : frames_(frames),
       count_(frames.kept()),
-      rows_(frames.skin().rows),
       cols_(frames.skin().cols),
       middle_(0.5 * static_cast<double>(count_ - 1)),
-      levels_(rows_ * cols_),
-      used_(rows_ * cols_),
+      levels_(frames.skin().sensels()),
+      used_(levels_.size()),
       common_(count_),
       spreads_(count_, 1) {
   find_levels(mask);
@@ -230,7 +230,8 @@ void TouchSearch::find_common_changes() {
   }
 }
 
-/// Drift of the array is slow and hum comes and goes; a load on all sensels comes at once and stays.
+/// Drift of the array is slow and hum comes and goes; a load on all sensels comes at once and
+/// stays.
 void TouchSearch::search_array() {
   std::vector<double> noises;
   for (const auto i : sampled_) noises.push_back(levels_[i].noise);
@@ -256,7 +257,8 @@ void TouchSearch::search_array() {
         jump = std::max(jump, std::abs(change(to) - change(from)));
       }
       const double most = std::abs(change((t + end) / 2));
-      if (jump > std::max(most / 2, slow)) note({0, true, change((t + end) / 2), t, end - 1}, most / median(noises));
+      if (jump > std::max(most / 2, slow))
+        note({0, true, change((t + end) / 2), t, end - 1}, most / median(noises));
     }
     t = end;
   }
@@ -281,34 +283,30 @@ double TouchSearch::spread(std::span<const float> map) const {
 /// in noises and in counts, and not one of them alone.
 bool TouchSearch::is_coherent(std::span<const float> map, std::size_t i, double sign, double scale,
                               double scale_counts) const {
-  const std::size_t row = i / cols_;
-  const std::size_t col = i % cols_;
-  int parts = 0;
-  int present = 0;
-  unsigned in_rows = 0;
-  unsigned in_cols = 0;
   double sum = 0;
   double most = 0;
   double counts = 0;
-  for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, rows_ - 1); ++r) {
-    for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= std::min(col + 1, cols_ - 1); ++c) {
-      const std::size_t at = r * cols_ + c;
-      if (used_[at] == 0) continue;
-      ++present;
-      const double value = sign * map[at];
-      sum += value;
-      most = std::max(most, value);
-      counts += value * levels_[at].noise;
-      if (value < kPartDeviations * scale) continue;
-      ++parts;
-      in_rows |= 1U << (r + 1 - row);
-      in_cols |= 1U << (c + 1 - col);
-    }
-  }
-  const auto is_line = [](unsigned bits) { return (bits & (bits - 1)) == 0; };
-  return parts >= std::clamp(present - 1, 3, kLeastParts) && !is_line(in_rows) &&
-         !is_line(in_cols) && sum - most > kRestDeviations * scale * std::sqrt(present - 1) &&
-         counts > kRestDeviations * scale_counts * std::sqrt(present);
+  int present = 0;
+  std::vector<std::size_t> parts;
+  const auto add = [&](std::size_t at) {
+    if (used_[at] == 0) return;
+    const double value = sign * map[at];
+    ++present;
+    sum += value;
+    most = std::max(most, value);
+    counts += value * levels_[at].noise;
+    if (value >= kPartDeviations * scale) parts.push_back(at);
+  };
+  add(i);
+  const Neighbours around(frames_.skin(), i);
+  std::ranges::for_each(around.all(), add);
+  if (std::ssize(parts) < std::clamp(present - 1, 3, kLeastParts)) return false;
+  const bool in_row =
+      std::ranges::all_of(parts, [&](auto at) { return at / cols_ == parts[0] / cols_; });
+  const bool in_col =
+      std::ranges::all_of(parts, [&](auto at) { return at % cols_ == parts[0] % cols_; });
+  return !in_row && !in_col && sum - most > kRestDeviations * scale * std::sqrt(present - 1) &&
+         counts > kCountDeviations * scale_counts * std::sqrt(present);
 }
 
 void TouchSearch::search_map(std::span<const float> map, std::size_t first, std::size_t last,
@@ -321,7 +319,8 @@ void TouchSearch::search_map(std::span<const float> map, std::size_t first, std:
     const bool left = i % cols_ != 0;
     const bool right = (i + 1) % cols_ != 0;
     across[i] = map[i] + (left ? map[i - 1] : 0) + (right ? map[i + 1] : 0);
-    number[i] = static_cast<float>(used_[i] + (left ? used_[i - 1] : 0) + (right ? used_[i + 1] : 0));
+    number[i] =
+        static_cast<float>(used_[i] + (left ? used_[i - 1] : 0) + (right ? used_[i + 1] : 0));
   }
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (used_[i] == 0) continue;

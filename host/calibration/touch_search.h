@@ -17,7 +17,7 @@ namespace pillarfield {
 struct MovingTouch {
   std::size_t sensel = 0;  ///< farthest from its level
   bool covers_all = false;
-  double counts = 0;  ///< distance of that sensel, or of the array
+  double counts = 0;      ///< distance of that sensel, or of the array
   std::size_t first = 0;  ///< kept frame
   std::size_t last = 0;
 };
@@ -25,7 +25,7 @@ struct MovingTouch {
 /// Frames of the unloaded skin, examined.
 struct ExaminedFrames {
   std::optional<MovingTouch> touch;
-  FrameStatistics still;  ///< of the kept frames, without spikes
+  FrameStatistics still;       ///< of the kept frames, without spikes
   std::vector<double> noises;  ///< standard deviations from frame to frame
   std::size_t spikes = 0;
 };

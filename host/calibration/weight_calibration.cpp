@@ -111,9 +111,10 @@ void WeightFinder::add(const FrameView& frame) {
 
 namespace {
 
-/// Throws if most frames of a recording are saturated: the others are those in which the weight is put
-/// down or lifted.
-void require_unsaturated(const WeightContacts& all, std::size_t recording, const std::string& name) {
+/// Throws if most frames of a recording are saturated: the others are those in which the weight is
+/// put down or lifted.
+void require_unsaturated(const WeightContacts& all, std::size_t recording,
+                         const std::string& name) {
   std::size_t frames = 0;
   std::size_t saturated = 0;
   for (const WeightFinder::Contact& each : all.contacts) {

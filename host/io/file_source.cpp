@@ -149,9 +149,8 @@ void FileSource::measure_tare(const ReadOptions& options) {
   before.planes = calibration_;
   before.counts_per_newton = skin_.counts_per_newton;
   before.power_law = skin_.power_law;
-  const TareResult tare = take_tare(
-      before, unloaded,
-      {.otherwise = "give other frames to calibrate tare, with --preloaded, and its result here"});
+  const TareResult tare =
+      take_tare(before, unloaded, {.otherwise = "take it by calibrate tare with --preloaded"});
   apply(tare.calibration, skin_, calibration_);
   if (options.threshold_counts) skin_.threshold_counts = *options.threshold_counts;
   notes_.push_back(fmt::format(

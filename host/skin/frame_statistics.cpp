@@ -50,8 +50,8 @@ void FrameStatistics::add(const FrameView& frame) {
 }
 
 void FrameStatistics::add(std::span<const float> readings) {
-  const auto full_scale = static_cast<float>(
-      skin_.full_scale_counts.value_or(std::numeric_limits<double>::infinity()));
+  const auto full_scale =
+      static_cast<float>(skin_.full_scale_counts.value_or(std::numeric_limits<double>::infinity()));
   for (std::size_t i = 0; i < sensels_.size(); ++i) sensels_[i].add(readings[i], full_scale);
   ++frames_;
 }

@@ -87,8 +87,8 @@ TEST(Tare, WholeCountsHaveAtLeastTheirRoundingError) {
 
 /// Statistics of frames that a function fills, sensel by sensel, frame by frame.
 template <class Reading>
-TareFrames frames_of(std::uint32_t rows, std::uint32_t cols, std::uint32_t frames,
-                          Reading reading, std::optional<double> full_scale = {}) {
+TareFrames frames_of(std::uint32_t rows, std::uint32_t cols, std::uint32_t frames, Reading reading,
+                     std::optional<double> full_scale = {}) {
   Skin skin;
   skin.rows = rows;
   skin.cols = cols;
@@ -210,10 +210,9 @@ TEST(Tare, RefusesTooFewFramesAndOtherSkins) {
 }
 
 TEST(Tare, RefusesASensorOfWhichLittleIsRight) {
-  const TareFrames broken =
-      frames_of(10, 10, 20, [](std::size_t i, std::uint32_t t) -> double {
-        return i % 8 < 5 ? std::nan("") : flicker(i, t);
-      });
+  const TareFrames broken = frames_of(10, 10, 20, [](std::size_t i, std::uint32_t t) -> double {
+    return i % 8 < 5 ? std::nan("") : flicker(i, t);
+  });
   EXPECT_NE(message_of([&] { (void)tare_of(broken); }).find("are faulty"), std::string::npos);
   const TareFrames dead = frames_of(10, 10, 20, [](auto...) { return std::nan(""); });
   EXPECT_NE(message_of([&] { (void)tare_of(dead); }).find("no sensel"), std::string::npos);

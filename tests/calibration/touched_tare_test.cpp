@@ -21,7 +21,7 @@ namespace pillarfield {
 namespace {
 
 enum class TouchKind { none, rests, lands, leaves, taps, rolls, slides, flickers };
-constexpr const char* kTouchKinds[] = {"none", "rests", "lands", "leaves",
+constexpr const char* kTouchKinds[] = {"none", "rests", "lands",  "leaves",
                                        "taps", "rolls", "slides", "flickers"};
 
 class World {
@@ -30,7 +30,7 @@ class World {
     do {
       skin_.rows = static_cast<std::uint32_t>(std::lround(within(8, 64)));
       skin_.cols = static_cast<std::uint32_t>(std::lround(within(8, 64)));
-      frames_ = static_cast<std::size_t>(std::exp(within(std::log(30.0), std::log(3000.0))));
+      frames_ = static_cast<std::size_t>(std::exp(within(std::log(12.0), std::log(3000.0))));
     } while (skin_.rows * skin_.cols * static_cast<double>(frames_) > most_readings);
     skin_.layout = SkinLayout::sensels;
     rate_hz_ = std::exp(within(std::log(20.0), std::log(500.0)));
@@ -41,7 +41,7 @@ class World {
     const double unevenness = is_even ? 0.5 * noise_ : within(1, 40) * noise_;
     const bool unlike = one_of(2);
     const double drift = one_of(2) ? within(-4, 4) : 0;
-    const double own_drift = one_of(3) ? within(0, 2) : 0;
+    const double own_drift = one_of(3) && kind != TouchKind::rests ? within(0, 2) : 0;
     bends_ = one_of(2);
     hum_ = one_of(3) ? within(0, 2) * noise_ : 0;
     spikes_ = one_of(3) ? std::exp(within(std::log(1e-5), std::log(1e-3))) : 0;
@@ -88,8 +88,8 @@ class World {
     } catch (const Error& error) {
       message_ = error.what();
       if (kind_ == TouchKind::none) return "refused: " + message_;
-      const bool says_where = message_.find("row") != std::string::npos ||
-                              message_.find("array") != std::string::npos;
+      const bool says_where =
+          message_.find("row") != std::string::npos || message_.find("array") != std::string::npos;
       return says_where && message_.find("frame") != std::string::npos ? "" : message_;
     }
   }
@@ -111,8 +111,7 @@ class World {
 
   void plan_touch() {
     const double share = kind_ == TouchKind::rests ? 1 : within(0.05, one_of(3) ? 1 : 0.5);
-    const auto length = static_cast<std::size_t>(
-        std::ceil(share * static_cast<double>(frames_)));
+    const auto length = static_cast<std::size_t>(std::ceil(share * static_cast<double>(frames_)));
     begin_ = kind_ == TouchKind::lands ? frames_ - length
              : kind_ == TouchKind::leaves || kind_ == TouchKind::rests
                  ? 0
@@ -141,9 +140,8 @@ class World {
     double col = col_;
     const double done = static_cast<double>(t - begin_) / static_cast<double>(end_ - begin_);
     if (kind_ == TouchKind::rolls || kind_ == TouchKind::slides) {
-      const double way = kind_ == TouchKind::rolls
-                             ? 0.5 - 0.5 * std::cos(6 * std::numbers::pi * done)
-                             : done;
+      const double way =
+          kind_ == TouchKind::rolls ? 0.5 - 0.5 * std::cos(6 * std::numbers::pi * done) : done;
       row += way * (to_row_ - row_);
       col += way * (to_col_ - col_);
     }
@@ -238,26 +236,23 @@ void run_worlds(std::uint64_t seeds, double most_readings, double most_sound) {
   for (int kind = 0; kind <= static_cast<int>(TouchKind::flickers); ++kind) {
     std::uint64_t wrong = 0;
     std::string all;
-    const char* only = getenv("ONLY");
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
       World world(1000 * seed + static_cast<std::uint64_t>(kind), static_cast<TouchKind>(kind),
                   most_readings);
-      if (only && std::to_string(kind) + ":" + std::to_string(seed) != only) continue;
       const std::string found = world.judge();
       if (found.empty()) continue;
       ++wrong;
       all += "\n  seed " + std::to_string(seed) + ": " + world.words() + found;
     }
     std::cout << kTouchKinds[kind] << ": " << wrong << " of " << seeds << " wrong\n";
-    EXPECT_LE(static_cast<double>(wrong),
-              kind == 0 ? most_sound * static_cast<double>(seeds) : 0)
+    EXPECT_LE(static_cast<double>(wrong), kind == 0 ? most_sound * static_cast<double>(seeds) : 0)
         << kTouchKinds[kind] << all;
   }
 }
 
 TEST(TouchedTare, IsRefusedOrThatOfTheUntouchedFrames) { run_worlds(20, 2e5, 0); }
 
-TEST(FurtherTouchedTare, IsRefusedOrThatOfTheUntouchedFrames) { run_worlds(200, 3e6, 0.01); }
+TEST(FurtherTouchedTare, IsRefusedOrThatOfTheUntouchedFrames) { run_worlds(200, 6e5, 0.01); }
 
 }  // namespace
 }  // namespace pillarfield

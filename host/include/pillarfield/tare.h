@@ -13,9 +13,9 @@
 
 namespace pillarfield {
 
-/// Frames of a skin that nothing touches, with statistics of all of them. Keeps at most 4096 frames,
-/// and 64 MiB or 32 frames of them: of more, each second, fourth ... frame, which then are those of
-/// the tare.
+/// Frames of a skin that nothing touches, with statistics of all of them. Keeps at most 4096
+/// frames, and 64 MiB or 32 frames of them: of more, each second, fourth ... frame, which then are
+/// those of the tare.
 class TareFrames : public FrameStatistics {
  public:
   using FrameStatistics::FrameStatistics;
@@ -38,7 +38,7 @@ class TareFrames : public FrameStatistics {
 /// Options of take_tare().
 struct TareOptions {
   double threshold_factor = 4;  ///< see set_threshold()
-  bool preloaded = false;  ///< accept what resembles a touch: the skin is bent or covered
+  bool preloaded = false;       ///< accept what resembles a touch: the skin is bent or covered
   const char* otherwise = "accept it with --preloaded";  ///< last words of a refusal; null: none
 };
 
