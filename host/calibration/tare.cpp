@@ -68,7 +68,7 @@ void refuse_equal_frames(const FrameStatistics& unloaded) {
 }
 
 /// The first sensel whose value lies above those of others together with those beside it, if any: a
-/// cross or a square of four sensels, farther than four sensels of the array are by chance.
+/// cross or a square of four sensels, of which there are far more than by chance.
 std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<double>& values,
                                         const std::vector<std::uint8_t>& used,
                                         double least_spread) {
@@ -86,6 +86,7 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
       return used[i] != 0 && values[i] > middle + limit;
     };
     std::optional<std::size_t> first;
+    double together = 0;
     double share = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!stands_out(i)) continue;
@@ -98,10 +99,12 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
       const bool is_square = (i + 1) % skin.cols != 0 && below < values.size() &&
                              stands_out(i + 1) && stands_out(below) && stands_out(below + 1);
       const bool is_cross = tested >= 2 && out >= std::min<std::ptrdiff_t>(3, tested);
-      if (!first && (is_cross || is_square)) first = i;
+      if (!is_cross && !is_square) continue;
+      ++together;
+      if (!first) first = i;
     }
     const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(share, 4);
-    if (first && by_chance < 0.01) return first;
+    if (together > 100 * by_chance) return first;
     if (share == 0) break;
   }
   return std::nullopt;

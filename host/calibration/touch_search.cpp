@@ -198,7 +198,7 @@ void TouchSearch::limit_noise(double most) {
     const Neighbours around(frames_.skin(), i);
     const auto all = around.all();
     const auto count = std::ranges::count_if(all, [&](std::size_t n) { return noisy[n] != 0; });
-    if (noisy[i] != 0 && 2 * count >= std::ssize(all)) levels_[i].noise = most;
+    if (noisy[i] != 0 && 3 * count >= std::ssize(all)) levels_[i].noise = most;
   }
 }
 

@@ -30,12 +30,12 @@ class World {
     do {
       skin_.rows = static_cast<std::uint32_t>(std::lround(within(8, 64)));
       skin_.cols = static_cast<std::uint32_t>(std::lround(within(8, 64)));
-      frames_ = static_cast<std::size_t>(std::exp(within(std::log(12.0), std::log(3000.0))));
+      frames_ = static_cast<std::size_t>(std::exp(within(std::log(30.0), std::log(3000.0))));
     } while (skin_.rows * skin_.cols * static_cast<double>(frames_) > most_readings);
     skin_.layout = SkinLayout::sensels;
     rate_hz_ = std::exp(within(std::log(20.0), std::log(500.0)));
     is_whole_ = one_of(2);
-    noise_ = std::exp(within(std::log(is_whole_ ? 0.2 : 0.01), std::log(8.0)));
+    noise_ = std::exp(within(std::log(is_whole_ ? 0.2 : 0.03), std::log(8.0)));
     reading_noise_ = std::sqrt(noise_ * noise_ + (is_whole_ ? 1 / 12.0 : 0));
     const bool is_even = kind == TouchKind::rests || one_of(3);
     const double unevenness = is_even ? 0.5 * noise_ : within(1, 40) * noise_;
