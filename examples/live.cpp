@@ -46,7 +46,7 @@ int main() try {
   const std::span readings = frame.readings<std::uint16_t>();
 
   // Tare: mean and noise of each sensel, a threshold, and a mask of faulty sensels.
-  pf::FrameStatistics unloaded("unloaded frames", plan.skin, plan.sensel_type);
+  pf::TareFrames unloaded("unloaded frames", plan.skin, plan.sensel_type);
   for (int i = 0; i < 100; ++i) {
     sensor.read(readings, 0);
     unloaded.add(frame.view());

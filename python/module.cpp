@@ -28,6 +28,7 @@ const pillarfield::Rewording& arguments() {
                                     {"--layout", "layout="},
                                     {"--falling", "falling=True"},
                                     {"--tare-frames", "tare_frames="},
+                                    {"--preloaded", "preloaded=True"},
                                     {"--trust-input", "trust=True"},
                                     {"--overwrite", "overwrite=True"},
                                     {"--contacts", "contacts=True"},

@@ -203,7 +203,10 @@ void report_bending(StepReport& report, const BendingResult& result) {
 SkinCalibration run_bending(StepWork& work) {
   const std::vector<double> radii_mm = work.numbers("radius-mm");
   const std::vector<double> axes_deg = work.numbers("axis-deg");
-  const std::vector<FrameStatistics> statistics = work.statistics(WireUse::unloaded);
+  const std::vector<TareFrames> statistics = work.unloaded_frames();
+  for (const TareFrames& each : statistics) {
+    refuse_moving_touch(each, work.before.planes.mask, nullptr);
+  }
   std::vector<BentSkin> shapes;
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     shapes.push_back({statistics[i], curvature_of_cylinder(radii_mm[i], axes_deg[i])});

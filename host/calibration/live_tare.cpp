@@ -18,52 +18,6 @@
 namespace pillarfield {
 namespace {
 
-/// Distance from the common change, in robust standard deviations of the changes.
-constexpr double kFarChange = 6;
-/// Least change that is noticed: in noises of a reading, and of whole counts.
-constexpr double kLeastChangeNoises = 8;
-constexpr double kLeastChangeCounts = 3;
-/// Most by which unlike drift of the sensels may raise that.
-constexpr double kUnlikeDrift = 4;
-
-/// Rise of the readings since a tare before, without the change that all sensels have in common.
-struct TareChange {
-  TareChange(const FrameStatistics& unloaded, const std::vector<float>& before,
-             const Calibration& now);
-
-  double limit = 0;  ///< what noise and drift explain, counts
-  double most = 0;   ///< counts
-  std::size_t place = 0;
-  std::uint64_t beyond = 0;  ///< sensels beyond the limit
-};
-
-TareChange::TareChange(const FrameStatistics& unloaded, const std::vector<float>& before,
-                       const Calibration& now) {
-  std::vector<double> changes;
-  std::vector<double> noises;
-  const auto change_of = [&](std::size_t i) {
-    return unloaded.sensels()[i].mean - (before.empty() ? 0 : before[i]);
-  };
-  for (std::size_t i = 0; i < now.noise.size(); ++i) {
-    if (!is_good(now, i)) continue;
-    changes.push_back(change_of(i));
-    noises.push_back(now.noise[i]);
-  }
-  const double common = median(changes);
-  for (double& change : changes) change = std::abs(change - common);
-  const double rounding = unloaded.type() == SenselType::f32 ? 0 : kLeastChangeCounts;
-  const double least = std::max(kLeastChangeNoises * quantile(noises, 0.99), rounding);
-  // The median deviation of a normal distribution is 0.6745 of its standard deviation.
-  limit = std::max(kFarChange * 1.4826 * median(changes), least);
-  if (!before.empty()) limit = std::min(limit, kUnlikeDrift * least);
-  for (std::size_t i = 0; i < now.noise.size(); ++i) {
-    const double change = is_good(now, i) ? change_of(i) - common : 0;
-    beyond += change > limit ? 1 : 0;
-    if (change > most) place = i;
-    most = std::max(most, change);
-  }
-}
-
 /// "a touch of less than 8.2 counts (0.026 N) on a sensel".
 std::string light_touch(double counts, const SolverPlan& plan) {
   const bool is_linear = !plan.skin.power_law && plan.calibration.effects.curve.empty();
@@ -72,23 +26,16 @@ std::string light_touch(double counts, const SolverPlan& plan) {
       is_linear ? fmt::format(" ({:.2g} N)", counts / plan.skin.counts_per_newton) : "");
 }
 
-void refuse_touch(const TareChange& change, const SolverPlan& plan) {
-  if (change.beyond == 0) return;
-  throw Error(
-      "tare",
-      fmt::format("{} changed since the tare before by more than noise and drift explain, "
-                  "most by {:.3g} counts at row {}, column {}; {} would not be seen",
-                  counted(change.beyond, "sensel"), change.most, change.place / plan.skin.cols,
-                  change.place % plan.skin.cols, light_touch(change.limit, plan)),
-      "let go of the skin and take the tare again, or declare the skin preloaded");
-}
-
 }  // namespace
 
 LiveTare::~LiveTare() = default;
 
 LiveTare::LiveTare(SolverPlan plan, bool keeps_threshold)
-    : given_(std::move(plan)), keeps_threshold_(keeps_threshold), found_(given_) {}
+    : given_(std::move(plan)), keeps_threshold_(keeps_threshold), found_(given_) {
+  if (!keeps_threshold && !given_.calibration.noise.empty()) {
+    threshold_ = given_.skin.threshold_counts;
+  }
+}
 
 void LiveTare::start(std::chrono::nanoseconds duration, bool preloaded, std::vector<float> before) {
   duration_ = duration;
@@ -107,7 +54,7 @@ const SolverPlan* LiveTare::add(const FrameView& frame, std::chrono::nanoseconds
   if (!statistics_) return nullptr;
   if (!first_) first_ = next_ = arrived;
   if (arrived >= next_) {
-    statistics_->add((*correct_)(frame));
+    statistics_->add((*correct_)(frame), std::chrono::duration<double>(arrived - *first_).count());
     next_ += duration_ / kMostFrames;
   }
   if (arrived - *first_ < duration_ || statistics_->frames() < kLeastTareFrames) return nullptr;
@@ -115,16 +62,18 @@ const SolverPlan* LiveTare::add(const FrameView& frame, std::chrono::nanoseconds
 }
 
 const SolverPlan& LiveTare::finish() {
-  const FrameStatistics unloaded = *std::exchange(statistics_, std::nullopt);
+  const TareFrames unloaded = *std::exchange(statistics_, std::nullopt);
   SkinCalibration before = blank_calibration(given_.skin);
   before.planes = given_.calibration;
+  before.planes.tare = before_;
+  before.planes.noise = found_.calibration.noise;
   before.counts_per_newton = given_.skin.counts_per_newton;
   before.power_law = given_.skin.power_law;
-  // A tare before knows better than the other sensels how a sensel reads untouched.
+  before.threshold_counts = threshold_;
+  before.threshold_factor = TareOptions{}.threshold_factor;
   const TareResult tare =
-      take_tare(before, unloaded, {.preloaded = preloaded_ || !before_.empty()});
-  const TareChange change(unloaded, before_, tare.calibration.planes);
-  if (!preloaded_ && !before_.empty()) refuse_touch(change, given_);
+      take_tare(before, unloaded, {.preloaded = preloaded_, .otherwise = nullptr});
+  threshold_ = tare.calibration.threshold_counts;
   found_ = given_;
   apply(tare.calibration, found_.skin, found_.calibration);
   if (keeps_threshold_) found_.skin.threshold_counts = given_.skin.threshold_counts;
@@ -134,7 +83,7 @@ const SolverPlan& LiveTare::finish() {
     }
   }
   note_ = fmt::format("readings above {:.3g} counts are usable, and {} would not have been seen",
-                      found_.skin.threshold_counts, light_touch(change.limit, given_));
+                      found_.skin.threshold_counts, light_touch(tare.unseen_counts, given_));
   if (!tare.findings.empty()) {
     note_ +=
         fmt::format("; {} read as faulty and are masked", counted(tare.findings.size(), "sensel"));

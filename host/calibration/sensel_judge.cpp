@@ -21,8 +21,9 @@ constexpr double kNearEnd = 0.1;
 /// Least share of sensels that must vary for a constant 0 to be odd, and for a constant reading at
 /// the typical level to be stuck.
 constexpr double kMostVary = 0.8;
-/// Noise, counts, and frames from which a reading cannot be constant by chance.
-constexpr double kVisibleNoise = 0.4;
+/// Typical noise, counts, and frames from which a reading cannot be constant by chance, of a sensel
+/// that has less than half of it.
+constexpr double kVisibleNoise = 0.9;
 constexpr std::uint32_t kVisibleFrames = 100;
 /// Frames in which others must predict a response, and its least precision.
 constexpr std::uint32_t kLeastEvidence = 6;

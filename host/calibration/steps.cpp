@@ -136,6 +136,16 @@ std::vector<FrameStatistics> StepWork::statistics(WireUse use) const {
   return all;
 }
 
+std::vector<TareFrames> StepWork::unloaded_frames() const {
+  std::vector<TareFrames> all;
+  for (const StepFrames& each : files) {
+    WireCorrection correct = correction(each, WireUse::unloaded);
+    TareFrames& frames = all.emplace_back(each.name(), correct.skin(), correct.type());
+    each.for_each([&](const FrameView& raw, double) { frames.add(correct(raw)); });
+  }
+  return all;
+}
+
 const std::vector<StepKind>& calibration_steps() {
   static const std::vector<StepKind> steps = {
       wires_step(), tare_step(),   equilibrate_step(), load_step(),   shear_step(), arm_step(),

@@ -18,6 +18,7 @@
 #include "pillarfield/frame_statistics.h"
 #include "pillarfield/sensel_finding.h"
 #include "pillarfield/skin_calibration.h"
+#include "pillarfield/tare.h"
 
 namespace pillarfield {
 
@@ -126,6 +127,8 @@ class StepWork {  // NOLINT(bugprone-exception-escape): as StepReport
   void for_each(const StepFrames& file, const StepFrames::Use& use) const;
   /// Statistics of each file.
   [[nodiscard]] std::vector<FrameStatistics> statistics(WireUse use = WireUse::loaded) const;
+  /// Frames of each file, of the unloaded skin.
+  [[nodiscard]] std::vector<TareFrames> unloaded_frames() const;
 };
 
 /// A step of the table.

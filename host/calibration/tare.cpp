@@ -3,31 +3,58 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "base/number_text.h"
+#include "base/quantile.h"
 #include "calibration/finding_list.h"
+#include "calibration/neighbours.h"
 #include "calibration/sensel_judge.h"
 #include "calibration/steps.h"
+#include "calibration/touch_search.h"
 #include "pillarfield/error.h"
 #include "pillarfield/untouched_skin.h"
-#include "skin/pillar_sensels.h"
+#include "skin/raw_reading.h"
 
 namespace pillarfield {
 namespace {
 
-/// Least number of outlying pillars, each of at least kTestedSensels sensels, for which the skin
-/// counts as touched.
-constexpr std::size_t kTouchedPillars = 2;
-constexpr int kTestedSensels = 3;
+/// Distance from the typical level, in spreads, of neighbours that stand out together.
+constexpr double kStandsOut = 3;
 
-/// True if the sensel reads as if it were touched, or as if most others were and it were not. A
-/// constant low reading is that of a dead sensel.
-bool is_as_if_touched(const SenselJudge& judge, std::size_t i) {
-  const SenselEvidence& sensel = judge.sensels()[i];
-  const auto verdict = judge.verdict(i);
-  return verdict != SenselFault::absent &&
-         (judge.is_far_above(i) || verdict == SenselFault::noisy || is_saturated(sensel.read) ||
-          (judge.is_far_below(i) && !sensel.is_constant()));
+/// Distance from the common change, in robust standard deviations of the changes.
+constexpr double kFarChange = 6;
+/// Least change that is noticed: in noises of a reading, and of whole counts.
+constexpr double kLeastChangeNoises = 8;
+constexpr double kLeastChangeCounts = 3;
+/// Most by which unlike drift of the sensels may raise that.
+constexpr double kUnlikeDrift = 4;
+/// Factor on the threshold from which a tare is much worse than the one before.
+constexpr double kMuchNoise = 2;
+
+std::string place_words(const FrameStatistics& frames, std::size_t sensel) {
+  const std::uint32_t cols = frames.skin().cols;
+  return fmt::format("row {}, column {}", sensel / cols, sensel % cols);
+}
+
+[[noreturn]] void refuse(const FrameStatistics& unloaded, const std::string& failure,
+                         const char* otherwise) {
+  std::string mend = "let nothing touch the skin and take the tare again";
+  if (otherwise != nullptr) mend += fmt::format(", or {}", otherwise);
+  throw Error(unloaded.name(), failure, mend);
+}
+
+void refuse(const TareFrames& unloaded, const MovingTouch& touch, const char* otherwise) {
+  refuse(unloaded,
+         fmt::format("something touched {} {}: {} by {:.3g} counts",
+                     touch.covers_all ? "the array" : place_words(unloaded, touch.sensel),
+                     unloaded.span_words(touch.first, touch.last),
+                     touch.covers_all ? "all sensels changed" : "neighbours changed together",
+                     touch.counts),
+         otherwise);
 }
 
 /// A board that has stopped repeats one frame.
@@ -40,41 +67,172 @@ void refuse_equal_frames(const FrameStatistics& unloaded) {
               "record frames with the noise of the sensor");
 }
 
-/// Throws if whole pillars are outliers: faults are single sensels or lines, contacts cover
-/// pillars.
-void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std::uint8_t>& mask,
-                         const SenselJudge& judge) {
-  const std::uint32_t side = unloaded.skin().has_pillars() ? 1 : 2;  // in elements
-  std::size_t touched = 0;
-  std::string first;
-  for_each_pillar(unloaded.skin(), [&](auto row, auto col, const auto& sensels) {
-    int tested = 0;
-    int standing_out = 0;
-    for (const std::size_t i : sensels) {
-      if ((!mask.empty() && mask[i] != kGood) || unloaded.sensels()[i].readings == 0) continue;
-      ++tested;
-      standing_out += is_as_if_touched(judge, i) ? 1 : 0;
+/// The first sensel whose value lies above those of others together with those beside it, if any: a
+/// cross or a square of four sensels, of which there are far more than by chance.
+std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<double>& values,
+                                        const std::vector<std::uint8_t>& used,
+                                        double least_spread) {
+  std::vector<double> sorted;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (used[i] != 0) sorted.push_back(values[i]);
+  }
+  if (sorted.empty()) return std::nullopt;
+  const double middle = median(sorted);
+  for (double& each : sorted) each = std::abs(each - middle);
+  // The median deviation of a normal distribution is 0.6745 of its standard deviation.
+  const double spread = std::max(1.4826 * median(sorted), least_spread);
+  for (double limit = kStandsOut * spread; limit < 1e3 * kStandsOut * spread; limit *= 1.5) {
+    const auto stands_out = [&](std::size_t i) {
+      return used[i] != 0 && values[i] > middle + limit;
+    };
+    std::optional<std::size_t> first;
+    double together = 0;
+    double share = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!stands_out(i)) continue;
+      share += 1 / static_cast<double>(sorted.size());
+      const Neighbours around(skin, i);
+      const auto edges = around.edges();
+      const auto tested = std::ranges::count_if(edges, [&](std::size_t n) { return used[n] != 0; });
+      const auto out = std::ranges::count_if(edges, stands_out);
+      const std::size_t below = i + skin.cols;
+      const bool is_square = (i + 1) % skin.cols != 0 && below < values.size() &&
+                             stands_out(i + 1) && stands_out(below) && stands_out(below + 1);
+      const bool is_cross = tested >= 2 && out >= std::min<std::ptrdiff_t>(3, tested);
+      if (!is_cross && !is_square) continue;
+      ++together;
+      if (!first) first = i;
     }
-    if (tested < kTestedSensels || standing_out < tested) return;
-    if (touched++ == 0) first = fmt::format("row {}, column {}", side * row, side * col);
-  });
-  if (touched < kTouchedPillars) return;
-  throw Error(
-      unloaded.name(),
-      fmt::format("{} {} read as if something touched them, the first at {}",
-                  std::size_t{side} * side * touched, name_of(unloaded.skin().layout), first),
-      "record while nothing touches the skin, or declare the skin preloaded");
+    const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(share, 4);
+    if (together > 100 * by_chance) return first;
+    if (share == 0) break;
+  }
+  return std::nullopt;
+}
+
+/// Throws if neighbours stand out together.
+void refuse_resting_touch(const FrameStatistics& unloaded, const std::vector<std::uint8_t>& mask,
+                          const SenselJudge& judge, const char* otherwise) {
+  std::vector<double> levels;
+  std::vector<std::uint8_t> used;
+  for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
+    levels.push_back(judge.sensels()[i].level);
+    const auto fault = judge.verdict(i).value_or(SenselFault::saturated);  // or none
+    used.push_back((mask.empty() || mask[i] == kGood) && fault == SenselFault::saturated ? 1 : 0);
+  }
+  for (const char* const side_words : {"above", "below"}) {
+    const auto at = standing_out(unloaded.skin(), levels, used, judge.typical().noise);
+    if (at) {
+      refuse(unloaded,
+             fmt::format("{} and its neighbours read in all frames as if something touched them, "
+                         "{:.3g} counts {} the others",
+                         place_words(unloaded, *at),
+                         std::abs(judge.sensels()[*at].level - judge.typical().level), side_words),
+             otherwise);
+    }
+    for (double& level : levels) level = -level;
+  }
+}
+
+/// Rise of the readings since a tare before, without the change that all sensels have in common.
+struct TareChange {
+  TareChange(const FrameStatistics& unloaded, const std::vector<float>& before,
+             const Calibration& now);
+
+  double limit = 0;  ///< counts that noise and drift explain
+  double most = 0;   ///< counts
+  std::size_t place = 0;
+  std::uint64_t beyond = 0;  ///< sensels beyond the limit, or together with neighbours
+};
+
+TareChange::TareChange(const FrameStatistics& unloaded, const std::vector<float>& before,
+                       const Calibration& now) {
+  std::vector<double> changes;
+  std::vector<double> noises;
+  std::vector<double> all(now.noise.size());
+  std::vector<std::uint8_t> used(all.size());
+  const auto change_of = [&](std::size_t i) {
+    return unloaded.sensels()[i].mean - (before.empty() ? 0 : before[i]);
+  };
+  for (std::size_t i = 0; i < now.noise.size(); ++i) {
+    if (!is_good(now, i)) continue;
+    changes.push_back(all[i] = change_of(i));
+    used[i] = 1;
+    noises.push_back(now.noise[i]);
+  }
+  const double common = median(changes);
+  for (double& change : changes) change = std::abs(change - common);
+  const double rounding = unloaded.type() == SenselType::f32 ? 0 : kLeastChangeCounts;
+  const double least = std::max(kLeastChangeNoises * quantile(noises, 0.99), rounding);
+  // The median deviation of a normal distribution is 0.6745 of its standard deviation.
+  limit = std::max(kFarChange * 1.4826 * median(changes), least);
+  if (!before.empty()) limit = std::min(limit, kUnlikeDrift * least);
+  for (std::size_t i = 0; i < now.noise.size(); ++i) {
+    const double change = is_good(now, i) ? change_of(i) - common : 0;
+    beyond += change > limit ? 1 : 0;
+    if (change > most) place = i;
+    most = std::max(most, change);
+  }
+  if (before.empty() || beyond > 0) return;
+  const auto together =
+      standing_out(unloaded.skin(), all, used, std::max(median(noises), rounding / 3));
+  if (together) beyond = 1;
+}
+
+bool has_tare(const Calibration& planes) {
+  return std::ranges::any_of(planes.tare, [](float tare) { return tare != 0; });
+}
+
+/// Throws if sensels rose since the tare before, were good in it, or if that had far less noise.
+void refuse_worse_tare(const SkinCalibration& before, const FrameStatistics& unloaded,
+                       const TareResult& result, const TareChange& change, const char* otherwise) {
+  if (change.beyond > 0) {
+    refuse(
+        unloaded,
+        fmt::format(
+            "{} changed since the tare before by more than noise and drift explain, "
+            "most by {:.3g} counts at {}, in all frames; a touch of less than {:.3g} counts on a "
+            "sensel would not be seen",
+            counted(change.beyond, "sensel"), change.most, place_words(unloaded, change.place),
+            change.limit),
+        otherwise);
+  }
+  // A sensel that was masked has no noise.
+  const auto was_good = [&](const SenselFinding& finding) {
+    const auto& noise = before.planes.noise;
+    return !noise.empty() && noise[std::size_t{finding.row} * before.cols + finding.col] > 0;
+  };
+  if (const auto masked = std::ranges::count_if(result.findings, was_good); masked > 0) {
+    const SenselFinding& first = *std::ranges::find_if(result.findings, was_good);
+    refuse(unloaded,
+           fmt::format("{} that read well in the tare before read as faulty, the first, at row {}, "
+                       "column {}, as {}",
+                       counted(static_cast<std::uint64_t>(masked), "sensel"), first.row, first.col,
+                       name_of(first.fault)),
+           otherwise);
+  }
+  const double threshold = *result.calibration.threshold_counts;
+  if (before.planes.noise.empty() || !before.threshold_counts || !before.threshold_factor) return;
+  const double known =
+      *before.threshold_counts / *before.threshold_factor * *result.calibration.threshold_factor;
+  if (threshold <= kMuchNoise * known) return;
+  refuse(unloaded,
+         fmt::format("the threshold would be {:.3g} counts, that of the tare before is {:.3g}: "
+                     "readings are not at rest",
+                     threshold, known),
+         otherwise);
 }
 
 /// Fills tare and noise; zero for masked sensels.
-void fill_planes(const SenselJudge& judge, const FindingList& found, Calibration& planes) {
-  const std::size_t sensels = judge.sensels().size();
+void fill_planes(const FrameStatistics& still, const FindingList& found, Calibration& planes) {
+  const std::vector<SenselEvidence> evidence = evidence_without_load(still);
+  const std::size_t sensels = evidence.size();
   planes.tare.assign(sensels, 0);
   planes.noise.assign(sensels, 0);
   for (std::size_t i = 0; i < sensels; ++i) {
     if (!found.good(i)) continue;
-    planes.tare[i] = static_cast<float>(judge.sensels()[i].level);
-    planes.noise[i] = static_cast<float>(judge.sensels()[i].noise);
+    planes.tare[i] = static_cast<float>(evidence[i].level);
+    planes.noise[i] = static_cast<float>(evidence[i].noise);
   }
   planes.mask = found.mask_plane();
 }
@@ -93,29 +251,87 @@ void require_majority(const FindingList& found, const FrameStatistics& unloaded)
 
 }  // namespace
 
-TareResult take_tare(const SkinCalibration& before, const FrameStatistics& unloaded,
+void TareFrames::add(const FrameView& frame, double time_s) {
+  constexpr std::size_t kMostFrames = 4096;
+  constexpr std::size_t kMostReadings = std::size_t{1} << 24U;
+  constexpr std::size_t kLeastKept = 32;
+  const std::size_t most = std::clamp(kMostReadings / skin().sensels(), kLeastKept, kMostFrames);
+  FrameStatistics::add(frame);
+  if ((frames() - 1) % step_ != 0) return;
+  if (kept_.size() == most) {
+    step_ *= 2;
+    for (std::size_t i = 0; 2 * i < most; ++i) {
+      std::swap(kept_[i], kept_[2 * i]);
+      times_s_[i] = times_s_[2 * i];
+    }
+    kept_.resize((most + 1) / 2);
+    times_s_.resize(kept_.size());
+    if ((frames() - 1) % step_ != 0) return;
+  }
+  std::vector<float>& to = kept_.emplace_back();
+  to.reserve(skin().sensels());
+  for_each_row(frame, [&](std::size_t, const auto* readings) {
+    to.insert(to.end(), readings, readings + frame.cols);
+  });
+  times_s_.push_back(time_s);
+}
+
+std::string TareFrames::span_words(std::size_t first, std::size_t last) const {
+  if (std::isfinite(times_s_[first])) {
+    return fmt::format("from {:.3g} to {:.3g} s", times_s_[first], times_s_[last]);
+  }
+  if (first == last) return fmt::format("in frame {}", first * step_);
+  return fmt::format("in frames {} to {}", first * step_, last * step_);
+}
+
+void refuse_moving_touch(const TareFrames& unloaded, std::span<const std::uint8_t> mask,
+                         const char* otherwise) {
+  if (const auto touch = examine_frames(unloaded, mask).touch) refuse(unloaded, *touch, otherwise);
+}
+
+TareResult take_tare(const SkinCalibration& before, const TareFrames& unloaded,
                      const TareOptions& options) {
   require_fitting(before, unloaded.skin(), unloaded.name());
   require_frames(unloaded, kLeastTareFrames);
-  FindingList found(before.planes.mask, unloaded);
-  const SenselJudge judge(evidence_without_load(unloaded), unloaded.frames(), before.planes.mask);
+  const ExaminedFrames examined = examine_frames(unloaded, before.planes.mask);
+  const FrameStatistics& still = examined.still;
+  FindingList found(before.planes.mask, still);
+  std::vector<SenselEvidence> evidence = evidence_without_load(still);
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    evidence[i].noise = std::max(examined.noises[i], least_noise(still.type()));
+  }
+  const SenselJudge judge(std::move(evidence), still.frames(), before.planes.mask);
   if (judge.typical().count == 0) {
     throw Error(unloaded.name(), "no sensel has a valid tare",
                 "check the sensor, its full scale and its mask");
   }
-  if (!options.preloaded) refuse_touched_skin(unloaded, before.planes.mask, judge);
-  for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
+  // A tare before knows better than the other sensels how a sensel reads untouched.
+  const std::vector<float> known =
+      has_tare(before.planes) ? before.planes.tare : std::vector<float>();
+  if (!options.preloaded) {
+    if (examined.touch) refuse(unloaded, *examined.touch, options.otherwise);
+    if (known.empty()) {
+      refuse_resting_touch(still, before.planes.mask, judge, options.otherwise);
+    }
+  }
+  for (std::size_t i = 0; i < still.sensels().size(); ++i) {
     if (!found.good(i)) continue;
     if (const auto fault = judge.verdict(i)) found.mask(i, *fault);
   }
-  require_majority(found, unloaded);
+  require_majority(found, still);
   TareResult result;
   result.calibration = before;
-  fill_planes(judge, found, result.calibration.planes);
+  fill_planes(still, found, result.calibration.planes);
   set_threshold(result.calibration, options.threshold_factor);
   result.findings = found.findings();
   result.tare_counts = judge.typical().level;
   result.noise_counts = judge.typical().noise;
+  result.spikes = examined.spikes;
+  const TareChange change(still, known, result.calibration.planes);
+  result.unseen_counts = change.limit;
+  if (!options.preloaded && !known.empty()) {
+    refuse_worse_tare(before, still, result, change, options.otherwise);
+  }
   return result;
 }
 
@@ -124,7 +340,7 @@ namespace {
 SkinCalibration run_tare(StepWork& work) {
   const TareOptions options = {.threshold_factor = work.number("threshold-factor", 4),
                                .preloaded = work.number("preloaded", 0) != 0};
-  const FrameStatistics unloaded = work.statistics(WireUse::unloaded).front();
+  const TareFrames unloaded = std::move(work.unloaded_frames().front());
   refuse_equal_frames(unloaded);
   const TareResult result = take_tare(work.before, unloaded, options);
   const SkinCalibration& calibration = result.calibration;
@@ -140,6 +356,10 @@ SkinCalibration run_tare(StepWork& work) {
       "threshold_counts", *calibration.threshold_counts, "threshold",
       fmt::format("counts, {:g} times the 99th percentile of the noise", options.threshold_factor));
   report.add(calibration, result.findings);
+  if (result.spikes > 0) {
+    report.notes.push_back(fmt::format("Left out: {}, which stand out for one frame or two",
+                                       counted(result.spikes, "reading")));
+  }
   work.parameters = fmt::format("threshold_factor = {}, preloaded = {}", options.threshold_factor,
                                 options.preloaded);
   return calibration;
@@ -157,8 +377,10 @@ StepKind tare_step() {
       StepArgument::number("threshold-factor", "RATIO",
                            "Threshold as a multiple of the noise of a reading [4]",
                            {0, kMaxThresholdFactor}),
-      StepArgument::flag("preloaded",
-                         "Accept readings that resemble a touch, as of a bent or covered skin")};
+      StepArgument::flag(
+          "preloaded",
+          "Accept what resembles a touch, as of a bent or covered skin, and a tare much "
+          "worse than the one before")};
   step.examples = {kSimulateIdle, kTareIdle,
                    "calibrate tare idle.h5 -o strict.h5 --threshold-factor 6"};
   return step;

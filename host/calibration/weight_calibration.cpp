@@ -83,10 +83,11 @@ void WeightFinder::add(const FrameView& frame) {
       if (readings[i] > threshold_) above.push_back(i);
     }
   });
-  if (unreadable || saturated) {
-    ++(unreadable ? unreadable_ : saturated_);
+  if (unreadable) {
+    ++unreadable_;
     return;
   }
+  saturated_ += saturated ? 1 : 0;
   std::vector<std::uint8_t> near(skin_.sensels(), 0);
   for (const std::size_t i : above) {
     const Neighbours beside(skin_, i);
@@ -105,10 +106,29 @@ void WeightFinder::add(const FrameView& frame) {
     readings_.push_back(readings[i]);
   }
   if (sensels_.size() == begin) return;
-  contacts_.push_back({recordings_.size() - 1, begin, sensels_.size()});
+  contacts_.push_back({recordings_.size() - 1, begin, sensels_.size(), saturated});
 }
 
 namespace {
+
+/// Throws if most frames of a recording are saturated: the others are those in which the weight is
+/// put down or lifted.
+void require_unsaturated(const WeightContacts& all, std::size_t recording,
+                         const std::string& name) {
+  std::size_t frames = 0;
+  std::size_t saturated = 0;
+  for (const WeightFinder::Contact& each : all.contacts) {
+    if (each.recording != recording) continue;
+    ++frames;
+    saturated += each.saturated ? 1 : 0;
+  }
+  if (2 * saturated <= frames) return;
+  throw Error(name,
+              fmt::format("{} of its {} with contact are saturated: in the others the weight may "
+                          "stand in part",
+                          saturated, counted(frames, "frame")),
+              "give a lighter weight, or one that stands on more sensels");
+}
 
 void require_selection(const WeightSelection& selection, const WeightResult& result,
                        const std::string& name) {
@@ -280,7 +300,10 @@ WeightResult WeightFinder::result() const {
     after.planes.mask[std::size_t{finding.row} * skin_.cols + finding.col] = kMissing;
   }
   std::vector<double> weights_n;
-  for (const Recording& each : recordings_) weights_n.push_back(each.weight_n);
+  for (const Recording& each : recordings_) {
+    require_unsaturated(all, weights_n.size(), each.name);
+    weights_n.push_back(each.weight_n);
+  }
   const WeightSelection selection = select_frames(all, after.planes, weights_n);
   const std::vector<double> copies = copies_of(after.planes, skin_);
   require_selection(selection, result, name);

@@ -112,6 +112,7 @@ class FrameSelector {
     for (const auto& contact : all_.contacts) {
       const double sum = sum_of(contact);
       const double relative = sum / typical[contact.recording];
+      if (contact.saturated) continue;  // Its sum is a part of the typical one, at least.
       if (relative < kLeastSum || relative > kMostSum) {
         ++selection.apart;
       } else if (edge_share(contact, sum) > kMostAtEdge) {

@@ -140,7 +140,7 @@ void FileSource::measure_tare(const ReadOptions& options) {
                 fmt::format("give a --tare-frames below {}", options.tare_frames));
   }
   WireCorrection correct(path_.string(), skin_, type_, calibration_.effects.wires, {});
-  FrameStatistics unloaded(path_.string(), correct.skin(), correct.type());
+  TareFrames unloaded(path_.string(), correct.skin(), correct.type());
   FrameBuffer frame(type_, skin_.rows, skin_.cols);
   for (std::uint64_t index = 0; index < options.tare_frames; ++index) {
     read(index, frame);
@@ -150,7 +150,8 @@ void FileSource::measure_tare(const ReadOptions& options) {
   before.planes = calibration_;
   before.counts_per_newton = skin_.counts_per_newton;
   before.power_law = skin_.power_law;
-  const TareResult tare = take_tare(before, unloaded, {});
+  const TareResult tare =
+      take_tare(before, unloaded, {.otherwise = "take it by calibrate tare with --preloaded"});
   apply(tare.calibration, skin_, calibration_);
   if (options.threshold_counts) skin_.threshold_counts = *options.threshold_counts;
   notes_.push_back(fmt::format(

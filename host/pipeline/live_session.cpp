@@ -1,5 +1,7 @@
 #include "pillarfield/live_session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,6 +15,7 @@
 #include <string>
 #include <utility>
 
+#include "base/number_text.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live_tare.h"
 #include "pillarfield/reading_check.h"
@@ -144,6 +147,8 @@ struct LiveSession::State final : FrameStream, ForceSink {
 
   SenselWatch watch;
   std::atomic<bool> paused = false;
+  std::atomic<bool> holds = false;  ///< frames, until there is a tare
+  std::uint64_t held = 0;
 
   std::mutex record_mutex;
   mutable std::mutex mutex;  ///< guards all that follows
@@ -184,7 +189,8 @@ Arrival LiveSession::State::next(StreamedFrame& frame, std::chrono::nanoseconds 
     watch.offer(frame.readings);
     take_tare(frame);
   }
-  if (paused) return Arrival::timed_out;
+  if (holds) ++held;
+  if (paused || holds) return Arrival::timed_out;
   ++taken;
   return arrival;
 }
@@ -206,6 +212,9 @@ void LiveSession::State::take_tare(const StreamedFrame& frame) {
     watch.set_plan(*plan);
     if (contacts != nullptr) contacts->set_sensor(*plan);
     event = pass_tare_on(*plan);
+    if (holds.exchange(false)) {
+      event.note += fmt::format("; {} before it went nowhere", counted(held, "frame"));
+    }
   } catch (const Error& error) {
     event.error = error.what();
   }
@@ -320,9 +329,11 @@ void LiveSession::finish() {
   state_->completions.clear();
 }
 
-bool LiveSession::start_tare(std::chrono::nanoseconds duration, bool preloaded, std::uint64_t tag) {
+bool LiveSession::start_tare(std::chrono::nanoseconds duration, bool preloaded, std::uint64_t tag,
+                             bool holds) {
   const std::scoped_lock lock(state_->mutex);
   if (std::exchange(state_->taring, true)) return false;
+  if (holds) state_->holds = true;
   state_->tare_request = TareRequest{duration, preloaded, tag};
   return true;
 }

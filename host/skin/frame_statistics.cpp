@@ -49,6 +49,13 @@ void FrameStatistics::add(const FrameView& frame) {
   ++frames_;
 }
 
+void FrameStatistics::add(std::span<const float> readings) {
+  const auto full_scale =
+      static_cast<float>(skin_.full_scale_counts.value_or(std::numeric_limits<double>::infinity()));
+  for (std::size_t i = 0; i < sensels_.size(); ++i) sensels_[i].add(readings[i], full_scale);
+  ++frames_;
+}
+
 void require_frames(const FrameStatistics& statistics, std::uint32_t least) {
   if (statistics.frames() >= least) return;
   throw Error(statistics.name(), fmt::format("has {} frames", statistics.frames()),

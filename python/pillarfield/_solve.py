@@ -88,8 +88,14 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         if not 10 <= tare_frames < len(source):
             raise Error("tare_frames", f"{tare_frames} of {len(source)} frames cannot be the unloaded ones",
                         "give 10 or more, but fewer than there are")
-        calibration = tare(source.read(0, 1, tare_frames), calibration or source.calibration,
-                           skin=skin.mirrored() if skin and falling else skin or source.skin).calibration
+        unloaded, before = source.read(0, 1, tare_frames), calibration or source.calibration
+        try:
+            calibration = tare(unloaded, before,
+                               skin=skin.mirrored() if skin and falling else skin or source.skin).calibration
+        except Error as error:
+            raise Error("tare_frames", error.failure, error.mend.replace(
+                "accept it with preloaded=True",
+                "give calibration=pf.calibrate.tare(unloaded, preloaded=True)")) from None
     _warn(([_SCALE_ASSUMED] if source.format == "array" else []) + source.warnings,
           _constants_given(skin, calibration, settings))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,

@@ -87,8 +87,9 @@ def tare(unloaded: Any, before: Before = None, *, skin: Skin = None, axes: Axes 
          threshold_factor: float = 4.0, preloaded: bool = False) -> Step:
     """Tare and noise of each sensel on the unloaded skin; masks faulty sensels.
 
-    threshold_factor: the threshold as a multiple of the noise. preloaded: accept an area that reads
-    far above the rest. Raises Error for fewer than 10 frames, or if something touches the skin.
+    threshold_factor: the threshold as a multiple of the noise. preloaded: accept what resembles a
+    touch, and a tare much worse than that of `before`. Raises Error for fewer than 10 frames, or if
+    something touches the skin in any of them.
     """
     return _run("tare", [unloaded], before, skin, axes, threshold_factor=threshold_factor,
                 preloaded=preloaded)

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "pillarfield/frame_statistics.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/tare.h"
 
 namespace pillarfield::core_test {
 
@@ -25,7 +25,7 @@ class PressedSkin {
   [[nodiscard]] Calibration truth() const { return Simulator(scene_).calibration(); }
 
   /// Statistics of `frames` frames in which each pillar carries `force_n` straight down.
-  FrameStatistics press(double force_n, std::uint32_t frames) {
+  TareFrames press(double force_n, std::uint32_t frames) {
     Scene scene = scene_;
     if (force_n > 0) {
       scene.load = DirectionSweep{.directions = scene.skin.pillar_cols(),
@@ -36,11 +36,11 @@ class PressedSkin {
     return statistics_of(Simulator(scene), frames);
   }
 
-  FrameStatistics bare(std::uint32_t frames) { return press(0, frames); }
+  TareFrames bare(std::uint32_t frames) { return press(0, frames); }
 
-  FrameStatistics statistics_of(const Simulator& simulator, std::uint32_t frames) {
+  TareFrames statistics_of(const Simulator& simulator, std::uint32_t frames) {
     const Skin& skin = simulator.scene().skin;
-    FrameStatistics statistics("frames.h5", skin, simulator.sensel_type());
+    TareFrames statistics("frames.h5", skin, simulator.sensel_type());
     FrameBuffer frame(simulator.sensel_type(), skin.rows, skin.cols);
     ForceField truth(skin.pillar_rows(), skin.pillar_cols());
     for (std::uint32_t i = 0; i < frames; ++i) {

@@ -32,7 +32,7 @@ SensorModel common_sensor() {
 
 PressedSkin common_skin() { return {30, 30, common_sensor()}; }
 
-TareResult tare_of(const FrameStatistics& unloaded, const TareOptions& options = {}) {
+TareResult tare_of(const TareFrames& unloaded, const TareOptions& options = {}) {
   return take_tare(blank_calibration(unloaded.skin()), unloaded, options);
 }
 
@@ -87,13 +87,13 @@ TEST(Tare, WholeCountsHaveAtLeastTheirRoundingError) {
 
 /// Statistics of frames that a function fills, sensel by sensel, frame by frame.
 template <class Reading>
-FrameStatistics frames_of(std::uint32_t rows, std::uint32_t cols, std::uint32_t frames,
-                          Reading reading, std::optional<double> full_scale = {}) {
+TareFrames frames_of(std::uint32_t rows, std::uint32_t cols, std::uint32_t frames, Reading reading,
+                     std::optional<double> full_scale = {}) {
   Skin skin;
   skin.rows = rows;
   skin.cols = cols;
   skin.full_scale_counts = full_scale;
-  FrameStatistics statistics("frames.h5", skin, SenselType::f32);
+  TareFrames statistics("frames.h5", skin, SenselType::f32);
   FrameBuffer frame(SenselType::f32, rows, cols);
   for (std::uint32_t t = 0; t < frames; ++t) {
     for (std::size_t i = 0; i < skin.sensels(); ++i) {
@@ -187,20 +187,20 @@ TEST(Tare, RefusesATouchedSkin) {
   ball.path = {{0, 0, 0, 20}};
   Scene touched = skin.scene();
   touched.load = std::vector<ClosedFormContact>{ball};
-  const FrameStatistics always = skin.statistics_of(Simulator(touched), 50);
+  const TareFrames always = skin.statistics_of(Simulator(touched), 50);
   EXPECT_NE(message_of([&] { (void)tare_of(always); }).find("frames.h5: "), std::string::npos);
   EXPECT_NE(message_of([&] { (void)tare_of(always); }).find("touched them"), std::string::npos);
   EXPECT_NO_THROW((void)tare_of(always, {.preloaded = true}));
 
   ball.path = {{0, 0, 0, 0}, {0.945, 0, 0, 0}, {0.95, 0, 0, 20}};
   touched.load = std::vector<ClosedFormContact>{ball};
-  const FrameStatistics at_the_end = skin.statistics_of(Simulator(touched), 50);
+  const TareFrames at_the_end = skin.statistics_of(Simulator(touched), 50);
   EXPECT_NE(message_of([&] { (void)tare_of(at_the_end); }).find("touched them"), std::string::npos);
 }
 
 TEST(Tare, RefusesTooFewFramesAndOtherSkins) {
   PressedSkin skin = common_skin();
-  const FrameStatistics few = skin.bare(kLeastTareFrames - 1);
+  const TareFrames few = skin.bare(kLeastTareFrames - 1);
   EXPECT_EQ(message_of([&] { (void)tare_of(few); }), "frames.h5: has 9 frames; give at least 10");
   PressedSkin other(30, 31, common_sensor());
   const SkinCalibration before = blank_calibration(other.skin());
@@ -210,12 +210,11 @@ TEST(Tare, RefusesTooFewFramesAndOtherSkins) {
 }
 
 TEST(Tare, RefusesASensorOfWhichLittleIsRight) {
-  const FrameStatistics broken =
-      frames_of(10, 10, 20, [](std::size_t i, std::uint32_t t) -> double {
-        return i % 8 < 5 ? std::nan("") : flicker(i, t);
-      });
+  const TareFrames broken = frames_of(10, 10, 20, [](std::size_t i, std::uint32_t t) -> double {
+    return i % 8 < 5 ? std::nan("") : flicker(i, t);
+  });
   EXPECT_NE(message_of([&] { (void)tare_of(broken); }).find("are faulty"), std::string::npos);
-  const FrameStatistics dead = frames_of(10, 10, 20, [](auto...) { return std::nan(""); });
+  const TareFrames dead = frames_of(10, 10, 20, [](auto...) { return std::nan(""); });
   EXPECT_NE(message_of([&] { (void)tare_of(dead); }).find("no sensel"), std::string::npos);
 }
 

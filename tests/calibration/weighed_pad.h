@@ -113,7 +113,7 @@ class WeighedPad {
   }
 
   [[nodiscard]] SkinCalibration tared() {
-    FrameStatistics bare("bare", skin(), SenselType::u8);
+    TareFrames bare("bare", skin(), SenselType::u8);
     const std::vector<double> none(sensitivity_.size(), 0);
     for (int i = 0; i < 100; ++i) bare.add(read(none).view());
     return take_tare(blank_calibration(skin()), bare, {}).calibration;

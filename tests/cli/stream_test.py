@@ -387,6 +387,16 @@ class FirstFrames(StreamTest):
         self.assertIn("there is no tare", errors)
 
 
+class Tares(StreamTest):
+    def test_a_touched_skin_ends_the_run_before_a_frame_is_written(self):
+        forces = self.folder / "forces.csv"
+        process = self.started(self.scene, "--repeat", "--tare", 0.2, "--to", forces, "--frames", 5)
+        errors = process.communicate(timeout=PATIENCE_S)[1]
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(errors, "--tare: no frame was solved: tare: .*touched")
+        self.assertFalse(forces.exists() and len(forces.read_text().splitlines()) > 1)
+
+
 class ControlLines(StreamTest):
     def test_every_line(self):
         process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")

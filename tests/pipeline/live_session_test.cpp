@@ -11,6 +11,7 @@
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/error.h"
+#include "pillarfield/pipeline.h"
 #include "pillarfield/recording.h"
 
 namespace pillarfield {
@@ -117,6 +118,19 @@ TEST_F(LiveSessionTest, ARecordingStartsWithTheTareOfTheRun) {
   run(20);
   EXPECT_EQ(recorded_tare(), plane_of(20));
   EXPECT_FALSE(session_.stop_recording());
+}
+
+TEST_F(LiveSessionTest, NoFrameIsSolvedBeforeATareThatHolds) {
+  session_.start_tare(milliseconds(100), false, 0, true);
+  std::uint64_t first = 0;
+  const auto sink = callback_sink([&](const SolvedFrame& frame) {
+    if (first == 0) first = frame.sequence;
+  });
+  session_.run({.sink = sink.get(), .stop = [this] { return sensor_.sent >= 50; }});
+  EXPECT_TRUE(session_.is_taring());
+  session_.run({.sink = sink.get(), .stop = [this] { return sensor_.sent >= 200; }});
+  EXPECT_EQ(first, 100U);
+  EXPECT_NE(session_.take_events().at(0).note.find("100 frames before it"), std::string::npos);
 }
 
 TEST_F(LiveSessionTest, ATareBeingMeasuredIsThatOfTheRecording) {

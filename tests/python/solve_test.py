@@ -122,6 +122,24 @@ class Frames(unittest.TestCase):
         with self.assertRaisesRegex(pf.Error, "an iterator's frames come once"):
             pf.solve(iter(frames), tare_frames=30)
 
+    def test_a_touch_that_moves_is_no_tare(self):
+        y, x = np.mgrid[:16, :16]
+        rolled = RANDOM.normal(200, 1, (200, 16, 16))
+        for t in range(40, 120):
+            rolled[t] += 80 * np.exp(-0.3 * ((y - 8) ** 2 + (x - 2 - t / 10) ** 2))
+        rolled = rolled.round().astype(np.uint16)
+        np.save(WORK / "rolled.npy", rolled)
+        for take in (lambda: pf.calibrate.tare(rolled), lambda: pf.solve(rolled, tare_frames=150),
+                     lambda: pf.Recording(WORK / "rolled.npy", rate_hz=9, tare_frames=150)):
+            with self.assertRaisesRegex(pf.Error, r"touched row [78], column \d+ in frames 40 to 119.*"
+                                                  r"preloaded=True"):
+                take()
+        tare = pf.calibrate.tare(rolled[:40])
+        with self.assertRaisesRegex(pf.Error, "changed since the tare before"):
+            pf.calibrate.tare(rolled[:1] + RANDOM.normal(0, 1, (20, 16, 16)) + rolled[110] - rolled[0],
+                              tare.calibration)
+        self.assertGreater(pf.calibrate.tare(rolled, preloaded=True).facts["threshold_counts"], 40)
+
     def test_times_of_any_strides(self):
         self.assertEqual(pf.solve(self.frames, rate_hz=50).times[3], 0.06)
         table = np.column_stack([np.arange(12) / 50, np.full(12, 7.0)])

@@ -46,8 +46,11 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
             std::numeric_limits<std::int64_t>::max());
   run.number("--end-when-idle", options.most_idle_s, "SECONDS",
              "End when no frame came for this time [wait for the sensor]", 0.01, 1e9);
-  run.number("--tare", options.tare_s, "SECONDS",
-             "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
+  run.number(
+      "--tare", options.tare_s, "SECONDS",
+      "Measure the tare of the untouched skin over this time at the start; frames before its end "
+      "go to no sink [0]",
+      0, 60);
   command
       ->add_option(
           "--control", options.control,

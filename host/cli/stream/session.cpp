@@ -88,7 +88,7 @@ StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
   for (const LiveSession::Sink& sink : live_.sinks()) {
     if (!options.quiet) tell_address(sink.name);
   }
-  if (options.tare_s > 0) live_.start_tare(nanoseconds_of(options.tare_s));
+  if (options.tare_s > 0) live_.start_tare(nanoseconds_of(options.tare_s), false, 0, true);
   if (!options.record.empty()) live_.record(options.record);
 }
 
@@ -106,6 +106,10 @@ void StreamSession::run(std::chrono::nanoseconds waited) {
   live_.finish();
   tell_events();
   tell_of_sinks();
+  if (refused_.empty() && options_.tare_s > 0 && live_.is_taring()) {
+    refused_ = "the frames ended before it was measured; give a shorter --tare";
+  }
+  if (!refused_.empty()) throw Error("--tare", "no frame was solved: " + refused_);
   if (!failed_.empty()) {
     throw Error(options_.source, "an output failed; see above", "mend it and start again");
   }
@@ -143,8 +147,11 @@ void StreamSession::tell_events() {
 
 void StreamSession::tell_tare(const LiveEvent& event) {
   if (!event.error.empty()) {
-    if (event.tag == 0) fmt::print(stderr, "pillarfield: {}\n", printable(event.error));
-    return control_.answer(event.tag, failed_line(event.error));
+    if (event.tag == 0) {  // of --tare: no frame was solved
+      refused_ = event.error;
+      quit_ = true;
+    }
+    return control_.answer(event.tag, failed_line(event.error + ", or insist: tare preloaded"));
   }
   if (event.tag == 0 && !options_.quiet) {
     fmt::print(stderr, "pillarfield: tare taken: {}\n", event.note);

@@ -60,6 +60,7 @@ class StreamSession {
   LiveSession live_;
   ControlChannel control_;
   bool quit_ = false;
+  std::string refused_;         ///< reason that there is no tare of --tare
   std::uint64_t contacts_ = 0;  ///< in the last frame
   std::uint64_t missed_ = 0;    ///< frames solved later than a period after they came
   RunCost cost_;

@@ -35,6 +35,8 @@ class FrameStatistics {
 
   /// Adds a frame of the skin's size and type; about 5 ns per sensel.
   void add(const FrameView& frame);
+  /// Adds a frame of readings as [rows, cols] float32; NaN: no reading.
+  void add(std::span<const float> readings);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const Skin& skin() const { return skin_; }

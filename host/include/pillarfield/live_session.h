@@ -68,8 +68,9 @@ class LiveSession {
 
   /// Measures tare, noise and threshold of the untouched skin over this time, for all frames after
   /// it; `preloaded` as LiveTare has it. An event tells the end. Returns false where one is being
-  /// measured.
-  bool start_tare(std::chrono::nanoseconds duration, bool preloaded = false, std::uint64_t tag = 0);
+  /// measured. `holds`: frames before its end are not solved, and reach no sink; all, if it fails.
+  bool start_tare(std::chrono::nanoseconds duration, bool preloaded = false, std::uint64_t tag = 0,
+                  bool holds = false);
   [[nodiscard]] bool is_taring() const;
 
   /// While paused, frames are received and counted, but not solved.

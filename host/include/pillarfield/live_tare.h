@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pillarfield/frame_statistics.h"
 #include "pillarfield/solver_plan.h"
+#include "pillarfield/tare.h"
 
 namespace pillarfield {
 
@@ -59,7 +59,8 @@ class LiveTare {
   std::vector<float> before_;
   std::chrono::nanoseconds duration_{0};
   bool preloaded_ = false;
-  std::optional<FrameStatistics> statistics_;
+  std::optional<double> threshold_;  ///< of the tare before, counts
+  std::optional<TareFrames> statistics_;
   std::optional<std::chrono::nanoseconds> first_;
   std::chrono::nanoseconds next_{0};
   std::unique_ptr<WireCorrection> correct_;

@@ -61,6 +61,7 @@ class WeightFinder {
     std::size_t recording;
     std::size_t begin;  ///< of its sensels
     std::size_t end;
+    bool saturated;  ///< in part: no load is known, but that it is there
   };
 
  private:
