@@ -13,7 +13,8 @@ namespace pillarfield {
 namespace {
 
 constexpr std::int64_t kMargin = 3;     // elements around a contact that may be filled in
-constexpr double kLeastOfPeak = 0.02;   // filled in: an element with more is under the contact
+constexpr double kLeastOfPeak = 0.02;   // that is filled in
+constexpr double kCountedOfPeak = 0.1;  // from which on an element is under the contact
 constexpr double kUnknownPart = 0.6;    // error of what no other place of the contact shows
 constexpr double kDeviationFactor = 1;  // of the root mean square of few errors
 
@@ -233,18 +234,19 @@ std::vector<UnseenElements> unseen_elements(const ForceFieldView& forces,
   const Cells unseen = field.read(runs);
   if (unseen.empty()) return {};
   field.fill(unseen);
-  const double least = kLeastOfPeak * *std::ranges::max_element(field.values[0]);
+  const double peak = *std::ranges::max_element(field.values[0]);
   std::vector<UnseenElements> found(2);
   Cells under;
   ContactSum all;
   ContactSum open;
   for (const std::size_t at : unseen) {
-    if (!(field.values[0][at] > least)) {
+    if (!(field.values[0][at] > kLeastOfPeak * peak)) {
       field.add(at, scaled(field.counted_at(at), -1), found[0].fill);
       continue;
     }
     under.push_back(at);
-    found[0].elements += field.in_contact[at] == 0 ? 1 : 0;
+    const bool counts = field.in_contact[at] == 0 && field.values[0][at] > kCountedOfPeak * peak;
+    found[0].elements += counts ? 1 : 0;
     const auto force = field.force_at(at);
     field.add(at, force, found[0].fill);
     field.add(at, scaled(field.counted_at(at), -1), found[0].fill);
