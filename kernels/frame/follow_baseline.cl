@@ -76,31 +76,32 @@ PF_INLINE Release update_release(Calibration calibration, Real now, uint turn, u
   return after;
 }
 
-/* A row of sensels under PF_LANES pillars. */
-typedef struct {
-  Place place;
-  RealPair readings;
-  CorrectionPair at;
-} FollowedRow;
-
-/* Adds the loads of valid sensels, and their number. */
-PF_INLINE void add_load(Real raw, Correction at, Stages stages, Real* sum, Real* valid) {
+/* The load of a sensel, counts; zero if it is missing. */
+PF_INLINE Real load_of(Real raw, Correction at, Stages stages) {
   const Sensel sensel = gained_sensel(raw, at, stages);
-  *sum = *sum + (sensel.missing ? PF_REAL(0.0) : sensel.reading);
-  *valid = *valid + (sensel.missing ? PF_REAL(0.0) : PF_REAL(1.0));
+  return sensel.missing ? PF_REAL(0.0) : sensel.reading;
 }
 
-/* Updates the tares and activation thresholds of a row; writes those of `lanes`. */
-PF_INLINE void follow_row(FollowedRow row, Calibration calibration, Mask follows, Real rate,
-                          Real drift, Lanes lanes) {
-  const Stages stages = calibration.stages;
+PF_INLINE Real load_of_row(global const PF_SENSEL* raw, Calibration calibration, Place place) {
+  const RealPair readings = load_readings(raw);
+  const CorrectionPair at = load_corrections(calibration, place);
+  return load_of(readings.left, at.left, calibration.stages) +
+         load_of(readings.right, at.right, calibration.stages);
+}
+
+/* Updates the tares and activation thresholds of one row of sensels under PF_LANES pillars; writes
+ * those of `lanes`. */
+PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, Place place,
+                          Mask follows, Real rate, Real drift, Lanes lanes) {
+  const RealPair readings = load_readings(raw);
+  const CorrectionPair at = load_corrections(calibration, place);
   RealPair tares;
-  tares.left = follow_tare(row.at.left.tare, untared_sensel(row.readings.left, row.at.left, stages),
+  tares.left = follow_tare(at.left.tare, untared_sensel(readings.left, at.left, calibration.stages),
                            follows, rate, drift);
   tares.right =
-      follow_tare(row.at.right.tare, untared_sensel(row.readings.right, row.at.right, stages),
+      follow_tare(at.right.tare, untared_sensel(readings.right, at.right, calibration.stages),
                   follows, rate, drift);
-  store_tares(tares, calibration, row.place, row.at, lanes);
+  store_tares(tares, calibration, place, at, lanes);
 }
 
 /* Updates the tares of every `interval`-th pillar row from `first_row` on. A work-item updates
@@ -126,26 +127,19 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw,
       /* The last block is shifted into the row; the block before it has updated its first lanes. */
       const uint col = min(place, cols - PF_LANES);
       const Lanes lanes = {place - col, PF_LANES};
-      FollowedRow pair[2];
-      Real sum = PF_REAL(0.0);
-      Real valid = PF_REAL(0.0);
-      for (uint side = 0; side < 2; ++side) {
-        const Place place = {2 * row + side, 2 * col};
-        pair[side].place = place;
-        pair[side].readings = load_readings(raw + place.row * layout.row_stride + place.col);
-        pair[side].at = load_corrections(planes, place);
-        add_load(pair[side].readings.left, pair[side].at.left, planes.stages, &sum, &valid);
-        add_load(pair[side].readings.right, pair[side].at.right, planes.stages, &sum, &valid);
-      }
-      const Real now = valid > PF_REAL(0.0) ? sum / valid : PF_REAL(0.0);
+      const Place top = {2 * row, 2 * col};
+      const Place bottom = {2 * row + 1, 2 * col};
+      global const PF_SENSEL* const first = raw + 2 * row * layout.row_stride + 2 * col;
+      global const PF_SENSEL* const second = first + layout.row_stride;
+      const Real now =
+          PF_REAL(0.25) * (load_of_row(first, planes, top) + load_of_row(second, planes, bottom));
       const Release release = update_release(planes, now, turn, row, col, rows, cols, pace, lanes);
       const Bits around = status_around(status, row, col, rows, cols);
       const Mask follows = !mask_of(around & PF_BITS(PF_STATUS_PRESSED)) || is_released(release);
       const Real rate = rate_after(release, pace);
       const Real shift = drift_at(drift, columns_from(col), PF_CONSTANT(Real, (float)row));
-      for (uint side = 0; side < 2; ++side) {
-        follow_row(pair[side], planes, follows, rate, shift, lanes);
-      }
+      follow_row(first, planes, top, follows, rate, shift, lanes);
+      follow_row(second, planes, bottom, follows, rate, shift, lanes);
     }
   }
 }

@@ -35,7 +35,7 @@ PF_INLINE Release release_after(Release before, Real now, Real peaks, Real loads
   Release after = before;
   after.now = now;
   after.peak = (begins || (now > before.peak)) ? now : before.peak;
-  const Mask quiet = loads <= PF_LARGEST_REST * peaks + PF_REAL(2.0) * band;
+  const Mask quiet = (loads <= PF_LARGEST_REST * peaks) || (loads <= PF_REAL(2.0) * band);
   const Mask loaded = (now > band) && (!quiet || (now > PF_LARGEST_OWN_REST * after.peak));
   const Real follows = inside ? before.low + step * (now - before.low) : before.low;
   const Real lowest = now < follows ? now : follows;

@@ -137,7 +137,6 @@ struct Kept {
     ++all;
     right += error <= most ? 1 : 0;
     worst = std::max(worst, error);
-    if (error > most) std::printf("%g of %g\n", error, most);
   }
 };
 
