@@ -10,7 +10,7 @@
 namespace pillarfield {
 
 /// Elements under a contact whose own readings do not tell their force, filled in from the others
-/// (docs/derivations/contact.md, section 8).
+/// (docs/contacts_found.md).
 struct UnseenElements {
   std::int64_t elements = 0;       ///< of them those that are no part of the contact's runs
   ContactSum fill;                 ///< what their forces add to the sums
