@@ -157,7 +157,7 @@ void expect_rests_to_go(unsigned seeds) {
       kept[0].add(hand.hold(0, hand.draw(0.02, 0.2), hand.draw(2, 5)) / peak_n, 0.03);
     }
     hand.move();
-    const double lasting_n = peak_n * hand.draw(0.25, 1);
+    const double lasting_n = std::max(peak_n * hand.draw(0.25, 1), std::min(peak_n, hand.weak_n()));
     hand.hold(peak_n, 0.2, 2);
     kept[2].add(std::abs(hand.hold(lasting_n, hand.draw(0.05, 1), 60) / lasting_n - 1), 0.07);
     hand.release(peak_n, 0.05);
