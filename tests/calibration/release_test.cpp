@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <numeric>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "pillarfield/processor.h"
@@ -21,7 +22,7 @@ constexpr double kCountsPerNewton = 300;
 /// A skin whose touches leave rests, at a random rate; what it reads is solved at once.
 class Hand {
  public:
-  explicit Hand(unsigned seed) : random_(seed) {
+  explicit Hand(unsigned seed, const std::string& device = "host") : random_(seed) {
     rate_hz_ = std::exp(draw(std::log(20.0), std::log(500.0)));
     plan_.skin.layout = seed % 2 == 0 ? SkinLayout::sensels : SkinLayout::pillars;
     plan_.skin.rows = plan_.skin.cols = 2 * static_cast<std::uint32_t>(draw(5, 9));
@@ -32,7 +33,7 @@ class Hand {
     plan_.frame_interval_s = 1 / rate_hz_;
     plan_.calibration.tare.assign(plan_.skin.sensels(), 200);
     set_baseline(plan_, 10);
-    processor_.emplace(open_device("host"), plan_);
+    processor_.emplace(open_device(device), plan_);
     frame_.emplace(SenselType::f32, plan_.skin.rows, plan_.skin.cols);
     rest_.assign(plan_.skin.sensels(), 0);
     std::normal_distribution<double> noise(0, 1.5);
@@ -63,6 +64,8 @@ class Hand {
     const double sum = std::accumulate(shape_.begin(), shape_.end(), 0.0);
     for (double& share : shape_) share /= sum;
   }
+
+  [[nodiscard]] std::vector<float> tare() const { return processor_->tare(); }
 
   /// A load that reads ten times the threshold at its largest.
   [[nodiscard]] double weak_n() const {
@@ -170,6 +173,23 @@ void expect_rests_to_go(unsigned seeds) {
     std::printf("%-16s %d of %d right, worst %.1f %%\n", kNames[k], kept[k].right, kept[k].all,
                 100 * kept[k].worst);
     EXPECT_GE(kept[k].right, 0.95 * kept[k].all) << kNames[k];
+  }
+}
+
+TEST(Release, HasTheSameBitsOnADevice) {
+  for (const unsigned seed : {1U, 2U}) {
+    std::vector<std::vector<float>> tares;
+    for (const char* const device : {"host", "opencl"}) {
+      Hand hand(seed, device);
+      for (int grasp = 0; grasp < 2; ++grasp) {
+        hand.hold(12, 0.1, 1);
+        hand.release(12, 0.1);
+        hand.hold(0, 0.1, 2);
+      }
+      tares.push_back(hand.tare());
+    }
+    EXPECT_EQ(tares[0], tares[1]);
+    EXPECT_GT(*std::ranges::max_element(tares[0]), 205) << "no rest was taken in";
   }
 }
 
