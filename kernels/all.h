@@ -16,6 +16,7 @@
 #include "pillar/curve.h"
 #include "pillar/leak.h"
 #include "pillar/memory.h"
+#include "pillar/release.h"
 #include "pillar/lean.h"
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"

@@ -155,6 +155,7 @@ using Contact = TrackedContact;
 using Ended = EndedContact;
 using Q = ContactQuantities;
 using F = SlipForecast;
+using U = UnseenDeviations;
 
 constexpr ContactColumn<Contact> kIdentity[] = {
     column("id", "", "1, 2, ...; never reused", identity(member<&Contact::track_id>())),
@@ -195,8 +196,8 @@ constexpr QuantityColumn kQuantities[] = {
            member<&Q::centre, &PatchPlace::y_mm>()),
     column("torque_nmm", "N mm", "about the outward normal, counter-clockwise",
            member<&Q::torque_nmm>(), kOfPillars, {"torque_nmm", "torque", 9}),
-    column("area_mm2", "mm^2", "pillars times the area of one", member<&Q::area_mm2>(), kAlways,
-           {"", "area", 15}),
+    column("area_mm2", "mm^2", "pillars and unseen ones times the area of one",
+           member<&Q::area_mm2>(), kAlways, {"", "area", 15}),
     column("peak_n", "N", "largest normal force of a pillar or sensel", member<&Q::peak_n>(),
            kAlways, {"", "peak", 16}),
     column("peak_x_mm", "mm", "place of the largest normal force",
@@ -234,6 +235,26 @@ constexpr QuantityColumn kQuantities[] = {
            kOptional | kOfPillars, {"slip_within_0_3_s", "P(slip) 0.3 s", 7}),
     column("slip_within_1_s", "", "probability that it slides within 1 s", probability<2>(),
            kOptional | kOfPillars, {"slip_within_1_s"}),
+    column("unseen", "", "share of its area over missing or masked sensels, 0..1",
+           member<&Q::unseen>(), kOptional, {"unseen", "unseen", 17}),
+    column("normal_deviation_n", "N", "standard deviation by what is unseen",
+           member_of_optional<&Q::unseen_deviations, &U::normal_n>(), kOptional,
+           {"unseen_deviation.normal"}),
+    column("shear_x_deviation_n", "N", "standard deviation by what is unseen",
+           member_of_optional<&Q::unseen_deviations, &U::shear_x_n>(), kOptional | kOfPillars,
+           {"unseen_deviation.shear_x"}),
+    column("shear_y_deviation_n", "N", "standard deviation by what is unseen",
+           member_of_optional<&Q::unseen_deviations, &U::shear_y_n>(), kOptional | kOfPillars,
+           {"unseen_deviation.shear_y"}),
+    column("centre_of_pressure_x_deviation_mm", "mm", "standard deviation by what is unseen",
+           member_of_optional<&Q::unseen_deviations, &U::centre_of_pressure, &PatchPlace::x_mm>(),
+           kOptional, {"unseen_deviation.centre_mm.x"}),
+    column("centre_of_pressure_y_deviation_mm", "mm", "standard deviation by what is unseen",
+           member_of_optional<&Q::unseen_deviations, &U::centre_of_pressure, &PatchPlace::y_mm>(),
+           kOptional, {"unseen_deviation.centre_mm.y"}),
+    column("torque_deviation_nmm", "N mm", "standard deviation by what is unseen",
+           member_of_optional<&Q::unseen_deviations, &U::torque_nmm>(), kOptional | kOfPillars,
+           {"unseen_deviation.torque_nmm"}),
     column("force_x_n", "N", "force on the skin in the body's frame",
            member_of_optional<&Q::wrench, &Wrench::force_n, &Vector3::x>(), kOptional),
     column("force_y_n", "N", "force on the skin in the body's frame",

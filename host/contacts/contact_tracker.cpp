@@ -12,6 +12,7 @@
 #include "contacts/estimator/friction_estimator.h"
 #include "contacts/parallel_contact_moments.h"
 #include "contacts/slip_trend.h"
+#include "contacts/unseen_elements.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/contact_quantities.h"
 #include "pillarfield/error.h"
@@ -249,20 +250,23 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
   indices.clear();
   frame.contacts.clear();
   ContactSum total;
+  std::vector<UnseenElements> all_unseen;
   for (std::uint32_t label = 0; label < labels.contacts(); ++label) {
     const ContactSum& sum = sums[label];
     total.add(sum);
+    const std::vector<UnseenElements> unseen = unseen_elements(forces, labels.runs(label));
+    all_unseen.insert(all_unseen.end(), unseen.begin(), unseen.end());
     indices.push_back(kNoContact);
     if (static_cast<std::uint64_t>(sum.pillars) < options.minimum_pillars) continue;
     if (is_noise(sum, noise_n)) continue;
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
     contact.label = label;
-    contact.quantities = quantities_of(sum, pitch_mm, has_shear);
+    contact.quantities = quantities_of(sum, unseen, pitch_mm, has_shear);
     if (has_shear) set_slip(contact.quantities, friction[label], sum);
     frame.contacts.push_back(contact);
   }
-  frame.total = quantities_of(total, pitch_mm, has_shear);
+  frame.total = quantities_of(total, all_unseen, pitch_mm, has_shear);
   if (options.surface) measure_wrenches(forces);
   if (!has_shear || !options.friction.given || frame.total.pillars == 0) return;
   set_slip(frame.total, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},

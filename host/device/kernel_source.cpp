@@ -105,7 +105,7 @@ const char* macro_of(CalibrationPlane plane) {
   static constexpr std::array kMacros = {
       "PF_TARE_PLANE",    "PF_GAIN_PLANE",       "PF_DEAD_ZONE_PLANE", "PF_NOISE_PLANE",
       "PF_MASK_PLANE",    "PF_ACTIVATION_PLANE", "PF_BEND_X_PLANE",    "PF_BEND_Y_PLANE",
-      "PF_BEND_XY_PLANE", "PF_MEMORY_PLANE"};
+      "PF_BEND_XY_PLANE", "PF_RELEASE_PLANE",    "PF_RELEASED_PLANE",  "PF_MEMORY_PLANE"};
   return kMacros[static_cast<std::size_t>(plane)];
 }
 

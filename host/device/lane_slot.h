@@ -23,7 +23,7 @@ class LaneSlot final : public Slot {
               const single_precision::Drift& drift) override {
     FrameStep step = {++order().frame, bent, {}};
     if (order().follows_baseline) {
-      step.baseline = {order().rate, drift, order().first_row(), order().interval};
+      step.baseline = {order().pace, drift, order().first_row(), order().interval};
     }
     solver_.solve(frame, step);
   }

@@ -30,19 +30,19 @@ struct Launch {
   cl::NDRange local;
 };
 
-/// Arguments of kernels/frame/*.cl; those from kRate on are of follow_baseline alone.
+/// Arguments of kernels/frame/*.cl; those from kPace on are of follow_baseline alone.
 /// From kBendX on: the change of curvature of bend_tare.
 enum Argument : cl_uint {
   kRaw,
   kCalibration,
   kResults,
   kLayout,
-  kRate,
+  kPace,
   kDrift,
   kFirstRow,
   kInterval
 };
-constexpr cl_uint kBendX = kRate;
+constexpr cl_uint kBendX = kPace;
 
 }  // namespace
 
@@ -195,7 +195,7 @@ void OpenClSlot::solve(const std::optional<Curvature>& bent, const single_precis
       order().each_writes ? &order().left : &order().readers[order().frame % kMostSlots];
   launch(kernel_, global_, local_, &before, order().follows_baseline ? nullptr : left);
   if (order().follows_baseline) {
-    follow_.setArg(kRate, order().rate);
+    follow_.setArg(kPace, order().pace);
     follow_.setArg(kDrift, drift);
     follow_.setArg(kFirstRow, order().first_row());
     launch(follow_, global_, local_, nullptr, left);

@@ -163,7 +163,7 @@ struct Processor::State {
       add_opencl_slots(wanted, options.frames_in_flight, tuning);
       warm_up();
     }
-    order.rate = static_cast<float>(baseline_turn_rate(wanted));
+    order.pace = baseline_pace(wanted);
     order.frame = 0;
   }
 
@@ -226,7 +226,7 @@ struct Processor::State {
         static_cast<OpenClSlot&>(*slot).set_plan(plan, settings, calibration);
       }
     }
-    order.rate = static_cast<float>(baseline_turn_rate(plan));
+    order.pace = baseline_pace(plan);
     order.frame = 0;
   }
 

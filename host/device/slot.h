@@ -37,7 +37,7 @@ struct FrameOrder {
   bool is_needed = false;
   bool each_writes = false;  ///< every frame; else those with a change of curvature
   bool follows_baseline = false;
-  float rate = 0;           ///< rate of the tare per update of a row
+  single_precision::BaselinePace pace{};
   cl_uint interval = 1;     ///< frames between updates of a pillar row
   std::uint64_t frame = 0;  ///< number of frames submitted
   cl::Event left;           ///< completion of the last that wrote; null before the first

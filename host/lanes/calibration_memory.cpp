@@ -63,6 +63,8 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, SenselType thres
       return copy_values(plan.skin, plan.calibration.bend_y, to);
     case CalibrationPlane::bend_xy:
       return copy_values(plan.skin, plan.calibration.bend_xy, to);
+    case CalibrationPlane::release:
+    case CalibrationPlane::release_after_odd:
     case CalibrationPlane::memory:
       return;
     case CalibrationPlane::activation:
@@ -99,6 +101,8 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, bool ha
   add(bent, CalibrationPlane::bend_x);
   add(bent, CalibrationPlane::bend_y);
   add(bent, CalibrationPlane::bend_xy);
+  add(plan.baseline_rate.has_value(), CalibrationPlane::release);
+  add(plan.baseline_rate.has_value(), CalibrationPlane::release_after_odd);
   add(calibration.effects.memory.has_value(), CalibrationPlane::memory);
   return planes;
 }

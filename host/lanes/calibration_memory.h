@@ -19,6 +19,8 @@ enum class CalibrationPlane : std::uint8_t {
   bend_x,
   bend_y,
   bend_xy,
+  release,  ///< memories of touches after even turns of a followed baseline
+  release_after_odd,
   memory,  ///< the states of sensels; the last, and larger than a plane
 };
 

@@ -54,6 +54,7 @@ using ulong = std::uint64_t;
 #define PF_BEND_X_PLANE (given->planes.bend_x)
 #define PF_BEND_Y_PLANE (given->planes.bend_y)
 #define PF_BEND_XY_PLANE (given->planes.bend_xy)
+#define PF_RELEASE_PLANE (given->planes.release)
 #define PF_MEMORY_PLANE (given->planes.memory)
 #define PF_PLAYS (named.memory_model.plays)
 #define PF_CREEPS (named.memory_model.creeps)
@@ -162,13 +163,15 @@ void bend_tare(const LanePlan& plan, const LaneFrame& frame,
                     same_bits<Numbers::Layout>(frame.layout), change.x, change.y, change.xy);
 }
 
-void follow_baseline(const LanePlan& plan, const LaneFrame& frame, float rate,
+void follow_baseline(const LanePlan& plan, const LaneFrame& frame,
+                     const single_precision::BaselinePace& pace,
                      const single_precision::Drift& drift, std::uint32_t first_row,
                      std::uint32_t interval) {
   auto program = program_of<Numbers>(plan, {});
   program.follow_baseline(static_cast<const float*>(frame.raw), frame.calibration, frame.results,
-                          same_bits<Numbers::Layout>(frame.layout), rate,
-                          same_bits<Numbers::Drift>(drift), first_row, interval);
+                          same_bits<Numbers::Layout>(frame.layout),
+                          same_bits<Numbers::BaselinePace>(pace), same_bits<Numbers::Drift>(drift),
+                          first_row, interval);
 }
 
 }  // namespace

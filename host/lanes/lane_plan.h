@@ -19,6 +19,7 @@ struct LanePlanes {
   std::size_t bend_x = 0;
   std::size_t bend_y = 0;
   std::size_t bend_xy = 0;
+  std::size_t release = 0;
   std::size_t memory = 0;
   bool has_noise = false;
 };
@@ -81,7 +82,8 @@ struct LaneProgram {
   Run correct_forces = nullptr;
   void (*bend_tare)(const LanePlan& plan, const LaneFrame& frame,
                     const single_precision::Curvature& change) = nullptr;
-  void (*follow_baseline)(const LanePlan& plan, const LaneFrame& frame, float rate,
+  void (*follow_baseline)(const LanePlan& plan, const LaneFrame& frame,
+                          const single_precision::BaselinePace& pace,
                           const single_precision::Drift& drift, std::uint32_t first_row,
                           std::uint32_t interval) = nullptr;
 };

@@ -59,6 +59,7 @@ LanePlanes places_of(const std::vector<CalibrationPlane>& planes) {
   find(CalibrationPlane::bend_x, places.bend_x);
   find(CalibrationPlane::bend_y, places.bend_y);
   find(CalibrationPlane::bend_xy, places.bend_xy);
+  find(CalibrationPlane::release, places.release);
   find(CalibrationPlane::memory, places.memory);
   return places;
 }
@@ -237,7 +238,7 @@ void LaneSolver::solve(const FrameView& frame, const FrameStep& step) {
   run(program_->solve_frame, bands_);
   if (step.baseline) {
     const BaselineTurn& turn = *step.baseline;
-    program_->follow_baseline(plan_, frame_, turn.rate, turn.drift, turn.first_row, turn.interval);
+    program_->follow_baseline(plan_, frame_, turn.pace, turn.drift, turn.first_row, turn.interval);
   }
   if (plan_.stages.pillar_leak) run(program_->remove_pillar_leak, bands_);
   if (plan_.stages.lean) run(program_->find_shear_ratios, bands_);

@@ -30,7 +30,7 @@ struct LaneSettings {
 
 /// The update of a followed baseline after a frame: arguments of kernels/frame/follow_baseline.cl.
 struct BaselineTurn {
-  float rate = 0;
+  single_precision::BaselinePace pace{};
   single_precision::Drift drift{};
   std::uint32_t first_row = 0;
   std::uint32_t interval = 1;

@@ -56,7 +56,7 @@ std::uint64_t warm_up_frames(const SolverPlan& plan, bool contacts) {
     }
   }
   double frames = seconds / plan.frame_interval_s;
-  if (plan.baseline_rate) frames = std::max(frames, kTimeConstants / *plan.baseline_rate);
+  if (plan.baseline_rate) frames = kMostFrames;  // It keeps what every touch has left.
   return static_cast<std::uint64_t>(std::ceil(std::min(frames, kMostFrames)));
 }
 

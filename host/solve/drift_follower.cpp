@@ -6,6 +6,7 @@
 #include "pillarfield/tuning.h"
 #include "skin/quads.h"
 #include "skin/raw_reading.h"
+#include "solve/activation_thresholds.h"
 
 namespace pillarfield {
 namespace {
@@ -23,12 +24,24 @@ double value_at(const PatternTriple& factors, const PatternTriple& pattern) {
 
 }  // namespace
 
+single_precision::BaselinePace baseline_pace(const SolverPlan& plan) {
+  if (!plan.baseline_rate) return {};
+  constexpr double kBandDeviations = 4;  // without a threshold
+  const double cut = activation_range(plan).threshold;
+  return {static_cast<float>(baseline_turn_rate(plan)),
+          static_cast<float>(plan.baseline_interval * plan.frame_interval_s / plan.release_time_s),
+          static_cast<float>(cut > 0 ? cut : kBandDeviations * reading_noise(plan))};
+}
+
 DriftFollower::DriftFollower(const SolverPlan& plan)
     : cols_(plan.skin.cols),
       middle_{1, 0.5 * quad_cols(plan.skin), 0.5 * quad_rows(plan.skin)},
       rate_(plan.baseline_rate.value_or(0)),
       noise_(reading_noise_n(plan) * plan.skin.counts_per_newton),
       limit_(plan.skin.threshold_counts),
+      pace_{static_cast<float>(rate_),
+            static_cast<float>(plan.frame_interval_s / plan.release_time_s),
+            baseline_pace(plan).band},
       settling_(kSettlingTimes / rate_),
       turns_(static_cast<std::size_t>(plan.baseline_interval)) {
   if (plan.calibration.effects.wires) return;
@@ -94,8 +107,11 @@ single_precision::Drift DriftFollower::follow(const FrameView& frame,
   const bool enough = untouched >= kLeastUntouchedTiles * static_cast<double>(tiles_.size());
   const PatternTriple found = enough ? equations.solution(kSlopeRidge) : PatternTriple{};
   for (Tile& tile : tiles_) {
-    const bool follows = std::abs(tile.difference) <= limit_;
-    tile.tare += rate_ * (follows ? tile.difference : value_at(found, tile.place));
+    tile.release =
+        release_after(tile.release, tile.difference, tile.release.peak, tile.difference, pace_);
+    const bool follows = is_released(tile.release) || std::abs(tile.difference) <= limit_;
+    tile.tare += follows ? rate_after(tile.release, pace_) * tile.difference
+                         : rate_ * value_at(found, tile.place);
   }
   for (std::size_t k = 0; k < 3; ++k) sum_[k] += rate_ * found[k];
   if (enough) drift_ = found;

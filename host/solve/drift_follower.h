@@ -13,6 +13,9 @@
 
 namespace pillarfield {
 
+/// The pace of a plan's followed baseline; zero without one.
+[[nodiscard]] single_precision::BaselinePace baseline_pace(const SolverPlan& plan);
+
 /// Finds what the tares of untouched sensels have in common while they follow the readings, a plane
 /// over the skin, by which the tares of touched sensels move too. Follows the mean tares of at most
 /// 64 tiles, pillars with the eight around them, as follow_baseline.cl does all tares
@@ -43,6 +46,7 @@ class DriftFollower {
     double tare;          ///< mean, counts
     double difference;    ///< of the mean reading from it, in the last frame
     double trusted_from;  ///< the frame from which it tells the drift
+    double_precision::Release release;
   };
 
   void add_tile(const SolverPlan& plan, std::size_t quad);
@@ -56,11 +60,12 @@ class DriftFollower {
   std::size_t cols_;
   PatternTriple middle_;  ///< 1, then half of the pillar columns and rows
   double rate_;
-  double noise_;           ///< of a sensel, counts
-  double limit_;           ///< largest difference that a tare follows: the threshold, counts
-  double settling_;        ///< frames after which a tile that was off is trusted again
-  PatternTriple drift_{};  ///< of readings from the tares, last frame
-  PatternTriple sum_{};    ///< added to touched tares so far
+  double noise_;  ///< of a sensel, counts
+  double limit_;  ///< largest difference that a tare follows: the threshold, counts
+  double_precision::BaselinePace pace_;  ///< from frame to frame
+  double settling_;                   ///< frames after which a tile that was off is trusted again
+  PatternTriple drift_{};             ///< of readings from the tares, last frame
+  PatternTriple sum_{};               ///< added to touched tares so far
   std::vector<PatternTriple> turns_;  ///< `sum_` after each of the last baseline_interval frames
   std::uint64_t frames_ = 0;
 };

@@ -191,7 +191,9 @@ void check(const SolverPlan& plan, std::string_view where) {
 
 void set_baseline(SolverPlan& plan, double time_constant_s) {
   plan.baseline_rate = -std::expm1(-plan.frame_interval_s / time_constant_s);
-  plan.baseline_interval = baseline_interval(time_constant_s / plan.frame_interval_s);
+  constexpr double kReleaseShare = 2.5;  // a fortieth is a hundredth of it
+  plan.baseline_interval = baseline_interval(
+      std::min(time_constant_s, kReleaseShare * plan.release_time_s) / plan.frame_interval_s);
 }
 
 double baseline_turn_rate(const SolverPlan& plan) {

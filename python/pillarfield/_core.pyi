@@ -22,6 +22,7 @@ class PlanOptions(TypedDict, total=False):
     noise_counts: Optional[float]
     parity_tolerance_counts: Optional[float]
     baseline_time_s: Optional[float]
+    release_time_s: float
     baseline_interval: Optional[int]
     frame_interval_s: Optional[float]
 

@@ -32,6 +32,15 @@ struct Wrench {
   Vector3 moment_nmm;
 };
 
+/// Standard deviations of a contact's sums by what was filled in for its unseen elements.
+struct UnseenDeviations {
+  double shear_x_n = 0;
+  double shear_y_n = 0;
+  double normal_n = 0;
+  PatchPlace centre_of_pressure;
+  double torque_nmm = 0;
+};
+
 /// Time until a contact slides as a whole, if its load goes on to change at the present rate.
 struct SlipForecast {
   static constexpr std::array<double, 3> kWithinS = {0.1, 0.3, 1};
@@ -64,13 +73,19 @@ struct ContactQuantities {
   /// positive. The moments about the other two axes are zero there.
   double torque_nmm = 0;
 
-  double area_mm2 = 0;           ///< pillars times the area of one
+  /// Share of the area that is unseen, 0 to 1: elements under the contact whose sensels are missing
+  /// or masked. Sums, centre of pressure and area hold what their neighbours let expect there.
+  double unseen = 0;
+  std::optional<UnseenDeviations> unseen_deviations;  ///< unset where nothing is unseen
+
+  double area_mm2 = 0;           ///< pillars and unseen elements times the area of one
   double peak_n = 0;             ///< the largest normal force of a pillar
   PatchPlace peak;               ///< its position; the first, row by row, if several are equal
   double mean_pressure_kpa = 0;  ///< normal_n over area_mm2
   /// The normal force of the most loaded element over its area; zero without elements.
   [[nodiscard]] double peak_pressure_kpa() const {
-    return area_mm2 > 0 ? 1000 * peak_n * static_cast<double>(pillars) / area_mm2 : 0;
+    const double seen_mm2 = (1 - unseen) * area_mm2;
+    return seen_mm2 > 0 ? 1000 * peak_n * static_cast<double>(pillars) / seen_mm2 : 0;
   }
   /// Sum over the pillars on their poses; set with ContactOptions::surface.
   std::optional<Wrench> wrench;

@@ -55,6 +55,9 @@ struct SolverPlan {
   /// every baseline_interval-th pillar row. The tare follows as fast as with 1 at a fraction of the
   /// cost.
   int baseline_interval = 1;
+  /// Time, s, within which a followed tare takes in the rest that a touch leaves behind: what stays
+  /// steady at a fifth of the touch or less (docs/derivations/sensor_effects.md, E13).
+  double release_time_s = 1;
   /// Time from frame to frame, s, above zero; needed where calibration.effects.memory has creep.
   double frame_interval_s = 0.01;
   bool angles = false;       ///< also compute magnitude, theta and phi
@@ -77,6 +80,7 @@ struct PlanSettings {
   std::optional<double> full_scale_counts;
   std::optional<double> noise_counts;
   std::optional<double> baseline_time_s;  ///< of set_baseline()
+  std::optional<double> release_time_s;
   std::optional<double> baseline_interval;
   std::optional<double> frame_interval_s;
   std::optional<double> parity_tolerance_counts;
@@ -103,8 +107,8 @@ void check(const SolverPlan& plan, std::string_view where);
 
 /// Lets the tare follow drift with a time constant, s, above zero: sets baseline_rate, 1 −
 /// exp(−frame_interval_s / time constant), and baseline_interval, for which a pillar row has its
-/// turn a hundred times in a time constant. Set frame_interval_s before
-/// (docs/derivations/sensor_effects.md, section 12).
+/// turn a hundred times in a time constant, and forty in release_time_s. Set frame_interval_s and
+/// release_time_s before (docs/derivations/sensor_effects.md, section 12).
 void set_baseline(SolverPlan& plan, double time_constant_s);
 
 /// Standard deviation of a reading as a force, N, for ContactOptions::noise_n: that of

@@ -80,11 +80,11 @@ typedef struct PillarfieldPacket {
  */
 #define PILLARFIELD_RING_MAGIC 0x31475250u /* "PRG1" */
 
-/* A reader refuses other kinds. 2 and 3 are results of earlier versions, in another layout. */
+/* A reader refuses other kinds. 2 to 5 are results of earlier versions, in other layouts. */
 enum PillarfieldRingKind {
   PILLARFIELD_RING_FRAMES = 1,
-  PILLARFIELD_RING_RESULTS = 4,  /* of pillars */
-  PILLARFIELD_RING_PRESSURES = 5 /* results of sensels without pillars */
+  PILLARFIELD_RING_RESULTS = 6,  /* of pillars */
+  PILLARFIELD_RING_PRESSURES = 7 /* results of sensels without pillars */
 };
 
 typedef struct PillarfieldRing {
@@ -173,6 +173,14 @@ typedef struct PillarfieldContact {
   double time_to_slip_low_s;
   double time_to_slip_high_s;
   double slip_within[3]; /* probability of that within 0.1, 0.3 and 1 s */
+  double unseen;         /* share of its area over missing or masked sensels */
+  /* Standard deviations by what is unseen. */
+  double normal_deviation_n;
+  double shear_x_deviation_n;
+  double shear_y_deviation_n;
+  double centre_x_deviation_mm;
+  double centre_y_deviation_mm;
+  double torque_deviation_nmm;
 } PillarfieldContact;
 
 /* A slot of results: this, then planes [rows, cols] one after the other, row by row from the top

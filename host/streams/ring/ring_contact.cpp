@@ -51,7 +51,14 @@ const std::vector<RingColumn>& ring_columns() {
       {quantity_column("time_to_slip_high_s"), offsetof(Ring, time_to_slip_high_s)},
       {quantity_column("slip_within_0_1_s"), offsetof(Ring, slip_within[0])},
       {quantity_column("slip_within_0_3_s"), offsetof(Ring, slip_within[1])},
-      {quantity_column("slip_within_1_s"), offsetof(Ring, slip_within[2])}};
+      {quantity_column("slip_within_1_s"), offsetof(Ring, slip_within[2])},
+      {quantity_column("unseen"), offsetof(Ring, unseen)},
+      {quantity_column("normal_deviation_n"), offsetof(Ring, normal_deviation_n)},
+      {quantity_column("shear_x_deviation_n"), offsetof(Ring, shear_x_deviation_n)},
+      {quantity_column("shear_y_deviation_n"), offsetof(Ring, shear_y_deviation_n)},
+      {quantity_column("centre_of_pressure_x_deviation_mm"), offsetof(Ring, centre_x_deviation_mm)},
+      {quantity_column("centre_of_pressure_y_deviation_mm"), offsetof(Ring, centre_y_deviation_mm)},
+      {quantity_column("torque_deviation_nmm"), offsetof(Ring, torque_deviation_nmm)}};
   return columns;
 }
 
