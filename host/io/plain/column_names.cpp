@@ -91,11 +91,31 @@ Varying varying_of(const std::vector<NameParts>& names) {
 }
 
 bool are_letters_in_a_row(std::vector<std::string> words) {
+  if (words.empty()) return false;
   std::ranges::sort(words);
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i].size() != 1 || words[i][0] != words[0][0] + static_cast<int>(i)) return false;
   }
   return true;
+}
+
+/// The one word in which the patterns differ, of each kind; nothing if they differ otherwise.
+std::vector<std::string> differing_words(const std::vector<ColumnKind>& kinds) {
+  std::vector<std::vector<std::string>> words;
+  for (const ColumnKind& kind : kinds) words.push_back(words_in(kind.pattern));
+  std::vector<std::string> differing;
+  for (std::size_t at = 0; at < words[0].size(); ++at) {
+    const auto is_like_first = [&](const auto& each) {
+      return each.size() == words[0].size() && each[at] == words[0][at];
+    };
+    if (std::ranges::all_of(words, is_like_first)) continue;
+    if (!differing.empty()) return {};
+    for (const auto& each : words) {
+      if (each.size() != words[0].size()) return {};
+      differing.push_back(each[at]);
+    }
+  }
+  return differing;
 }
 
 /// Distinct values of a number of the columns.
@@ -153,34 +173,21 @@ std::vector<ColumnKind> kinds_of(std::span<const std::string> header,
       std::tie(kind.numbers[i], kind.columns[i]) = order[i];
     }
   }
-  if (are_rows(kinds) && !kinds[0].pattern.starts_with('*')) {
-    std::ranges::stable_sort(kinds, [](const ColumnKind& a, const ColumnKind& b) {
-      const auto words = [](const ColumnKind& kind) { return words_in(kind.pattern); };
-      return are_letters_in_a_row({words(a)[0], words(b)[0]}) && words(a) < words(b);
-    });
+  if (are_rows(kinds) && are_letters_in_a_row(differing_words(kinds))) {
+    std::ranges::stable_sort(kinds, {},
+                             [](const ColumnKind& kind) { return words_in(kind.pattern); });
   }
   return kinds;
 }
 
 bool are_rows(const std::vector<ColumnKind>& kinds) {
   if (kinds.size() < 2) return false;
-  std::vector<std::string> words;
-  const auto first = words_in(kinds[0].pattern);
-  std::optional<std::size_t> at;
-  for (const ColumnKind& kind : kinds) {
-    const auto other = words_in(kind.pattern);
-    if (kind.numbers != kinds[0].numbers || kind.columns.size() < 2 ||
-        kind.numbers[0].size() != 1 || other.size() != first.size()) {
-      return false;
-    }
-    for (std::size_t i = 0; i < other.size(); ++i) {
-      if (other[i] == first[i]) continue;
-      if (at && at != i) return false;
-      at = i;
-    }
-  }
-  if (!at) return false;
-  for (const ColumnKind& kind : kinds) words.push_back(words_in(kind.pattern)[*at]);
+  const auto is_row = [&](const ColumnKind& kind) {
+    return kind.numbers == kinds[0].numbers && kind.columns.size() > 1 &&
+           kind.numbers[0].size() == 1;
+  };
+  if (!std::ranges::all_of(kinds, is_row)) return false;
+  std::vector<std::string> words = differing_words(kinds);
   std::ranges::sort(words);
   return words == std::vector<std::string>{"l", "r"} ||
          words == std::vector<std::string>{"left", "right"} || are_letters_in_a_row(words);

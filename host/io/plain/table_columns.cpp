@@ -280,6 +280,13 @@ TableColumns sorted_columns(std::span<const std::string> header, std::span<const
 
 namespace {
 
+/// "L_*', 'R_*", in the order of the rows.
+std::string rows_of(const std::vector<ColumnKind>& kinds) {
+  std::vector<std::string> patterns;
+  for (const ColumnKind& kind : kinds) patterns.push_back(kind.pattern);
+  return fmt::format("{}", fmt::join(patterns, "', '"));
+}
+
 /// Puts the columns in the order of their names, with the size that these state.
 void take_order(TableColumns& found, std::span<const std::string> header,
                 const std::vector<ColumnKind>& kinds, const ReadOptions& options) {

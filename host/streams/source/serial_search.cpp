@@ -84,21 +84,26 @@ std::string head_of(std::span<const std::byte> bytes, std::size_t frame) {
   return longest.size() <= kLongest ? longest : longest.substr(0, kLongest);
 }
 
-/// True if the head of frames goes on from here: a byte that never changes, unlike readings at
-/// rest.
+/// True if the head of frames goes on from here: a byte that never changes, though others do, and
+/// is unlike the readings at rest.
 bool goes_on(std::span<const std::byte> bytes, std::size_t from, std::size_t frame) {
   constexpr int kUnlike = 32;
   std::vector<std::byte> sorted(bytes.begin(), bytes.end());
   std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
   const int rest = std::to_integer<int>(sorted[sorted.size() / 2]);
-  for (std::size_t first = from; first < std::min(from + 2, bytes.size()); ++first) {
+  std::size_t constant = 0;
+  bool is_unlike = false;
+  for (std::size_t first = from; first < std::min(from + frame, bytes.size()); ++first) {
     bool is_same = true;
-    for (std::size_t at = first; at < bytes.size(); at += frame) {
-      is_same = is_same && bytes[at] == bytes[first];
+    for (std::size_t at = first; is_same && at < bytes.size(); at += frame) {
+      is_same = bytes[at] == bytes[first];
     }
-    if (is_same && std::abs(std::to_integer<int>(bytes[first]) - rest) > kUnlike) return true;
+    if (!is_same) continue;
+    ++constant;
+    is_unlike = is_unlike ||
+                (first < from + 2 && std::abs(std::to_integer<int>(bytes[first]) - rest) > kUnlike);
   }
-  return false;
+  return is_unlike && 2 * constant < frame;
 }
 
 }  // namespace
