@@ -49,12 +49,13 @@ class Table:
         if self.kind == "components":
             form = random.choice(["f$_#", "#_$", "#.$", "F$#", "force_$_#"])
             quantities = ["", "d"] if form == "f$_#" and random.random() < 0.5 else [""]
-            columns = {}
+            columns, normals = {}, []
             for index, (r, c) in enumerate(cells):
                 for quantity in quantities:
                     for axis in random.permutation(["x", "y", "z"]) if form == "#_$" else "xyz":
-                        name = (form if not quantity else "d$_#").replace("$", axis).replace("#", f"p{number(index)}")
+                        name = (form if not quantity else "d$_#").replace("$", axis).replace("#", number(index) if form == "F$#" else "p" + number(index))
                         is_normal = axis == "z" and not quantity
+                        normals += [name] if is_normal else []
                         columns[name] = self.truth[:, r, c] if is_normal else random.normal(0, 9, 12).round(2)
         if self.kind == "pads":
             columns = {f"pad{pad}_{name}": value * (1 if pad == 0 else 2) for pad in range(2)
@@ -68,8 +69,11 @@ class Table:
         elif order == "columns first" and len(names) == len(cells):
             names = [names[r * self.cols + c] for c in range(self.cols) for r in range(self.rows)]
         self.readings = list(columns)
+        if self.kind == "components":
+            self.readings = normals
         if self.kind == "sides" and names[0] != self.readings[0] and names[0][0] == words[1][0]:
             self.truth = self.truth[:, ::-1]  # The side that comes first is the first row.
+            self.readings = self.readings[self.cols:] + self.readings[:self.cols]
         for group in random.choice(FOREIGN, random.integers(4), replace=False):
             at = random.integers(len(names) + 1)
             for name in group.split():
@@ -128,6 +132,8 @@ class Names(unittest.TestCase):
                 if found is None and "choose" in error and not OPTION.search(error):
                     how = "asked"  # Who knows the answer gives it.
                     chosen = ",".join(world.readings if world.kind != "pads" else world.readings[:world.rows * world.cols])
+                    if not world.gives_shape:
+                        given += ["--shape", f"{world.rows}x{world.cols}"]
                     found, error = self.solve(path, *given, "--columns", chosen)
                     if found is None:
                         found = self.hinted(path, [*given, "--columns", chosen], error, world.rows, world.cols)
@@ -151,7 +157,7 @@ class Names(unittest.TestCase):
                 touch = random.random((count, rows, cols)) < 0.2
                 touch[:count // 3 * (count > 1)] = False
                 normal = np.where(touch, random.gamma(4, 0.5, touch.shape), 0)
-                angle, friction = random.uniform(0, 7), random.uniform(0.1, 0.7)
+                angle, friction = random.uniform(*((3.5, 6) if kind == "frame" else (0, 7))), random.uniform(0.3, 0.7)
                 shear = [friction * normal * np.cos(angle), friction * normal * np.sin(angle)]
                 first = kind in ("planes", "frame") and random.random() < 0.5
                 force = np.stack([normal, *shear] if first else [*shear, normal])

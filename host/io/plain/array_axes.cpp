@@ -99,7 +99,7 @@ AxisComponents components_along(const std::vector<std::uint64_t>& shape, std::si
   constexpr std::uint64_t kMostValues = std::uint64_t{1} << 23U;
   constexpr std::uint64_t kMostLooks = 64;
   constexpr double kClearly = 1.3;
-  constexpr double kSigned = 0.1;
+  constexpr double kSigned = 0.03;
   std::uint64_t inner = 1;  // of each component
   std::uint64_t values = 1;
   for (std::size_t i = 1; i < shape.size(); ++i) values *= shape[i];

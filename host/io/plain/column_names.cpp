@@ -23,9 +23,10 @@ const WordSet kRowWords = {"r", "row", "rows", "y"};
 const WordSet kColWords = {"c", "col", "cols", "column", "columns", "x"};
 const WordSet kSensorWords = {"sensor", "pad",  "board", "module", "device", "finger",
                               "hand",   "foot", "skin",  "array",  "patch",  "unit"};
-const WordSet kForceWords = {"f",      "force",   "forces",  "pressure", "press", "pressures",
-                             "fsr",    "sensor",  "sensors", "sensel",   "taxel", "tactile",
-                             "normal", "sensels", "taxels",  "pad",      "touch"};
+const WordSet kReadingWords = {"f",       "force",   "forces", "pressure", "press",   "pressures",
+                               "fsr",     "sensor",  "sensel", "taxel",    "tactile", "normal",
+                               "sensors", "taxels",  "pad",    "touch",    "p",       "s",
+                               "ch",      "channel", "data",   "adc",      "cell",    "raw"};
 
 /// A name in parts: texts, and the numbers between them.
 struct NameParts {
@@ -260,7 +261,7 @@ std::vector<Components> components_of(const std::vector<ColumnKind>& kinds,
       if (axes[0] != &kind) break;
       std::size_t begin = at;
       while (begin > 0 && std::isalpha(static_cast<unsigned char>(name[begin - 1])) != 0) --begin;
-      Components& all = found[name.substr(begin, at - begin)];
+      Components& all = found[name.substr(begin, at - begin) + (kind.columns.size() > 1 ? "*" : "")];
       ColumnKind* const to[] = {&all.x, &all.y, &all.z};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         to[axis]->pattern += (to[axis]->pattern.empty() ? "" : ",") + axes[axis]->pattern;
@@ -278,9 +279,9 @@ std::vector<Components> components_of(const std::vector<ColumnKind>& kinds,
   return list;
 }
 
-bool names_force(const std::string& name) {
+bool names_readings(const std::string& name) {
   return std::ranges::any_of(words_in(name),
-                             [](const auto& word) { return kForceWords.contains(word); });
+                             [](const auto& word) { return kReadingWords.contains(word); });
 }
 
 std::string choice_of(std::span<const std::string> header, const ColumnKind& kind) {

@@ -53,8 +53,8 @@ struct Components {
 [[nodiscard]] std::vector<Components> components_of(const std::vector<ColumnKind>& kinds,
                                                     std::vector<ColumnKind>& others);
 
-/// True if the name has a word of force or pressure.
-[[nodiscard]] bool names_force(const std::string& name);
+/// True if the name has a word that readings have, such as force or channel.
+[[nodiscard]] bool names_readings(const std::string& name);
 
 /// The choice of just these columns for ReadOptions::columns: a pattern, or names, or numbers in
 /// ranges.

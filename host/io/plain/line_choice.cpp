@@ -72,7 +72,7 @@ void LineChoice::check(const std::string& place) const {
         place,
         fmt::format("'{}' alternates between {}, as lines of several arrays do", watched.name,
                     fmt::join(words, ", ")),
-        fmt::format("choose one with --where '{}={}'", watched.name, *words.begin()),
+        "choose one with --where COLUMN=WORD",
         "choose one, as with", std::move(proposals));
   }
 }

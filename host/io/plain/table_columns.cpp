@@ -103,16 +103,15 @@ std::string list_of(const std::vector<ColumnKind>& kinds) {
   return fmt::format("{}", fmt::join(list, ", "));
 }
 
-/// The kind that is probably the readings: the most columns, and nothing like it; null if several
-/// may be.
+/// The kind of readings: the most columns, and the only ones with the name of readings; null if
+/// it is not certain.
 const ColumnKind* likely_readings(const std::vector<ColumnKind>& kinds) {
+  const auto is_named = [](const ColumnKind& kind) {
+    return kind.columns.size() > 1 && (kind.states_places || names_readings(kind.pattern));
+  };
   const auto& most = *std::ranges::max_element(
       kinds, {}, [](const ColumnKind& kind) { return kind.columns.size(); });
-  const bool is_named = names_force(most.pattern);
-  const auto rivals = std::ranges::count_if(kinds, [&](const ColumnKind& kind) {
-    return &kind != &most && kind.columns.size() > 1 && (!is_named || names_force(kind.pattern));
-  });
-  return rivals > 0 || most.columns.size() < 2 ? nullptr : &most;
+  return std::ranges::count_if(kinds, is_named) == 1 && is_named(most) ? &most : nullptr;
 }
 
 /// Refuses taxels with three components, unless other columns are more.
@@ -121,17 +120,15 @@ void refuse_components(std::span<const std::string> header, const std::vector<Co
   const auto taxels = [](const Components& each) { return each.z.columns.size(); };
   const auto most = std::ranges::max_element(all, {}, taxels);
   if (most == all.end() || taxels(*most) < others) return;
-  const auto is_likely = [&](const Components& each) {
-    return each.is_force && taxels(each) == taxels(*most);
-  };
   std::vector<Proposal> proposals;
   std::vector<std::string> choices;
-  for (const Components& each : all) choices.push_back(choice_of(header, each.z));
-  const auto first = std::ranges::find_if(all, is_likely);
-  if (all.size() == 1 || std::ranges::count_if(all, is_likely) == 1) {
-    proposals.push_back(proposal_of(header, (all.size() == 1 ? all.begin() : first)->z, options));
+  for (const Components& each : all) {
+    choices.push_back(choice_of(header, each.z));
+    if (all.size() == 1 || (each.is_force && taxels(each) == taxels(*most)))
+      proposals.push_back(proposal_of(header, each.z, options));
   }
-  const Components& shown = first == all.end() ? *most : *first;
+  if (proposals.size() > 1) proposals.clear();
+  const Components& shown = *most;
   throw ProposingError(
       place,
       fmt::format("has three components for each taxel, '{}', '{}', '{}', which are no readings "
@@ -297,9 +294,9 @@ void take_order(TableColumns& found, std::span<const std::string> header,
   std::vector<std::size_t> ordered = in_order(kinds, is_taken ? stated : std::nullopt);
   if (is_taken && !given) {
     found.size = stated;
-    found.notes.push_back(
-        fmt::format("The names of the columns state frames of {} x {}; --shape gives another size.",
-                    stated->rows, stated->cols));
+    found.notes.push_back(fmt::format(
+        "The names of the columns state frames of {} x {}, rows of '{}'; --shape gives another.",
+        stated->rows, stated->cols, rows_of(kinds)));
   }
   const auto missing = std::ranges::count(ordered, kNoColumn);
   if (missing > 0) {
@@ -368,7 +365,7 @@ std::optional<LongColumns> long_columns(std::span<const std::string> header,
   if (is_named && values.columns.size() > 1) {
     const auto kinds = kinds_of(header, values.columns);
     std::vector<Proposal> proposals;
-    const auto is_force = [](const ColumnKind& kind) { return names_force(kind.pattern); };
+    const auto is_force = [](const ColumnKind& kind) { return names_readings(kind.pattern); };
     const auto force = std::ranges::find_if(kinds, is_force);
     if (std::ranges::count_if(kinds, is_force) == 1) {
       proposals.push_back(proposal_of(header, *force, options));
