@@ -169,7 +169,9 @@ std::vector<ColumnKind> kinds_of(std::span<const std::string> header,
     for (std::size_t i = 0; i < kind.columns.size(); ++i) {
       order.emplace_back(kind.numbers[i], kind.columns[i]);
     }
-    std::ranges::stable_sort(order, {}, [](const auto& each) { return each.first; });
+    const auto sorted = std::set(kind.numbers.begin(), kind.numbers.end());
+    if (sorted.size() < order.size()) continue;  // Names that come again are in order.
+    std::ranges::sort(order);
     for (std::size_t i = 0; i < order.size(); ++i) {
       std::tie(kind.numbers[i], kind.columns[i]) = order[i];
     }
@@ -198,7 +200,15 @@ std::optional<FrameSize> stated_size(const std::vector<ColumnKind>& kinds) {
   std::size_t rows = kinds.size();
   std::size_t cols = kinds[0].columns.size();
   if (kinds.size() > 1 && !are_rows(kinds)) return std::nullopt;
-  if (kinds.size() == 1) {
+  if (kinds.size() == 1 && kinds[0].numbers[0].size() == 1) {  // Numbers that begin again.
+    const auto& numbers = kinds[0].numbers;
+    const auto again = std::find(numbers.begin() + 1, numbers.end(), numbers.front());
+    cols = static_cast<std::size_t>(again - numbers.begin());
+    rows = numbers.size() / cols;
+    for (std::size_t i = cols; i < numbers.size(); ++i) {
+      if (numbers[i] != numbers[i - cols] || rows * cols != numbers.size()) return std::nullopt;
+    }
+  } else if (kinds.size() == 1) {
     if (kinds[0].numbers[0].size() != 2) return std::nullopt;
     const auto values = [&](std::size_t at) { return values_at(kinds[0], at); };
     rows = values(0).size();
@@ -214,7 +224,7 @@ std::optional<FrameSize> stated_size(const std::vector<ColumnKind>& kinds) {
       return std::nullopt;
     }
     const auto& numbers = kinds[0].numbers;
-    if (std::ranges::adjacent_find(numbers) != numbers.end()) return std::nullopt;
+    if (std::set(numbers.begin(), numbers.end()).size() < numbers.size()) return std::nullopt;
   }
   if (rows < 2 || cols < 2) return std::nullopt;
   return FrameSize{static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(cols)};
@@ -261,7 +271,8 @@ std::vector<Components> components_of(const std::vector<ColumnKind>& kinds,
       if (axes[0] != &kind) break;
       std::size_t begin = at;
       while (begin > 0 && std::isalpha(static_cast<unsigned char>(name[begin - 1])) != 0) --begin;
-      Components& all = found[name.substr(begin, at - begin) + (kind.columns.size() > 1 ? "*" : "")];
+      Components& all =
+          found[name.substr(begin, at - begin) + (kind.columns.size() > 1 ? "*" : "")];
       ColumnKind* const to[] = {&all.x, &all.y, &all.z};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         to[axis]->pattern += (to[axis]->pattern.empty() ? "" : ",") + axes[axis]->pattern;
