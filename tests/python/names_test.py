@@ -94,6 +94,19 @@ class Table:
         self.gives_shape = self.kind != "place" or random.random() < 0.3
 
 
+class DataFrame:
+    """What the package uses of pandas."""
+
+    index = type("RangeIndex", (), {"name": None})()
+
+    def __init__(self, text):
+        self.text = text
+        self.columns = text.split("\n")[0].split(",")
+
+    def to_csv(self, path, header, index, index_label):
+        pathlib.Path(path).write_text(self.text)
+
+
 class Names(unittest.TestCase):
     def setUp(self):
         holder = tempfile.TemporaryDirectory()
@@ -145,6 +158,36 @@ class Names(unittest.TestCase):
                 np.testing.assert_array_equal(found, world.truth, note)
                 rates[world.kind, how] += 1
         print("tables:", dict(sorted(rates.items())))
+
+    def test_python_takes_what_its_messages_offer(self):
+        frames = np.random.default_rng(1).integers(1, 200, (12, 2, 3))
+        names = ["time", *(f"s{i}" for i in range(6)), "side"]
+        table = np.column_stack([np.arange(12) / 50, frames.reshape(12, 6), np.tile([0, 1], 6)])
+        text = "\n".join([",".join(names), *(",".join(f"{cell:g}" for cell in line) for line in table)])
+        (self.folder / "t.csv").write_text(text)
+        for given in (DataFrame(text), self.folder / "t.csv"):
+            with self.assertRaisesRegex(pf.Error, "where='side=0'"):
+                pf.solve(given, frame_size=(2, 3))
+            options = {"where": "side=1", "columns": "2-7", "frame_size": (2, 3)}
+            forces = pf.solve(given, counts_per_newton=1, threshold_counts=0, **options)
+            np.testing.assert_array_equal(forces.normal, frames[1::2])
+            with self.assertRaisesRegex(pf.Error, "at least 10|fewer"):
+                pf.doctor(given, **options)
+            with self.assertRaisesRegex(pf.Error, "10"):
+                pf.calibrate.tare(given, **options)
+        for words, call in (("bool", lambda: pf.solve(frames > 9)), ("dict of 'a'", lambda: pf.solve({"a": frames})),
+                            ("'pitch_mm'", lambda: pf.solve(frames, sensel_pitch_mm=2)),
+                            ("'sensel_pitch_mm'", lambda: pf.Skin(2, 3, pitch_mm=2)),
+                            ("no argument 'unit'", lambda: pf.calibrate.tare(frames, unit="N")),
+                            ("'picture'", lambda: pf.solve(frames).plot()),
+                            ("timeout: it is nan", lambda: pf.live("-", timeout=np.nan))):
+            with self.assertRaisesRegex((pf.Error, TypeError), words):
+                call()
+        pads = np.zeros((40, 32, 32), np.uint8)
+        for pad in range(40):
+            pads[pad, pad * 7 % 28:pad * 7 % 28 + 4, pad * 11 % 28:pad * 11 % 28 + 4] = 50
+        with self.assertWarnsRegex(UserWarning, "unrelated_frames=True"):
+            pf.solve(pads, counts_per_newton=100)
 
     def test_axes_of_components_and_pads_are_no_sensels(self):
         rates = collections.Counter()

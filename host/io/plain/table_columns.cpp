@@ -122,19 +122,20 @@ void refuse_components(std::span<const std::string> header, const std::vector<Co
   if (most == all.end() || taxels(*most) < others) return;
   std::vector<Proposal> proposals;
   std::vector<std::string> choices;
+  const Components* shown = &*most;
   for (const Components& each : all) {
     choices.push_back(choice_of(header, each.z));
-    if (all.size() == 1 || (each.is_force && taxels(each) == taxels(*most)))
-      proposals.push_back(proposal_of(header, each.z, options));
+    if (all.size() > 1 && !(each.is_force && taxels(each) == taxels(*most))) continue;
+    proposals.push_back(proposal_of(header, each.z, options));
+    shown = &each;
   }
   if (proposals.size() > 1) proposals.clear();
-  const Components& shown = *most;
   throw ProposingError(
       place,
       fmt::format("has three components for each taxel, '{}', '{}', '{}', which are no readings "
                   "of sensels",
-                  header[shown.x.columns[0]], header[shown.y.columns[0]],
-                  header[shown.z.columns[0]]),
+                  header[shown->x.columns[0]], header[shown->y.columns[0]],
+                  header[shown->z.columns[0]]),
       fmt::format("choose the normal ones with --columns, among '{}'",
                   fmt::join(choices, "' and '")),
       "read the normal ones alone with", proposals);
