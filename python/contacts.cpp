@@ -249,6 +249,7 @@ void bind_contacts(py::module_& module) {
   add_quantities(
       contact, [](const TrackedContact& self) -> const auto& { return self.quantities; });
   contact.def_readonly("track_id", &TrackedContact::track_id, "1, 2, ...; never reused")
+      .def_readonly("id", &TrackedContact::track_id, "track_id, as tables name it")
       .def_readonly("parent", &TrackedContact::parent, "track_id that it split from, or None")
       .def_readonly("first_time_s", &TrackedContact::first_time_s, "time of its first frame, s")
       .def_readonly("age_s", &TrackedContact::age_s, "time since then, s")

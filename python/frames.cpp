@@ -171,7 +171,7 @@ std::unique_ptr<Frames> open(
     std::string dataset, std::string times,
     const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
     std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes,
-    const std::string& layout, bool falling, bool untimed, std::string columns) {
+    const std::string& layout, bool falling, bool untimed, std::string columns, std::string where) {
   const py::gil_scoped_release unlocked;
   ReadOptions options;
   options.trust = trust;
@@ -179,6 +179,7 @@ std::unique_ptr<Frames> open(
   options.times = std::move(times);
   if (frame_size) options.frame_size = {frame_size->first, frame_size->second};
   options.columns = std::move(columns);
+  options.where = std::move(where);
   options.rate_hz = rate_hz;
   options.tare_frames = tare_frames;
   options.falling = falling;
@@ -207,6 +208,24 @@ std::vector<std::size_t> axis_positions(const std::string& words) {
   return positions;
 }
 
+/// Throws Error for readings, dense, with axes of components or pads.
+void require_axes(const py::array& readings) {
+  std::vector<std::uint64_t> shape;
+  for (py::ssize_t axis = 0; axis < readings.ndim(); ++axis) {
+    shape.push_back(static_cast<std::uint64_t>(readings.shape(axis)));
+  }
+  const auto read = [&](std::uint64_t index) {
+    const py::array slice = readings.attr("__getitem__")(index);
+    const TimeArray numbers(slice.attr("ravel")());
+    return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+  };
+  const auto take = [&](const std::string& index) {
+    return fmt::format("give frames{}{}", index,
+                       shape.size() == 3 && shape[0] != 3 ? ".reshape(-1, ROWS, COLS)" : "");
+  };
+  require_frame_axes(shape, read, "frames", take);
+}
+
 void write(Frames& frames, const std::filesystem::path& path, bool overwrite) {
   const py::gil_scoped_release unlocked;
   const std::lock_guard alone(frames.alone);
@@ -232,7 +251,7 @@ void bind_frames(py::module_& module) {
            py::arg("dataset") = "", py::arg("times") = "", py::arg("frame_size") = py::none(),
            py::arg("rate_hz") = py::none(), py::arg("tare_frames") = 0, py::arg("axes") = "",
            py::arg("layout") = "", py::arg("falling") = false, py::arg("untimed") = false,
-           py::arg("columns") = "")
+           py::arg("columns") = "", py::arg("where") = "")
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
                   py::arg("calibration"), py::arg("axes_are_known") = false,
                   py::arg("falling") = false, kArray)
@@ -272,6 +291,8 @@ void bind_frames(py::module_& module) {
       .def("__len__", [](const Frames& self) { return self.source->frames(); });
   module.def("axis_positions", &axis_positions, py::arg("words"),
              "Positions of the axes frames, rows and columns in an array with axes of this order.");
+  module.def("require_frame_axes", &require_axes, py::arg("readings"),
+             "Raises Error for readings with axes of components or pads.");
   module.def("size_warnings", &size_warnings, py::arg("rows"), py::arg("cols"),
              "Sentences about an odd last row or column, which has no pillars.");
   module.def("require_likely_frame", &require_likely_frame, py::arg("rows"), py::arg("cols"),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace pillarfield {
 namespace {
@@ -27,15 +28,24 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
   return edits[a.size()][b.size()];
 }
 
-/// The candidate that begins with `word` or has the smallest distance; empty where that is above a
-/// third of the word plus 1.
+/// True if the longer name ends with the shorter one after '_', as "sensel_pitch_mm" and
+/// "pitch_mm".
+bool ends_alike(std::string_view a, std::string_view b) {
+  if (a.size() < b.size()) std::swap(a, b);
+  return a.size() > b.size() && b.size() >= 3 && a.ends_with(b) &&
+         a[a.size() - b.size() - 1] == '_';
+}
+
+/// The candidate that begins with `word`, ends like it or has the smallest distance; empty where
+/// that is above a third of the word plus 1.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongest = 40;  // The table is quadratic, and all names are shorter.
   if (word.size() > kLongest) return {};
   std::string nearest;
   std::size_t too_many = word.size() / 3 + 2;
   for (const std::string& candidate : candidates) {
-    const bool begins = word.size() >= 3 && candidate.starts_with(word);
+    const bool begins =
+        (word.size() >= 3 && candidate.starts_with(word)) || ends_alike(word, candidate);
     const std::size_t edits = begins ? 1 : edits_between(word, candidate);
     if (edits >= too_many) continue;
     too_many = edits;

@@ -108,6 +108,7 @@ std::string reading_arguments(const ReadOptions& read) {
     text += fmt::format(" --shape {}x{}", read.frame_size->rows, read.frame_size->cols);
   }
   if (!read.columns.empty()) text += " --columns " + quoted(read.columns);
+  if (!read.where.empty()) text += " --where " + quoted(read.where);
   if (!read.axes.empty()) {
     std::vector<const char*> words;
     for (const ArrayAxis axis : read.axes) {

@@ -34,7 +34,13 @@ constexpr const char* kPages =
     "from PIL import Image, ImageSequence as s; "
     "np.save({1}, [np.array(p) for p in s.Iterator(Image.open({0}))])";
 constexpr const char* kWorkbook =
-    "import pandas as pd; np.save({1}, pd.read_excel({0}).select_dtypes('number').to_numpy())";
+    "import pandas as pd; pd.read_excel({0}).to_csv({6}, index=False)";
+
+// The longest cell of each line, without its names.
+constexpr const char* kQuotedFrames =
+    "import csv; csv.field_size_limit(2**30); r = list(csv.reader(open({0})))[1:]; "
+    "np.save({1}, np.array([max(l, key=len).strip('[]() ').replace(',', ' ').split() for l in r], "
+    "float))";
 
 constexpr std::array kForeign = {
     // All arrays of numbers, also those in cells and structs, by their names.
@@ -44,7 +50,7 @@ constexpr std::array kForeign = {
             "isinstance(v, (dict, list)) or isinstance(v, n) and v.dtype == object else "
             "isinstance(v, n) and v.dtype.kind in 'buif' and a.update({{k: v.copy()}}); [g(k, v) "
             "for k, v "
-            "in s.loadmat({0}, simplify_cells=True).items()]; np.savez({5}, **a)",
+            "in s.loadmat({0}, simplify_cells=True).items()]; np.savez({7}, **a)",
             ".mat", "save it in MATLAB with save({0}, '-v7.3'), or "},
     // All images of readings and arrays of numbers, by their topics.
     Foreign{"\x89MCAP0\r\n", "an MCAP file",
@@ -54,7 +60,7 @@ constexpr std::array kForeign = {
             "x.data if hasattr(x, 'layout') else "
             "np.frombuffer(bytes(x.data), e[x.encoding]).reshape(x.height, -1)) "
             "for m in r({0}) for x in [m.ros_msg] "
-            "if hasattr(x, 'layout') or getattr(x, 'encoding', '') in e]; np.savez({5}, **d)",
+            "if hasattr(x, 'layout') or getattr(x, 'encoding', '') in e]; np.savez({7}, **d)",
             ".mcap",
             "record readings with stream --record FILE.h5, or pip install mcap-ros2-support and "},
     Foreign{"\x80", "a pickle of Python",
@@ -77,8 +83,7 @@ constexpr std::array kForeign = {
     Foreign{"II*", "a picture (TIFF)", kPages},
     Foreign{std::string_view("MM\0*", 4), "a picture (TIFF)", kPages},
     Foreign{"PAR1", "a table (Parquet)",
-            "import pandas as pd; "
-            "np.save({1}, pd.read_parquet({0}).select_dtypes('number').to_numpy())"},
+            "import pandas as pd; pd.read_parquet({0}).reset_index().to_csv({6}, index=False)"},
     Foreign{"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a workbook (XLS)", kWorkbook},
     Foreign{"\x1f\x8b", "compressed (gzip)",
             "import gzip; open({4}, 'wb').write(gzip.open({0}).read())"},
@@ -89,6 +94,16 @@ constexpr std::array kForeign = {
             "t = [e.text.replace(',', ' ').split() for e in et.parse({0}).iter() if e.text]; "
             "np.save({1}, np.array([w for w in t if len(w) > 3], float))"},
 };
+
+/// True if a line below the first has a quoted cell of four numbers or more.
+bool has_quoted_frames(std::string_view head) {
+  const std::size_t quote = head.find('"', std::min(head.find('\n'), head.size()));
+  if (quote == std::string_view::npos) return false;
+  const std::string_view cell = head.substr(quote + 1, head.find('"', quote + 1) - quote - 1);
+  return cell.find_first_not_of("0123456789.,-+eE[]() ") == std::string_view::npos &&
+         std::ranges::count_if(cell, [](char letter) { return letter == ',' || letter == ' '; }) >
+             2;
+}
 
 std::string quoted(const std::string& text) {
   return text.find_first_of("'\"\\$`!") == std::string::npos ? "'" + text + "'" : "'FILE'";
@@ -111,6 +126,8 @@ std::string python_line(std::string_view code, const std::filesystem::path& path
                      fmt::format(fmt::runtime(code), quoted(named.string()),
                                  quoted(named.stem().string() + ".npy"), quoted(folder.string()),
                                  quoted(alike.string()), quoted((folder / named.stem()).string()),
+                                 quoted(named.stem().string() + "_part.npy"),
+                                 quoted(named.stem().string() + ".csv"),
                                  quoted(named.stem().string() + ".npz")));
 }
 
@@ -130,6 +147,8 @@ void refuse_foreign(const std::filesystem::path& path, std::string_view head) {
       refuse_as(path, foreign.name, foreign.code, foreign.mend);
     }
   }
+  if (has_quoted_frames(head))
+    refuse_as(path, "a table with a frame in one quoted cell", kQuotedFrames);
 }
 
 void refuse_foreign_archive(const std::filesystem::path& path, bool is_workbook) {

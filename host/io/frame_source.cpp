@@ -11,6 +11,7 @@
 #include "io/file_kind.h"
 #include "io/hdf5/crash_guard.h"
 #include "io/hdf5/readers.h"
+#include "io/proposal.h"
 #include "pillarfield/error.h"
 #include "pillarfield/frame_stream.h"
 
@@ -30,7 +31,14 @@ std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
   if (detected.kind == FileKind::hdf5) {
     return read_hdf5_frames(hdf5::open_to_read(file, options.trust), options);
   }
-  if (detected.frames != nullptr) return detected.frames->open(path, options);
+  if (detected.frames != nullptr) {
+    const Opener open = [&](const ReadOptions& with) { return detected.frames->open(path, with); };
+    try {
+      return open(options);
+    } catch (const ProposingError& error) {
+      throw settled(error, open);
+    }
+  }
   if (path.extension() == ".toml") {
     throw Error(path.string(), "is a scene, and this needs frames",
                 fmt::format("simulate it first: pillarfield simulate {0} -o {1}.h5", path.string(),
@@ -62,11 +70,14 @@ void refuse_dataset(const std::filesystem::path& path, const ReadOptions& option
 }
 
 void refuse_layout(const std::filesystem::path& path, const ReadOptions& options) {
-  if (!options.frame_size && options.axes.empty() && options.columns.empty()) return;
+  if (!options.frame_size && options.axes.empty() && options.columns.empty() &&
+      options.where.empty())
+    return;
   throw Error(path.string(), "states the size and the axes of its frames",
-              options.frame_size     ? "leave out --shape"
-              : options.axes.empty() ? "leave out --columns"
-                                     : "leave out --axes");
+              options.frame_size         ? "leave out --shape"
+              : !options.axes.empty()    ? "leave out --axes"
+              : !options.columns.empty() ? "leave out --columns"
+                                         : "leave out --where");
 }
 
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,

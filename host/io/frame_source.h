@@ -42,7 +42,7 @@ void refuse_foreign(const std::filesystem::path& path, std::string_view head);
 
 /// "run python3 -c "..."", with names in quotes in `code`: {0} the file, {1} the .npy, {2} the
 /// file's folder, {3} a pattern of the files in it that end alike, {4} the file without its ending,
-/// {5} the .npz.
+/// {5} an .npy of a part, {6} a .csv, {7} an .npz.
 [[nodiscard]] std::string python_line(std::string_view code, const std::filesystem::path& path);
 
 /// Throws Error if the options name an array, for a file that has only one.

@@ -43,6 +43,7 @@ std::vector<std::string> given_file_options(const ReadOptions& options) {
                       {"--times", !options.times.empty()},
                       {"--shape", options.frame_size.has_value()},
                       {"--columns", !options.columns.empty()},
+                      {"--where", !options.where.empty()},
                       {"--axes", !options.axes.empty()},
                       {"--rate", options.rate_hz.has_value()},
                       {"--tare-frames", options.tare_frames > 0}});

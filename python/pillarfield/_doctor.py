@@ -5,15 +5,18 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy.typing as npt
 
 from . import _core
-from ._frames import Axes, Path, axis_words
+from ._frames import Axes, FileOptions, Path, is_files, is_table, refuse_unknown
 from ._picture import Image, png_of
 from ._recording import Recording, source_of
 from ._scene import Simulation
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,10 +68,11 @@ class Diagnosis:
 
 def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
            times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-           axes: Axes = "") -> Diagnosis:
+           axes: Axes = "", **file: Unpack[FileOptions]) -> Diagnosis:
     """Looks at frames of any pressure array, swept by a finger, and finds what is wrong with it.
 
     frames, axes: as of solve(), but no iterator
+    file: columns, dataset, frame_size and where, as of solve()
     times, rate_hz: of an array, or rate_hz of a file without times; without either there are no times
 
     Raises Error for fewer than 10 frames and for frames of NaN alone.
@@ -83,12 +87,12 @@ def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
     ('rises', [('stuck', [(6, 1)])])
     """
     name, timed = "frames", True
+    refuse_unknown("doctor", file, FileOptions.__annotations__)
     if isinstance(frames, (str, os.PathLike)):
         name = os.fspath(frames)
-        source = _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), untimed=rate_hz is None)
-    else:
+    elif not is_table(frames) and not is_files(frames):
         timed = isinstance(frames, (Recording, Simulation)) or times is not None or rate_hz is not None
-        source = source_of(frames, None, times, rate_hz, axes=axes)
+    source = source_of(frames, None, times, rate_hz, axes=axes, untimed=rate_hz is None, **file)
     text, pixels = _core.doctor(source, name, timed)
     facts = json.loads(text)
     findings = [ArrayFinding(each["fault"], each["text"], [(row, col) for row, col in each.get("sensels", [])],

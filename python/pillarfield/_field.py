@@ -165,6 +165,14 @@ class ForceField:
                                f"solve with outputs=['{output}']") from None
         return plane
 
+    def __getattr__(self, name: str) -> Any:
+        """Raises MissingError with a suggestion."""
+        if name.startswith("__") or hasattr(type(self), name):
+            return object.__getattribute__(self, name)
+        hint = "; did you mean 'picture'?" if name in ("plot", "show") else _core.suggestion(
+            name, [each for each in dir(type(self)) if each[0] != "_"])
+        raise MissingError("ForceField", f"it has no '{name}'{hint}")
+
     @property
     def has_pillars(self) -> bool:
         """False: each sensel is by itself, with normal force alone."""

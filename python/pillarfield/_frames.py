@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Iterable, Iterator
-from typing import Any, Optional, Union
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Optional, TypedDict, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,16 @@ Readings = npt.NDArray[Any]
 Path = Union[str, os.PathLike[str]]
 Axes = Union[str, Iterable[str]]
 Blocks = list[tuple[int, int, int, int]]
+
+
+class FileOptions(TypedDict, total=False):
+    """What pf.Recording() takes of plain data, at the doors that take frames (docs/python.md)."""
+
+    columns: str
+    dataset: str
+    frame_size: Optional[tuple[int, int]]
+    where: str
+
 
 _TYPES = (np.uint8, np.uint16, np.float32)
 
@@ -43,12 +53,27 @@ def is_files(frames: Any) -> bool:
     return isinstance(frames, (str, os.PathLike))
 
 
+def is_table(frames: Any) -> bool:
+    """Whether this is a DataFrame, as of pandas."""
+    return hasattr(frames, "to_csv") and hasattr(frames, "columns")
+
+
+def refuse_unknown(function: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raises TypeError for an argument that the function does not have, and suggests another."""
+    known = list(known)
+    for name in given:
+        if name not in known:
+            other = {"units": "readings", "unit": "readings", "shape": "frame_size"}.get(name, "")
+            hint = f"; did you mean '{other}'?" if other in known else _core.suggestion(name, known)
+            raise TypeError(f"{function}() has no argument '{name}'{hint}")
+
+
 def warn(sentences: Iterable[str]) -> None:
-    """Warns by each sentence, in the name of the line that called the package."""
+    """Warns by each sentence once, in the name of the line that called the package."""
     level, frame = 1, sys._getframe()
     while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
         level, frame = level + 1, frame.f_back
-    for sentence in sentences:
+    for sentence in dict.fromkeys(sentences):
         warnings.warn(sentence, stacklevel=level)
 
 
@@ -58,8 +83,11 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
     Whole numbers of other types become uint16 if they fit, else float32; other numbers float32.
     What a masked array masks is missing: NaN.
     """
+    if isinstance(frames, Mapping):
+        raise Error("frames", f"they are a {type(frames).__name__} of {', '.join(map(repr, frames)):.60}",
+                    "give one of its arrays")
     array = array_of(missing_as_nan(frames))
-    if array.dtype.kind not in "buif":
+    if array.dtype.kind not in "uif":
         raise Error("frames", f"their type is {array.dtype}", "give numbers")
     if kind is not None:
         wanted = np.dtype(kind)
@@ -67,7 +95,7 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
             _require_range(array, int(np.iinfo(wanted).max), kind)
     elif array.dtype.newbyteorder("=") in _TYPES:
         wanted = array.dtype.newbyteorder("=")
-    elif array.dtype.kind in "bui" and _lies_within(array, 65535):
+    elif array.dtype.kind in "ui" and _lies_within(array, 65535):
         wanted = np.dtype(np.uint16)
     else:
         wanted = np.dtype(np.float32)

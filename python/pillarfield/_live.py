@@ -41,6 +41,8 @@ class LiveSource(_core.LiveFrames):
     def __init__(self, source: str, *, skin: Optional[_core.Skin] = None,
                  serial_baud: int = 2_000_000, layout: str = "", pitch_mm: Pitch = None,
                  falling: bool = False, timeout: Optional[float] = None) -> None:
+        if timeout is not None and not timeout >= 0:
+            raise Error("timeout", f"it is {timeout}", "give seconds, or None to wait without end")
         super().__init__(source, skin, serial_baud, layout, pitch_mm, falling, timeout)
         warn(self.notes)
 

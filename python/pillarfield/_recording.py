@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Iterator, Sequence
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +13,12 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._field import ForceField
-from ._frames import (Axes, Path, Readings, axis_words, frames_first, is_files, range_of, readings_of, times_of,
-                      warn)
+from ._frames import (Axes, FileOptions, Path, Readings, axis_words, frames_first, is_files, is_table, range_of,
+                      readings_of, times_of, warn)
 from ._scene import Simulation
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Recording(_core.FrameSource):
@@ -28,6 +32,7 @@ class Recording(_core.FrameSource):
     dataset, times: names of the arrays of frames and times in an HDF5 file or .npz archive
     frame_size: (R, C) of frames that lie in one line of a table or array
     columns: those of a table that are readings, by name or number from 1 on: 'pressure_*', '2-97'
+    where: lines of a table that are read, those with this word in a column: 'side=L'
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
     axes: order of the axes of an array, such as 'rows,columns,frames'; by default frames first
@@ -43,11 +48,11 @@ class Recording(_core.FrameSource):
                  dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
                  tare_frames: int = 0, axes: Axes = "", layout: str = "",
-                 falling: bool = False, columns: str = "") -> None:
+                 falling: bool = False, columns: str = "", where: str = "") -> None:
         super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
             rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes),
-            layout=layout, falling=falling, columns=columns)
+            layout=layout, falling=falling, columns=columns, where=where)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -147,15 +152,24 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
 def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
               rate_hz: Optional[float] = None,
               calibration: Optional[_core.Calibration] = None,
-              axes: Axes = "", falling: bool = False) -> _core.FrameSource:
-    """Frames with random access from a path, an array, a Recording or a Simulation.
+              axes: Axes = "", falling: bool = False, untimed: bool = False,
+              **file: Unpack[FileOptions]) -> _core.FrameSource:
+    """Frames with random access from a path, an array, a DataFrame, a Recording or a Simulation.
 
-    axes: of an array, or that of a path.
+    axes: of an array, or that of a path. untimed, file: of a path or a DataFrame; of an array the frame_size.
     """
+    if is_table(frames):
+        return _source_of_table(frames, rate_hz=rate_hz, axes=axes, falling=falling, untimed=untimed, **file)
     if (is_files(frames) or isinstance(frames, Recording)) and times is not None:
         raise Error("times", "files have times of their own", "give times with an array")
     if is_files(frames):
-        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), falling=falling)
+        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), falling=falling,
+                                 untimed=untimed, **file)
+    is_array = not isinstance(frames, (Recording, Simulation))
+    for name, value in file.items():
+        if value and not (is_array and name == "frame_size"):
+            raise Error(name, "it is of a file or a DataFrame",
+                        "leave it out" if is_array else f"give {name} to pf.Recording()")
     if falling and isinstance(frames, (Recording, Simulation)):
         raise Error("falling", f"a {type(frames).__name__} has its readings already",
                     "give falling to pf.Recording()" if isinstance(frames, Recording) else "leave it out")
@@ -176,6 +190,14 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
         times = frames.times if times is None else times
         frames = frames.frames
     readings = readings_of(frames)
+    size = file.get("frame_size")
+    if size is not None:
+        if readings.ndim != 2 or readings.shape[1] != size[0] * size[1]:
+            raise Error("frames", f"the array has the shape {readings.shape}",
+                        f"give [frames, {size[0] * size[1]}], or leave out frame_size=")
+        readings = readings.reshape(-1, *size)
+    if readings.ndim > 3 or not (axes_are_known or size):
+        _core.require_frame_axes(readings)
     if readings.ndim not in (2, 3):
         raise Error("frames", f"the array has {readings.ndim} axes",
                     "give [rows, cols] for a frame, [frames, rows, cols] for several")
@@ -185,7 +207,21 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
         readings = readings.reshape(1, *readings.shape)
     return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
                                       skin_of(skin, readings.shape[-2:]), calibration,
-                                      axes_are_known, falling)
+                                      axes_are_known or size is not None, falling)
+
+
+def _source_of_table(frames: Any, *, axes: Axes, **options: Any) -> _core.FrameSource:
+    """A DataFrame by the rules of tables in files; its index counts if it has a name or times."""
+    names = [" ".join(map(str, name)) if isinstance(name, tuple) else str(name) for name in frames.columns]
+    is_dated = type(frames.index).__name__ == "DatetimeIndex"
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "frames.csv")
+        frames.to_csv(path, header=names, index=is_dated or frames.index.name is not None,
+                      index_label=frames.index.name or "time")
+        try:
+            return _core.FrameSource(path, axes=axis_words(axes), **options)
+        except Error as error:
+            raise Error("frames", error.failure, error.mend) from None
 
 
 def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:

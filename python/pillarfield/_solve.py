@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import ArgumentError, Error
 from ._field import ForceField
-from ._frames import Axes, Path, array_of, is_files, readings_of, timed, warn
+from ._frames import Axes, Path, array_of, is_files, is_table, readings_of, refuse_unknown, timed, warn
 from ._recording import ForceFile, Recording, skin_of, source_of
 from ._scene import Simulation
 from .calibrate import Step, tare
@@ -31,13 +31,14 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           skin: Optional[_core.Skin] = None,
           calibration: Union[_core.Calibration, Step, Path, None] = None, tare_frames: int = 0,
           times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-          axes: Axes = "", falling: bool = False, contacts: bool = False, device: str = "",
+          axes: Axes = "", falling: bool = False, columns: str = "", dataset: str = "",
+          frame_size: Optional[tuple[int, int]] = None, where: str = "", contacts: bool = False, device: str = "",
           **options: Unpack[_core.PlanOptions]) -> ForceField:
     """Solves frames of readings into forces.
 
     frames: path of a recording or Tekscan export, of a folder of files, or a list of paths, which are
         one source in order of names; readings, counts, [T, R, C] or [R, C]; an iterator
-        of arrays [R, C]; a Recording or a Simulation
+        of arrays [R, C]; a DataFrame of pandas, read as a table in a file; a Recording or a Simulation
     skin: constants of the skin; by default those of the file, or Skin() for arrays, without pillars
     calibration: replaces that of the file; a step of pf.calibrate holds one
     tare_frames: the first frames, at least 10, are of the unloaded skin: tare, noise and threshold are
@@ -47,6 +48,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     axes: order of the axes of an array, such as 'rows,columns,frames' or ('rows', 'columns'); by
         default frames, rows, columns, and an array that more likely has another order is refused
     falling: readings fall under load; they are mirrored, 255 or 65535 less the reading, or negated
+    columns, dataset, frame_size, where: of a file or a DataFrame, as of Recording(); frame_size also of an
+        array [T, R * C]
     contacts: find and track the contacts too
     device: 'host', 'opencl', or an OpenCL device by its index or a part of its name; '': the host for
         small skins, else the best of OpenCL
@@ -81,7 +84,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
                                device, settings)
     if isinstance(frames, (list, tuple)) and not is_files(frames):
         frames = array_of(frames)
-    source = source_of(frames, skin, times, rate_hz, axes=axes, falling=falling)
+    source = source_of(frames, skin, times, rate_hz, axes=axes, falling=falling, columns=columns,
+                       dataset=dataset, frame_size=frame_size, where=where)
     if not isinstance(tare_frames, numbers.Integral):
         raise ArgumentError("tare_frames", f"it is {tare_frames!r:.60}", "give a whole number of frames")
     if tare_frames:
@@ -100,7 +104,10 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           _constants_given(skin, calibration, settings))
     forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
                            device, settings)
-    return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+    if source.format == "array" and times is None and rate_hz is None and not settings.get("unrelated_frames"):
+        warn(_unrelated(forces.normal))
+    is_frame = getattr(frames, "ndim", 3) == 2 and frame_size is None and not is_table(frames)
+    return forces[0] if is_frame else forces
 
 
 def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 0, end: Optional[int] = None,
@@ -134,11 +141,25 @@ def solve_to_file(frames: Union[Path, Recording], output: Path, *, first: int = 
 
 def _known(options: Mapping[str, Any]) -> dict[str, Any]:
     """The options; raises TypeError for an unknown one, and suggests another."""
-    for name in options:
-        if name not in _core.plan_options:
-            known = [*inspect.signature(solve).parameters, *_core.plan_options]
-            raise TypeError(f"solve() has no argument '{name}'{_core.suggestion(name, known)}")
+    refuse_unknown("solve", options, [*_core.plan_options, *inspect.signature(solve).parameters])
     return dict(options)
+
+
+def _unrelated(normal: npt.NDArray[Any]) -> list[str]:
+    """A sentence if neighbouring frames have nothing in common: each has a small body, at other places."""
+    largest = normal.max(axis=(1, 2), initial=0)
+    touched = normal > np.maximum(largest / 2, 1e-9)[:, None, None]
+    # Noise is everywhere, a body in one place.
+    boxes = [touched.any(axis).cumsum(1).astype(bool) & touched.any(axis)[:, ::-1].cumsum(1).astype(bool)[:, ::-1]
+             for axis in (1, 2)]
+    area = boxes[0].mean(1) * boxes[1].mean(1)
+    is_body = (area > 0) & (area < 0.25) & (largest > 0.2 * largest.max(initial=0))
+    pairs = is_body[1:] & is_body[:-1]
+    shared = (touched[1:] & touched[:-1]).any(axis=(1, 2))[pairs]
+    if shared.size < 16 or shared.mean() > 0.6:
+        return []
+    return ["Neighbouring frames have nothing in common, as those of different pads; give unrelated_frames=True, so "
+            "that nothing is carried over from frame to frame, or times=."]
 
 
 def _calibration_of(given: Any) -> Optional[_core.Calibration]:
@@ -168,8 +189,8 @@ def _warn(sentences: Iterable[str], given: set[str]) -> None:
 
 
 def _is_iterator(frames: Any) -> TypeGuard[Iterable[Any]]:
-    return (isinstance(frames, Iterable) and not hasattr(frames, "__array__")
-            and not isinstance(frames, (str, list, tuple, os.PathLike, Simulation)))
+    return (isinstance(frames, Iterable) and not hasattr(frames, "__array__") and not is_table(frames)
+            and not isinstance(frames, (str, list, tuple, Mapping, os.PathLike, Simulation)))
 
 
 def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any, contacts: bool,

@@ -126,6 +126,8 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
   plain.text("--columns", options.columns, "LIST",
              "Columns of a table that are readings, by name or number: 'pressure_*', 2-97, 1-96:2 "
              "[all but times, row numbers, sums and labels]");
+  plain.text("--where", options.where, "COLUMN=WORD",
+             "Lines of a table that are read: those with this word in the column, side=L [all]");
   command
       ->add_option_function<std::string>(
           "--axes", [&](const std::string& text) { options.axes = axes_of(text); },

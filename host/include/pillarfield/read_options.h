@@ -32,8 +32,11 @@ struct ReadOptions {
   std::optional<FrameSize> frame_size = {};
   /// Columns of a table that are its readings, in their order in a frame: names, patterns with '*'
   /// and '?', numbers from 1 on and ranges of them, separated by commas: "pressure_*", "2-97",
-  /// "1-96:2". Empty: all whose names are no times, row numbers, sums, labels or other measures.
+  /// "1-96:2". The numbers in names order what rises, and what one part names. Empty: all whose
+  /// names are no times, row numbers, sums, labels or other measures.
   std::string columns = {};
+  /// Lines of a table that are read: those with this word in a column, "side=L". Empty: all.
+  std::string where = {};
   /// Order of the axes of an array of plain data. Empty: frames, rows, columns; an array that more
   /// likely has another order is refused (require_likely_axes()).
   std::vector<ArrayAxis> axes = {};

@@ -89,8 +89,8 @@ std::unique_ptr<NumberArray> open_dataset(const std::shared_ptr<const File>& ope
                 fmt::format("it has {}", fmt::join(list_datasets(file), ", ")));
   }
   const std::size_t dimensions = dimensions_of(open_object(file, path.c_str()));
-  if (dimensions < 1 || dimensions > 3) {
-    throw Error(file.path.string(), fmt::format("{} is not a dataset of 1 to 3 dimensions", path),
+  if (dimensions < 1 || dimensions > 5) {
+    throw Error(file.path.string(), fmt::format("{} is not a dataset of 1 to 5 dimensions", path),
                 "frames need the shape (frames, rows, columns)");
   }
   StoredFrames stored(file, path, dimensions - 1);

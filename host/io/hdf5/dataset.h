@@ -15,7 +15,7 @@ namespace pillarfield::hdf5 {
 /// HDF5's type of such numbers in memory.
 [[nodiscard]] hid_t memory_type_of(NumberType type);
 
-/// A dataset of 1 to 3 dimensions.
+/// A dataset of 1 to 5 dimensions.
 [[nodiscard]] std::unique_ptr<NumberArray> open_dataset(const std::shared_ptr<const File>& opened,
                                                         const std::string& name);
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/nearest_word.h"
+#include "base/npy.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 
@@ -87,6 +88,56 @@ std::optional<OtherAxes> axes_of_more_frames(const FrameSource& source) {
   return std::nullopt;
 }
 
+/// Three components along an axis, by what they do.
+struct AxisComponents {
+  std::optional<std::size_t> normal;  ///< differs most from its rest: friction bounds the shear
+  bool are_signed = false;
+};
+
+AxisComponents components_along(const std::vector<std::uint64_t>& shape, std::size_t axis,
+                                const SliceReader& read) {
+  constexpr std::uint64_t kMostValues = std::uint64_t{1} << 23U;
+  constexpr std::uint64_t kMostLooks = 64;
+  constexpr double kClearly = 1.3;
+  constexpr double kSigned = 0.03;
+  std::uint64_t inner = 1;  // of each component
+  std::uint64_t values = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) values *= shape[i];
+  for (std::size_t i = axis + 1; i < shape.size(); ++i) inner *= shape[i];
+  if (values == 0 || values > kMostValues) return {};
+  const std::uint64_t looks = std::clamp<std::uint64_t>(kMostValues / values, 3, kMostLooks);
+  std::vector<std::vector<double>> slices;
+  const std::uint64_t count = std::min(looks, shape[0]);
+  for (std::uint64_t look = 0; look < count; ++look) {
+    slices.push_back(read(look * shape[0] / count));
+  }
+  std::array<double, 3> activity = {};
+  double low = 0;
+  double high = 0;
+  std::vector<double> times(slices.size());
+  for (std::size_t i = 0; i < values; ++i) {
+    for (std::size_t t = 0; t < slices.size(); ++t) times[t] = slices[t][i];
+    std::ranges::nth_element(times, times.begin() + std::ssize(times) / 2);
+    const bool is_alone = axis == 0 || times.size() == 1;
+    const double rest = is_alone ? 0 : times[times.size() / 2];
+    for (std::size_t t = 0; t < slices.size(); ++t) {
+      const double change = slices[t][i] - rest;
+      if (!std::isfinite(change)) continue;
+      activity[axis == 0 ? t : i / inner % 3] += std::abs(change);
+      low = std::min(low, change);
+      high = std::max(high, change);
+    }
+  }
+  AxisComponents found = {.normal = {},
+                          .are_signed = std::min(-low, high) > kSigned * std::max(-low, high)};
+  const auto most = std::ranges::max_element(activity);
+  std::array<double, 3> sorted = activity;
+  std::ranges::sort(sorted);
+  if (sorted[2] > kClearly * sorted[1])
+    found.normal = static_cast<std::size_t>(most - activity.begin());
+  return found;
+}
+
 }  // namespace
 
 std::vector<ArrayAxis> parse_axes(std::string_view words) {
@@ -113,6 +164,44 @@ std::vector<ArrayAxis> parse_axes(std::string_view words) {
               "give frames, rows and columns in the order of the array");
 }
 
+void require_frame_axes(const std::vector<std::uint64_t>& shape, const SliceReader& read,
+                        const std::string& place,
+                        const std::function<std::string(const std::string& index)>& take) {
+  const std::size_t axes = shape.size();
+  if (axes < 3 || axes > 5) return;
+  const bool is_planes = axes == 3 && shape[0] == 3 && shape[1] > 3 && shape[2] > 3;
+  const bool is_last = shape.back() == 3;
+  const std::size_t first = is_planes ? 0 : axes - 3;
+  const bool has_components = is_last || (shape[first] == 3 && (axes > 3 || is_planes));
+  std::string what;
+  std::string component;
+  if (has_components) {
+    const std::size_t axis = is_last ? axes - 1 : first;
+    const AxisComponents found = components_along(shape, axis, read);
+    const bool is_small = axes == 3 && shape[1] < 4;
+    if ((is_planes || is_small) && !found.are_signed) return;
+    what = fmt::format("axis {} is of three components", axis);
+    component = found.normal ? std::to_string(*found.normal) : "K";
+  } else if (axes == 3) {
+    return;
+  }
+  const bool has_pads = axes == 5 || !has_components;
+  std::string index = is_last && has_components ? "[..., " + component + "]"
+                      : is_planes               ? "[" + component + "]"
+                                                : "[:, " + component + "]";
+  if (has_pads) {
+    what += fmt::format("{}axis 1 is of {} pads", what.empty() ? "" : ", ", shape[1]);
+    index = !has_components ? "[:, 0]"
+            : is_last       ? "[:, 0, ..., " + component + "]"
+                            : "[:, 0, " + component + "]";
+  }
+  throw Error(
+      place,
+      fmt::format("has the shape {}, and {}, which are no sensels", text_of_shape(shape), what),
+      fmt::format("{}{}{}", take(index), component == "K" ? ", with K of the normal one" : "",
+                  axes == 3 ? "; or name the axes, --axes 'frames,rows,columns'" : ""));
+}
+
 void require_likely_axes(FrameSource& frames, const std::string& place) {
   // In recordings of two pads and a mattress, of 10 to 400 frames, the product of both ratios is at
   // most 0.9 in the right order and 3.2 or more with frames last.
@@ -130,8 +219,7 @@ void require_likely_axes(FrameSource& frames, const std::string& place) {
       fmt::format("in the order frames,rows,columns it would be {} frames of {} x {}, which "
                   "is doubtful",
                   frames.frames(), frames.skin().rows, frames.skin().cols),
-      fmt::format("name its axes: --axes {} (in Python axes=), or frames,rows,columns if "
-                  "that is right",
+      fmt::format("name its axes: --axes '{}', or 'frames,rows,columns' if that is right",
                   other->words));
 }
 
@@ -143,8 +231,8 @@ void require_likely_frame(std::uint64_t rows, std::uint64_t cols, const std::str
       fmt::format("has {0} lines of {1} numbers; it is doubtful that it is one frame of {0} "
                   "x {1}",
                   rows, cols),
-      "if each line is a frame, give --shape ROWSxCOLS (in Python reshape it); if it is one "
-      "frame, --axes rows,columns (in Python axes=)");
+      "if each line is a frame, give --shape ROWSxCOLS; if it is one frame, --axes "
+      "'rows,columns'");
 }
 
 std::vector<std::string> size_warnings(std::uint32_t rows, std::uint32_t cols) {

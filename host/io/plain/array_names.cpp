@@ -31,11 +31,12 @@ void ArrayNames::refuse(const std::string& name, std::string why) {
 
 std::size_t ArrayNames::array_of_frames(const std::string& name) const {
   if (!name.empty()) return require(name);
-  for (const std::size_t dimensions : {3U, 2U}) {
+  for (const bool is_deep : {true, false}) {
     std::size_t found = 0;
     std::vector<std::string> names;
     for (std::size_t index = 0; index < arrays_.size(); ++index) {
-      if (arrays_[index].dimensions != dimensions) continue;
+      const std::size_t dimensions = arrays_[index].dimensions;
+      if (is_deep ? dimensions < 3 : dimensions != 2) continue;
       found = index;
       names.push_back(arrays_[index].name);
     }

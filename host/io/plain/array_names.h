@@ -19,8 +19,8 @@ class ArrayNames {
   /// An array that is not read, and why.
   void refuse(const std::string& name, std::string why);
 
-  /// The named array, or the only one of three dimensions, or of two if none has three. Throws
-  /// Error, naming the arrays, if there is no such array.
+  /// The named array, or the only one of three dimensions or more, or of two if none has three.
+  /// Throws Error, naming the arrays, if there is no such array.
   [[nodiscard]] std::size_t array_of_frames(const std::string& name) const;
 
   /// The named array, or `time` if the name is empty; unset if there is no `time`. Throws Error if

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/number_type.h"
+#include "io/frame_source.h"
 #include "io/hdf5/stored_frames.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
@@ -25,6 +27,7 @@ class ArraySource final : public FileSource {
   [[nodiscard]] std::vector<std::string> notes() const override;
 
  private:
+  void require_frame_axes();
   void take_shape(const ReadOptions& options);
   void take_as_frame();
   void take_lines(const FrameSize& size);
@@ -42,8 +45,9 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
     : FileSource(path, std::move(format)),
       array_(std::move(readings)),
       times_s_(std::move(times_s)) {
-  if (!options.columns.empty()) {
-    throw Error(array_->place(), "is not a table of columns", "leave out --columns");
+  if (!options.columns.empty() || !options.where.empty()) {
+    throw Error(array_->place(), "is not a table of columns",
+                options.where.empty() ? "leave out --columns" : "leave out --where");
   }
   type_ = sensel_type_for(array_->type());
   take_shape(options);
@@ -65,7 +69,33 @@ ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
   warn_of_size();
 }
 
+/// Throws Error for an array that has axes of components or pads; its mend saves one of frames.
+void ArraySource::require_frame_axes() {
+  const std::string name =
+      array_->place().substr(std::min(array_->place().size(), path_.string().size() + 2));
+  const std::string item = name.empty() ? "" : "['" + name + "']";
+  const auto read = [&](std::uint64_t index) {
+    const hdf5::QuietErrors quiet;
+    std::vector<std::byte> numbers(array_->slice_bytes());
+    array_->read(index, 1, numbers.data());
+    return doubles_of(array_->type(), numbers);
+  };
+  const auto take = [&](const std::string& index) {
+    const bool is_hdf5 = format_ == "HDF5 dataset";
+    const std::string line = python_line(
+        (is_hdf5 ? "import h5py; np.save({5}, h5py.File({0})" : "np.save({5}, np.load({0})") +
+            item + index + ")",
+        path_);
+    return line + (array_->shape().size() == 3 && array_->shape()[0] != 3
+                       ? ", and give its file with --shape ROWSxCOLS"
+                       : ", and give its file");
+  };
+  pillarfield::require_frame_axes(array_->shape(), read, array_->place(), take);
+}
+
 void ArraySource::take_shape(const ReadOptions& options) {
+  const bool is_known = !options.axes.empty() || options.frame_size;
+  if (!is_known || array_->shape().size() > 3) require_frame_axes();
   if (!options.axes.empty()) array_ = in_order_of_frames(std::move(array_), options.axes);
   const std::vector<std::uint64_t>& shape = array_->shape();
   const auto& size = options.frame_size;

@@ -7,13 +7,14 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "base/nearest_word.h"
+#include "io/plain/column_names.h"
 #include "io/plain/text_cells.h"
+#include "io/proposal.h"
 #include "io/units.h"
 #include "pillarfield/error.h"
 
@@ -82,103 +83,76 @@ bool count_columns(std::span<const std::string> cells) {
   return cells.size() > 1;
 }
 
-/// A name with '*' in place of its numbers.
-std::string kind_of(std::string_view name) {
-  std::string kind;
-  for (const char letter : name) {
-    const bool is_digit = kDigits.find(letter) != std::string_view::npos;
-    if (!is_digit) kind += letter;
-    if (is_digit && !kind.ends_with('*')) kind += '*';
-  }
-  return kind;
+/// Ways on that take one kind of columns each.
+Proposal proposal_of(std::span<const std::string> header, const ColumnKind& kind,
+                     const ReadOptions& options) {
+  const std::string choice = choice_of(header, kind);
+  ReadOptions chosen = options;
+  chosen.columns = choice;
+  const bool is_open = !stated_size(kinds_of(header, kind.columns));
+  return {fmt::format("--columns '{}'", choice), chosen, is_open ? kind.columns.size() : 0};
 }
 
-/// A name with its axis replaced, "p3_y" by "p3_#", and the axis; NUL if it names none.
-std::pair<std::string, char> axis_of(std::string name) {
-  const auto is_letter = [&](std::size_t at) {
-    return at < name.size() && std::isalpha(static_cast<unsigned char>(name[at])) != 0;
-  };
-  for (std::size_t i = name.size(); i-- > 0;) {
-    const auto axis = static_cast<char>(std::tolower(static_cast<unsigned char>(name[i])));
-    const bool is_of_force = i > 0 && (name[i - 1] == 'f' || name[i - 1] == 'F');
-    const std::size_t before = is_of_force ? i - 2 : i - 1;  // Wraps to no letter.
-    if (axis < 'x' || axis > 'z' || is_letter(i + 1) || is_letter(before)) continue;
-    name[i] = '#';
-    return {name, axis};
-  }
-  return {name, '\0'};
-}
-
-/// Refuses taxels with three components.
-void refuse_components(std::span<const std::string> header, const TableColumns& columns,
-                       const std::string& place) {
-  std::map<std::string, std::map<char, std::string>> taxels;
-  for (const std::size_t column : columns.readings) {
-    auto [taxel, axis] = axis_of(header[column]);
-    if (axis != '\0') taxels[std::move(taxel)][axis] = header[column];
-  }
-  std::erase_if(taxels, [](const auto& taxel) { return taxel.second.size() < 3; });
-  if (taxels.empty() || 6 * taxels.size() < columns.readings.size()) return;
-  const auto& first = taxels.begin()->second;
-  throw Error(place,
-              fmt::format("has three components for each taxel, '{}', '{}', '{}', which need no "
-                          "solver",
-                          first.at('x'), first.at('y'), first.at('z')),
-              fmt::format("read the normal ones alone with --columns '{}' (in Python columns=)",
-                          kind_of(first.at('z'))));
-}
-
-/// Refuses names of several kinds in unlike numbers, such as 12 pressures and a setting.
-void refuse_kinds(std::span<const std::string> header, const TableColumns& columns,
-                  const std::string& place) {
-  std::map<std::string, std::size_t> kinds;
-  for (const std::size_t column : columns.readings) ++kinds[kind_of(header[column])];
-  std::size_t most = 0;
-  std::string largest;
+std::string list_of(const std::vector<ColumnKind>& kinds) {
+  constexpr std::size_t kMostListed = 12;
   std::vector<std::string> list;
-  for (const auto& [kind, count] : kinds) {
-    list.push_back(fmt::format("{} ({})", kind, count));
-    if (count > most) largest = kind;
-    most = std::max(most, count);
+  for (const ColumnKind& kind : kinds) {
+    list.push_back(fmt::format("{} ({})", kind.pattern, kind.columns.size()));
   }
-  const auto has_most = [&](const auto& kind) { return kind.second == most; };
-  if (most < 4 || std::ranges::all_of(kinds, has_most)) return;
-  if (list.size() > 12) list = {list.begin(), list.begin() + 12};
-  throw Error(
-      place, fmt::format("has columns of several kinds: {}", fmt::join(list, ", ")),
-      fmt::format("choose the readings, such as --columns '{}' (in Python columns=)", largest));
+  if (list.size() > kMostListed) list.resize(kMostListed);
+  return fmt::format("{}", fmt::join(list, ", "));
 }
 
-/// Rows of columns whose numbers begin again: 2 x 16 of "R_ch0" to "R_ch15", "L_ch0" to "L_ch15".
-std::optional<FrameSize> size_by_numbers(std::span<const std::string> header,
-                                         const std::vector<std::size_t>& columns) {
-  std::vector<std::string> numbers;
-  for (const std::size_t column : columns) {
-    std::string_view name = header[column];
-    name.remove_suffix(name.size() - 1 - std::min(name.find_last_of(kDigits), name.size() - 1));
-    numbers.emplace_back(name.substr(name.find_last_not_of(kDigits) + 1));
-  }
-  const auto again = std::find(numbers.begin() + 1, numbers.end(), numbers.front());
-  const auto cols = static_cast<std::size_t>(again - numbers.begin());
-  if (numbers.front().empty() || cols < 2 || numbers.size() % cols != 0) return std::nullopt;
-  for (std::size_t i = cols; i < numbers.size(); ++i) {
-    if (numbers[i] != numbers[i - cols]) return std::nullopt;
-  }
-  if (numbers.size() == cols) return std::nullopt;
-  return FrameSize{static_cast<std::uint32_t>(numbers.size() / cols),
-                   static_cast<std::uint32_t>(cols)};
+/// The kind of readings: the most columns, and the only ones with the name of readings; null if
+/// it is not certain.
+const ColumnKind* likely_readings(const std::vector<ColumnKind>& kinds) {
+  const auto is_named = [](const ColumnKind& kind) {
+    return kind.columns.size() > 1 && (kind.states_places || names_readings(kind.pattern));
+  };
+  const auto& most = *std::ranges::max_element(
+      kinds, {}, [](const ColumnKind& kind) { return kind.columns.size(); });
+  return std::ranges::count_if(kinds, is_named) == 1 && is_named(most) ? &most : nullptr;
 }
 
-/// True if a name fits a pattern with '*' for any letters and '?' for one.
-bool fits_pattern(std::string_view name, std::string_view pattern) {
-  if (pattern.empty()) return name.empty();
-  if (pattern[0] != '*')
-    return !name.empty() && (pattern[0] == '?' || pattern[0] == name[0]) &&
-           fits_pattern(name.substr(1), pattern.substr(1));
-  for (std::size_t skipped = 0; skipped <= name.size(); ++skipped) {
-    if (fits_pattern(name.substr(skipped), pattern.substr(1))) return true;
+/// Refuses taxels with three components, unless other columns are more.
+void refuse_components(std::span<const std::string> header, const std::vector<Components>& all,
+                       std::size_t others, const ReadOptions& options, const std::string& place) {
+  const auto taxels = [](const Components& each) { return each.z.columns.size(); };
+  const auto most = std::ranges::max_element(all, {}, taxels);
+  if (most == all.end() || taxels(*most) < others) return;
+  std::vector<Proposal> proposals;
+  std::vector<std::string> choices;
+  const Components* shown = &*most;
+  for (const Components& each : all) {
+    choices.push_back(choice_of(header, each.z));
+    if (all.size() > 1 && !(each.is_force && taxels(each) == taxels(*most))) continue;
+    proposals.push_back(proposal_of(header, each.z, options));
+    shown = &each;
   }
-  return false;
+  if (proposals.size() > 1) proposals.clear();
+  throw ProposingError(
+      place,
+      fmt::format("has three components for each taxel, '{}', '{}', '{}', which are no readings "
+                  "of sensels",
+                  header[shown->x.columns[0]], header[shown->y.columns[0]],
+                  header[shown->z.columns[0]]),
+      fmt::format("choose the normal ones with --columns, among '{}'",
+                  fmt::join(choices, "' and '")),
+      "read the normal ones alone with", proposals);
+}
+
+/// Refuses names of several kinds, such as 12 pressures and a setting, or two pads.
+void refuse_kinds(std::span<const std::string> header, const std::vector<ColumnKind>& kinds,
+                  bool has_components, const ReadOptions& options, const std::string& place) {
+  const auto is_one = [](const ColumnKind& kind) { return kind.columns.size() == 1; };
+  if (kinds.size() < 2 || are_rows(kinds)) return;
+  if (std::ranges::all_of(kinds, is_one) && !has_components) return;
+  std::vector<Proposal> proposals;
+  if (const ColumnKind* const likely = likely_readings(kinds))
+    proposals.push_back(proposal_of(header, *likely, options));
+  throw ProposingError(place, fmt::format("has columns of several kinds: {}", list_of(kinds)),
+                       "choose the readings with --columns", "choose the readings with",
+                       std::move(proposals));
 }
 
 /// The columns that a part of ReadOptions::columns names: "3", "1-96", "1-96:2" or a pattern.
@@ -192,7 +166,7 @@ std::vector<std::size_t> columns_named(const std::string& part, std::span<const 
     if (!chosen.empty()) return chosen;
     if (header.empty()) {
       throw Error(place, fmt::format("no line names columns, so none is '{:.60}'", part),
-                  "choose by number, such as --columns 2-25");
+                  "choose by number, --columns FIRST-LAST");
     }
     throw Error(place,
                 fmt::format("no column is named '{:.60}'{}", part,
@@ -211,28 +185,36 @@ std::vector<std::size_t> columns_named(const std::string& part, std::span<const 
   }
   if (!is_range || at != end || range[0] < 1 || range[1] < range[0] || range[1] > count ||
       range[2] < 1) {
-    throw Error(
-        place, fmt::format("has {} columns and none of --columns '{:.60}'", count, part),
-        fmt::format("give numbers from 1 to {}, such as 1-{} or 1-{}:2", count, count, count));
+    throw Error(place, fmt::format("has {} columns and none of --columns '{:.60}'", count, part),
+                fmt::format("give numbers from 1 to {}", count));
   }
   for (std::size_t i = range[0]; i <= range[1]; i += range[2]) chosen.push_back(i - 1);
   return chosen;
 }
 
-/// Takes the columns that the options name, in their order; a time stays one.
+/// Takes the columns that the options name; a time stays one. Numbers in names order what rises,
+/// and what one part names.
 void take_chosen(TableColumns& columns, std::span<const std::string> header, std::size_t count,
                  const std::string& choice, const std::string& place) {
   columns.readings.clear();
   columns.left_out.clear();
+  std::vector<bool> is_known(count);
+  std::vector<std::size_t> in_parts;
   for (std::size_t at = 0; at <= choice.size();) {
     const std::size_t end = std::min(choice.find(',', at), choice.size());
     const std::string part(without_blanks(std::string_view(choice).substr(at, end - at)));
+    std::vector<std::size_t> chosen;
     for (const std::size_t column : columns_named(part, header, count, place)) {
-      const bool is_known = std::ranges::find(columns.readings, column) != columns.readings.end();
-      if (!is_known && column != columns.time) columns.readings.push_back(column);
+      if (!is_known[column] && column != columns.time) chosen.push_back(column);
+      is_known[column] = true;
     }
+    columns.readings.insert(columns.readings.end(), chosen.begin(), chosen.end());
+    if (!header.empty()) chosen = in_order(kinds_of(header, chosen), std::nullopt);
+    in_parts.insert(in_parts.end(), chosen.begin(), chosen.end());
     at = end + 1;
   }
+  columns.keeps_order = !std::ranges::is_sorted(columns.readings);
+  if (columns.keeps_order) columns.readings = std::move(in_parts);
 }
 
 }  // namespace
@@ -294,6 +276,46 @@ TableColumns sorted_columns(std::span<const std::string> header, std::span<const
 
 }  // namespace
 
+namespace {
+
+/// "L_*', 'R_*", in the order of the rows.
+std::string rows_of(const std::vector<ColumnKind>& kinds) {
+  std::vector<std::string> patterns;
+  for (const ColumnKind& kind : kinds) patterns.push_back(kind.pattern);
+  return fmt::format("{}", fmt::join(patterns, "', '"));
+}
+
+/// Puts the columns in the order of their names, with the size that these state.
+void take_order(TableColumns& found, std::span<const std::string> header,
+                const std::vector<ColumnKind>& kinds, const ReadOptions& options) {
+  const auto& given = options.frame_size;
+  const auto stated = stated_size(kinds);
+  const bool is_taken = stated && options.axes.empty() &&
+                        (!given || (given->rows == stated->rows && given->cols == stated->cols));
+  std::vector<std::size_t> ordered = in_order(kinds, is_taken ? stated : std::nullopt);
+  if (is_taken && !given) {
+    found.size = stated;
+    found.notes.push_back(fmt::format(
+        "The names of the columns state frames of {} x {}, rows of '{}'; --shape gives another.",
+        stated->rows, stated->cols, rows_of(kinds)));
+  }
+  const auto missing = std::ranges::count(ordered, kNoColumn);
+  if (missing > 0) {
+    found.notes.push_back(
+        fmt::format("{} of {} places have no column and are missing.", missing, ordered.size()));
+  }
+  std::vector<std::size_t> present = ordered;
+  std::erase(present, kNoColumn);
+  if (!std::ranges::is_sorted(present)) {
+    found.notes.push_back(
+        fmt::format("The numbers in the names of the columns are their order, '{}' before '{}'.",
+                    header[present[0]], header[present[1]]));
+  }
+  found.readings = std::move(ordered);
+}
+
+}  // namespace
+
 TableColumns choose_columns(std::span<const std::string> header, std::span<const std::string> first,
                             char separator, const ReadOptions& options, const std::string& place) {
   TableColumns found = sorted_columns(header, first, separator);
@@ -301,17 +323,22 @@ TableColumns choose_columns(std::span<const std::string> header, std::span<const
   if (found.readings.empty()) {
     throw Error(place, "has no column of readings", "choose them with --columns");
   }
-  if (header.empty() || long_columns(header, found, place)) return found;
-  refuse_components(header, found, place);
-  if (found.readings.size() > 1) found.size = size_by_numbers(header, found.readings);
-  const auto& size = options.frame_size;
-  const bool is_counted = size && found.readings.size() == std::size_t{size->rows} * size->cols;
-  if (options.columns.empty() && !is_counted) refuse_kinds(header, found, place);
+  if (header.empty() || long_columns(header, found, options, place)) return found;
+  const std::vector<ColumnKind> kinds = kinds_of(header, found.readings);
+  std::vector<ColumnKind> others;
+  const std::vector<Components> components = components_of(kinds, others);
+  std::size_t most = static_cast<std::size_t>(std::ranges::count_if(
+      others, [](const ColumnKind& kind) { return kind.columns.size() == 1; }));
+  for (const ColumnKind& kind : others) most = std::max(most, kind.columns.size());
+  refuse_components(header, components, most, options, place);
+  if (options.columns.empty()) refuse_kinds(header, kinds, !components.empty(), options, place);
+  if (!found.keeps_order) take_order(found, header, kinds, options);
   return found;
 }
 
 std::optional<LongColumns> long_columns(std::span<const std::string> header,
-                                        const TableColumns& columns, const std::string& place) {
+                                        const TableColumns& columns, const ReadOptions& options,
+                                        const std::string& place) {
   const NameWords rows = {"row", "rows", "r", "y", "i"};
   const NameWords cols = {"column", "columns", "col", "cols", "c", "x", "j"};
   const NameWords frames = {"frame", "frames", "sample", "index", "scan", "picture"};
@@ -328,20 +355,29 @@ std::optional<LongColumns> long_columns(std::span<const std::string> header,
     if (!found.frame && frames.contains(words[0])) found.frame = i;
   }
   if (!row || !col) return std::nullopt;
-  std::size_t values = 0;
+  ColumnKind values;
   for (const std::size_t column : columns.readings) {
-    if (column == *row || column == *col) continue;
-    found.value = column;
-    ++values;
+    if (column != *row && column != *col) values.columns.push_back(column);
   }
+  if (!values.columns.empty()) found.value = values.columns.back();
   if (!found.frame) found.frame = columns.time;
   found.row = *row;
   found.col = *col;
-  if (is_named && values > 1) {
-    throw Error(place, fmt::format("has rows, columns and {} readings in each line", values),
-                fmt::format("choose one, such as --columns '{}'", header[found.value]));
+  if (is_named && values.columns.size() > 1) {
+    const auto kinds = kinds_of(header, values.columns);
+    std::vector<Proposal> proposals;
+    const auto is_force = [](const ColumnKind& kind) { return names_readings(kind.pattern); };
+    const auto force = std::ranges::find_if(kinds, is_force);
+    if (std::ranges::count_if(kinds, is_force) == 1) {
+      proposals.push_back(proposal_of(header, *force, options));
+      proposals.back().readings = 0;
+    }
+    throw ProposingError(place,
+                         fmt::format("has rows, columns and {} readings in each line: {}",
+                                     values.columns.size(), list_of(kinds)),
+                         "choose one with --columns", "choose one, as with", std::move(proposals));
   }
-  return values == 1 ? std::optional(found) : std::nullopt;
+  return values.columns.size() == 1 ? std::optional(found) : std::nullopt;
 }
 
 double likely_unit_s(double time) {

@@ -13,12 +13,13 @@ namespace pillarfield {
 
 /// Columns of a table that are its readings and its times. Indices count from 0.
 struct TableColumns {
-  std::vector<std::size_t> readings;  ///< in their order in a frame
+  std::vector<std::size_t> readings;  ///< in their order in a frame; kNoColumn: none is there
   std::optional<std::size_t> time;
   double time_unit_s = 0;             ///< 0 if the name states none
   std::vector<std::string> left_out;  ///< names of columns that are no readings
-  /// Size of a frame in a line whose columns are numbered alike in each row, "R_ch0" to "L_ch15".
-  std::optional<FrameSize> size;
+  std::optional<FrameSize> size;      ///< of a frame in a line, if the names state it
+  std::vector<std::string> notes;     ///< about order and size, sentences
+  bool keeps_order = false;           ///< the options put the columns in an order of their own
 };
 
 /// Columns of a table with one reading a line.
@@ -38,7 +39,8 @@ struct LongColumns {
 ///
 /// A time has its name, as "time", "timestamp" or "epoch", also with a unit, or is a date or a time
 /// of day. Row numbers, sums, labels, states and other measures are no readings unless the options
-/// choose them. Throws Error, naming `place`, if the options choose nothing, if taxels have three
+/// choose them. Numbers in names are the order of the readings, and rows and columns in them their
+/// places. Throws Error, naming `place`, if the options choose nothing, if taxels have three
 /// components, or if the names are of several kinds and nothing chooses among them.
 [[nodiscard]] TableColumns choose_columns(std::span<const std::string> header,
                                           std::span<const std::string> first, char separator,
@@ -53,6 +55,7 @@ struct LongColumns {
 /// the table is none. Throws Error, naming `place`, if it has several readings.
 [[nodiscard]] std::optional<LongColumns> long_columns(std::span<const std::string> header,
                                                       const TableColumns& columns,
+                                                      const ReadOptions& options,
                                                       const std::string& place);
 
 /// The unit of times whose column states none: seconds, or where these would lie beyond the year

@@ -9,8 +9,11 @@
 #include <limits>
 #include <utility>
 
+#include "io/plain/column_names.h"
+#include "io/plain/line_choice.h"
 #include "io/plain/table_columns.h"
 #include "io/plain/text_cells.h"
+#include "io/proposal.h"
 #include "io/tekscan/line_reader.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
@@ -32,7 +35,10 @@ class TableParser {
  public:
   TableParser(const std::filesystem::path& path, const ReadOptions& options,
               std::uint64_t header_line)
-      : reader_(path, "save it as .npy"), options_(options), header_line_(header_line) {
+      : path_(path),
+        reader_(path, "save it as .npy"),
+        options_(options),
+        header_line_(header_line) {
     table_.size = options.frame_size;
   }
 
@@ -54,6 +60,7 @@ class TableParser {
     }
     if (held_) take_held();
     end_block();
+    if (lines_) lines_->check(reader_.place());
     if (!entries_.empty()) sort_entries();
     return std::move(table_);
   }
@@ -132,7 +139,7 @@ class TableParser {
       throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
                   fmt::format("lines before it have {}", line_cells_));
     }
-    append();
+    if (lines_->takes(cells_)) append();
   }
 
   /// True if a line of words or of another table follows, as after the frames of an export.
@@ -180,7 +187,8 @@ class TableParser {
           "the table without a header.");
     }
     columns_ = choose_columns(header_, cells_, separator_, options_, reader_.place());
-    long_columns_ = long_columns(header_, columns_, reader_.place());
+    lines_.emplace(options_, header_, cells_.size(), columns_, reader_.place());
+    long_columns_ = long_columns(header_, columns_, options_, reader_.place());
     for (const std::size_t column : columns_.readings) {
       if (column < header_.size()) add_unit(header_[column]);
     }
@@ -192,25 +200,21 @@ class TableParser {
     table_.cells = columns_.readings.size();
     table_.time_unit_s = columns_.time_unit_s;
     if (long_columns_) return;
-    if (!table_.size && columns_.size && options_.axes.empty()) {
-      table_.size = columns_.size;
-      table_.notes.push_back(fmt::format(
-          "Columns are numbered alike in {} rows of {}, which is taken as the size of a frame; "
-          "--shape gives another.",
-          columns_.size->rows, columns_.size->cols));
-    }
+    if (!table_.size) table_.size = columns_.size;
+    table_.notes.insert(table_.notes.end(), columns_.notes.begin(), columns_.notes.end());
     const auto& size = table_.size;
     const std::size_t sensels = size ? std::size_t{size->rows} * size->cols : 0;
     if (!size || table_.cells == sensels || table_.cells == size->cols) return;
-    throw Error(reader_.place(),
-                fmt::format("has {} numbers, {} of them readings", line_cells_, table_.cells),
-                fmt::format("a frame of {} x {} needs {}, or rows of {}; {}", size->rows,
-                            size->cols, sensels, size->cols,
-                            line_cells_ > sensels
-                                ? fmt::format("choose them with --columns, such as {}-{}, and name "
-                                              "a column of times 'time'",
-                                              line_cells_ - sensels + 1, line_cells_)
-                                : "give the --shape of one frame"));
+    const std::string needs = fmt::format("a frame of {} x {} needs {}, or rows of {}; ",
+                                          size->rows, size->cols, sensels, size->cols);
+    throw ProposingError(
+        reader_.place(),
+        fmt::format("has {} numbers, {} of them readings", line_cells_, table_.cells),
+        needs + (line_cells_ > sensels ? "choose them with --columns, and name a column of times "
+                                         "'time'"
+                                       : "give the --shape of one frame"),
+        needs + "choose them with",
+        proposals_by_cells(path_, separator_, line_cells_, sensels, options_));
   }
 
   /// Takes the unit of pressure in a name of readings, as "left pressure 1[N/cm²]" or "p3 (kPa)".
@@ -233,7 +237,7 @@ class TableParser {
     if (columns_.time) table_.times.push_back(time);
     for (const std::size_t column : columns_.readings) {
       constexpr double kMost = std::numeric_limits<float>::max();
-      const double number = number_in(column);
+      const double number = column == kNoColumn ? NAN : number_in(column);
       const bool is_missing = !(std::abs(number) <= kMost);
       table_.readings.push_back(is_missing ? std::numeric_limits<float>::quiet_NaN()
                                            : static_cast<float>(number));
@@ -342,9 +346,11 @@ class TableParser {
     block_rows_ = 0;
   }
 
+  const std::filesystem::path& path_;
   LineReader reader_;
   const ReadOptions& options_;
   std::uint64_t header_line_;
+  std::optional<LineChoice> lines_;
   Table table_;
   char separator_ = '\0';
   std::string comment_;  // the last one

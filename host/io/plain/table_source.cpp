@@ -52,14 +52,6 @@ std::vector<std::byte> bytes_of_readings(const std::vector<float>& readings) {
   return bytes;
 }
 
-/// Two factors of a number, nearest to a square, as an example of a size.
-std::string example_of_size(std::size_t count) {
-  auto rows = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
-  while (rows > 1 && count % rows != 0) --rows;
-  return rows > 1 ? fmt::format("such as {}x{}", rows, count / rows)
-                  : "and choose as many columns with --columns";
-}
-
 /// The array that the lines of a table form.
 std::vector<std::uint64_t> shape_of(const Table& table, const std::filesystem::path& path) {
   if (table.lines == 0) throw Error(path.string(), "holds no numbers", "give a table of readings");
@@ -68,8 +60,7 @@ std::vector<std::uint64_t> shape_of(const Table& table, const std::filesystem::p
     if (table.blocks == 1 && !table.times.empty()) {
       throw Error(path.string(),
                   fmt::format("has a time in each line and {} readings", table.cells),
-                  fmt::format("give the size of a frame, --shape ROWSxCOLS, {}",
-                              example_of_size(table.cells)));
+                  "give the size of a frame, --shape ROWSxCOLS");
     }
     if (table.blocks == 1) return {table.lines, table.cells};
     return {table.blocks, table.rows, table.cells};
@@ -189,6 +180,7 @@ std::unique_ptr<FileSource> open_table_after(const std::filesystem::path& path,
   std::vector<std::uint64_t> shape = shape_of(table, path);
   ReadOptions known = options;
   known.columns.clear();
+  known.where.clear();
   known.frame_size = table.size;
   if (const auto newtons =
           table.words.newtons_per_cell(std::nullopt, known, table.notes, path.string())) {

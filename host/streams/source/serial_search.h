@@ -13,8 +13,13 @@
 namespace pillarfield {
 
 /// Distance of the marks of FlexiTac frames, bytes: the shortest at which marks follow each other
-/// from one of the first on to the end of the bytes, five at least. Unset without.
+/// from one of the first on to the end of the bytes, eight at least. Unset without, and for other
+/// boards whose frames begin alike: their head goes on, or their readings are no multiple of four.
 [[nodiscard]] std::optional<std::size_t> mark_distance(std::span<const std::byte> bytes);
+
+/// The bytes of an unknown board in words: lines of text, or frames and their head if they repeat.
+/// Empty for others.
+[[nodiscard]] std::string words_on_bytes(std::span<const std::byte> bytes);
 
 /// Rows and columns of `readings`: of all sizes the nearest to a square, with no more rows than
 /// columns. Unset if there is none of two rows.

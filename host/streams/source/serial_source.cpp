@@ -198,16 +198,24 @@ class SerialSource final : public PacketSource {
   void leave();
 
   std::string device_;
+  static constexpr std::size_t kMostHeard = 1 << 14;
+
   std::unique_ptr<ByteParser> parser_;
   std::uint32_t baud_;
   int descriptor_;
+  std::vector<std::byte> heard_;  ///< the first bytes, for complaint()
 };
 
 std::string SerialSource::complaint() const {
   std::string words = parser_->complaint();
   if (!words.ends_with("no packet")) return words;
-  return fmt::format("{}: a FlexiTac board? 'serial:{}?protocol=flexitac&rows=ROWS&cols=COLS'",
-                     words, printable(device_));
+  if (const auto distance = mark_distance(heard_)) {
+    return fmt::format(
+        "{}: a FlexiTac board of {} readings? 'serial:{}?protocol=flexitac&rows=ROWS&cols=COLS'",
+        words, *distance - FlexitacParser::kMarkBytes, printable(device_));
+  }
+  const std::string sent = words_on_bytes(heard_);
+  return sent.empty() ? words : fmt::format("{}: it sends {}", words, sent);
 }
 
 void SerialSource::leave() {
@@ -231,6 +239,10 @@ Arrival SerialSource::receive(Packet& packet, std::chrono::nanoseconds timeout) 
       std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(timeout, 50ms));
     }
     if (read.bytes == 0) return Arrival::timed_out;
+    if (heard_.size() < kMostHeard) {
+      const auto bytes = parser_->space().first(read.bytes);
+      heard_.insert(heard_.end(), bytes.begin(), bytes.end());
+    }
     parser_->commit(read.bytes, steady_now());
     timeout = 0ns;
   }

@@ -316,7 +316,7 @@ TEST(MarkDistance, IsNeverAnyOtherThanThatOfTheFrames) {
   for (std::size_t size = 0; size <= sent.size(); ++size) {
     const auto found = mark_distance(std::as_bytes(std::span(sent).first(size)));
     ASSERT_EQ(found.value_or(distance), distance) << "after " << size << " bytes";
-    EXPECT_EQ(found.has_value(), size >= 5 * distance) << "after " << size << " bytes";
+    EXPECT_EQ(found.has_value(), size >= 8 * distance) << "after " << size << " bytes";
   }
 }
 
