@@ -64,6 +64,8 @@ void refuse_dataset(const std::filesystem::path& path, const ReadOptions& option
 }
 
 void refuse_layout(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.readings.empty() && options.readings != "counts")
+    throw Error(path.string(), "states what its readings are", "leave out --readings");
   if (!options.frame_size && options.axes.empty() && options.columns.empty()) return;
   throw Error(path.string(), "states the size and the axes of its frames",
               options.frame_size     ? "leave out --shape"

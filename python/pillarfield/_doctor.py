@@ -65,10 +65,11 @@ class Diagnosis:
 
 def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
            times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-           axes: Axes = "") -> Diagnosis:
+           axes: Axes = "", readings: str = "") -> Diagnosis:
     """Looks at frames of any pressure array, swept by a finger, and finds what is wrong with it.
 
     frames, axes: as of solve(), but no iterator
+    readings: unit of the numbers, as of solve(); the doctor judges the numbers as they are
     times, rate_hz: of an array, or rate_hz of a file without times; without either there are no times
 
     Raises Error for fewer than 10 frames and for frames of NaN alone.
@@ -85,7 +86,8 @@ def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
     name, timed = "frames", True
     if isinstance(frames, (str, os.PathLike)):
         name = os.fspath(frames)
-        source = _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), untimed=rate_hz is None)
+        source = _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), untimed=rate_hz is None,
+                                   readings="counts")
     else:
         timed = isinstance(frames, (Recording, Simulation)) or times is not None or rate_hz is not None
         source = source_of(frames, None, times, rate_hz, axes=axes)

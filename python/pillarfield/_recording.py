@@ -28,6 +28,8 @@ class Recording(_core.FrameSource):
     dataset, times: names of the arrays of frames and times in an HDF5 file, .npz archive or .mat file
     frame_size: (R, C) of frames that lie in one line of a table or array
     columns: those of a table that are readings, by name or number from 1 on: 'pressure_*', '2-97'
+    readings: unit of the numbers, 'kPa', 'psi', 'N', ... or 'counts'; by default what the file states
+    pitch_mm: distance between sensels, or (from row to row, from column to column), in place of the file's
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
     axes: order of the axes of an array, such as 'rows,columns,frames'; by default frames first
@@ -43,11 +45,12 @@ class Recording(_core.FrameSource):
                  dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
                  tare_frames: int = 0, axes: Axes = "", layout: str = "",
-                 falling: bool = False, columns: str = "") -> None:
+                 falling: bool = False, columns: str = "", readings: str = "",
+                 pitch_mm: Union[float, tuple[float, float], None] = None) -> None:
         super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
             rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes),
-            layout=layout, falling=falling, columns=columns)
+            layout=layout, falling=falling, columns=columns, readings=readings, pitch_mm=pitch_mm)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -110,15 +113,15 @@ class ForceFile(_core.ForceReader):
                 f"{self.estimator}>")
 
 
-def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _core.Calibration]:
+def open(path: Path, *, trust: bool = False, readings: str = "") -> Union[Recording, ForceFile, _core.Calibration]:
     """Opens a file by its content: a Recording, a ForceFile or a Calibration.
 
-    trust: it is your own, so its frames may have any size.
+    trust: it is your own, so its frames may have any size; readings: their unit, as of Recording
     """
     kind = "frames" if os.path.isdir(path) else _core.kind_of(path)
     if kind == "calibration":
         return _core.Calibration.load(path, trust=trust)
-    return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust)
+    return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust, readings=readings)
 
 
 def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
@@ -147,15 +150,19 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
 def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
               rate_hz: Optional[float] = None,
               calibration: Optional[_core.Calibration] = None,
-              axes: Axes = "", falling: bool = False) -> _core.FrameSource:
+              axes: Axes = "", falling: bool = False, readings: str = "",
+              pitch_mm: Union[float, tuple[float, float], None] = None, layout: str = "") -> _core.FrameSource:
     """Frames with random access from a path, an array, a Recording or a Simulation.
 
-    axes: of an array, or that of a path.
+    axes, readings, pitch_mm, layout: of an array, or that of a path.
     """
     if (is_files(frames) or isinstance(frames, Recording)) and times is not None:
         raise Error("times", "files have times of their own", "give times with an array")
     if is_files(frames):
-        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), falling=falling)
+        return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), falling=falling,
+                                 readings=readings, pitch_mm=pitch_mm, layout=layout)
+    if readings and isinstance(frames, (Recording, Simulation)):
+        raise Error("readings", f"a {type(frames).__name__} has its unit", "give readings to pf.Recording()")
     if falling and isinstance(frames, (Recording, Simulation)):
         raise Error("falling", f"a {type(frames).__name__} has its readings already",
                     "give falling to pf.Recording()" if isinstance(frames, Recording) else "leave it out")
@@ -175,17 +182,17 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
         skin, calibration = skin or frames.skin, calibration or frames.calibration
         times = frames.times if times is None else times
         frames = frames.frames
-    readings = readings_of(frames)
-    if readings.ndim not in (2, 3):
-        raise Error("frames", f"the array has {readings.ndim} axes",
+    array = readings_of(frames)
+    if array.ndim not in (2, 3):
+        raise Error("frames", f"the array has {array.ndim} axes",
                     "give [rows, cols] for a frame, [frames, rows, cols] for several")
-    if readings.ndim == 2:
+    if array.ndim == 2:
         if not axes_are_known:
-            _core.require_likely_frame(*readings.shape, "frames")
-        readings = readings.reshape(1, *readings.shape)
-    return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
-                                      skin_of(skin, readings.shape[-2:]), calibration,
-                                      axes_are_known, falling)
+            _core.require_likely_frame(*array.shape, "frames")
+        array = array.reshape(1, *array.shape)
+    return _core.FrameSource.of_array(array, times_of(len(array), times, rate_hz),
+                                      skin_of(skin, array.shape[-2:]), calibration, axes_are_known,
+                                      falling, readings, pitch_mm, layout)
 
 
 def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:

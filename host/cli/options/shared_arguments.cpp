@@ -23,13 +23,13 @@ FrameSize frame_size_of(const std::string& text) {
   const auto rows = std::from_chars(text.data(), end, size.rows);
   if (rows.ec == std::errc{} && rows.ptr != end && *rows.ptr == 'x') {
     const auto cols = std::from_chars(rows.ptr + 1, end, size.cols);
-    const auto fits = [](std::uint32_t each) { return each >= 2 && each <= kMaxSensels; };
+    const auto fits = [](std::uint32_t each) { return each >= 1 && each <= kMaxSensels; };
     if (cols.ec == std::errc{} && cols.ptr == end && fits(size.rows) && fits(size.cols))
       return size;
   }
   throw CLI::ValidationError(
       "--shape",
-      fmt::format("'{}' is not ROWSxCOLS of 2 to {} each, such as 40x60", text, kMaxSensels));
+      fmt::format("'{}' is not ROWSxCOLS of 1 to {} each, such as 40x60", text, kMaxSensels));
 }
 
 Pitch pitch_of(const std::string& text) {
@@ -115,8 +115,10 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
   Group plain(command, "Plain data");
   plain.text("--dataset", options.dataset, "NAME",
              "Array of frames in an HDF5 file, .npz archive or .mat file [the only one]");
-  plain.text("--times", options.times, "NAME",
-             "Array of their times in that file, seconds [time of an archive or .mat file]");
+  plain.text(
+      "--times", options.times, "NAME",
+      "Array of their times in that file, seconds [time of an archive or .mat file]; column of "
+      "times of a table, by name or number");
   command
       ->add_option_function<std::string>(
           "--shape", [&](const std::string& text) { options.frame_size = frame_size_of(text); },
@@ -126,6 +128,9 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
   plain.text("--columns", options.columns, "LIST",
              "Columns of a table that are readings, by name or number: 'pressure_*', 2-97, 1-96:2 "
              "[all but times, row numbers, sums and labels]");
+  plain.text(
+      "--readings", options.readings, "UNIT",
+      "Unit of the numbers: kPa, psi, mmHg, N/cm2, N, ..., or counts [the file's, else counts]");
   command
       ->add_option_function<std::string>(
           "--axes", [&](const std::string& text) { options.axes = axes_of(text); },
