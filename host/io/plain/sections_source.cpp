@@ -125,7 +125,9 @@ class SectionParser {
       const char separator = separator_of(line);
       split_cells(line, separator, cells_);
       drop_empty_end(cells_);
-      if (!cells_.empty() && !add_row(separator)) add_words(line);
+      const bool is_number_of_frame = cells_.size() == 2 && !is_number(cells_[0]) &&
+                                      std::ranges::any_of(statements_in(line, 0), is_frame_number);
+      if (!cells_.empty() && (is_number_of_frame || !add_row(separator))) add_words(line);
     }
     end_block();
     // Sums that follow the cells came with the words of the next block.
@@ -156,6 +158,10 @@ class SectionParser {
     if (usual == nullptr) return false;
     const auto& size = options.frame_size;
     if (size && usual->cells.size() != std::size_t{size->rows} * size->cols) return false;
+    const auto is_longer = [&](const CellBlock& block) {
+      return block.cols == usual->cells.size() && block.cells.size() > block.cols;
+    };
+    if (size && std::ranges::any_of(blocks, is_longer)) return false;  // Each line is a frame.
     return number_ || (blocks.size() == 1 && (usual->is_labelled || !usual->checks.empty())) ||
            (sizes[usual->size()] > 1 && 4 * sizes[usual->size()] >= blocks.size());
   }
@@ -265,7 +271,7 @@ class SectionParser {
       if (!time_s_) time_s_ = time_in(stated, begins_frame);
       if (is_sum(stated) || is_largest(stated)) open_.stated.push_back(std::move(stated));
     }
-    open_.labels = cells_;
+    open_.labels = begins_frame ? std::vector<std::string>() : cells_;
     std::string kind(line);
     std::erase_if(kind, [](char letter) { return has_digit({&letter, 1}); });
     open_.before.insert(std::move(kind));
@@ -329,7 +335,8 @@ class SectionParser {
     const std::size_t width = rows[0].size();
     std::size_t cols_end = width;
     std::size_t rows_end = rows.size();
-    if (block.labels.size() == width && is_number(block.labels[width / 2])) {
+    const auto numbers = static_cast<std::size_t>(std::ranges::count_if(block.labels, is_number));
+    if (block.labels.size() == width && 2 * numbers >= width) {
       while (!is_number(block.labels[cols_end - 1])) --cols_end;
       block.is_labelled = block.is_labelled || !is_number(block.labels[0]);
     }

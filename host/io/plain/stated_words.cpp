@@ -188,8 +188,10 @@ std::vector<SizeGroup> size_groups(const std::vector<std::string>& tokens) {
     follows_number = value || (mm && !groups.back().numbers.empty());
   }
   if (groups.back().numbers.empty() && groups.size() > 1) {  // "..., unit, mm" at the end
-    if (groups.back().mm) groups[groups.size() - 2].numbers.back().mm = groups.back().mm;
+    const SizeGroup last = std::move(groups.back());
     groups.pop_back();
+    if (last.mm) groups.back().numbers.back().mm = last.mm;
+    if (!last.words.empty() && last.has_sides_alone()) groups.back().numbers.push_back({});
   }
   return groups;
 }

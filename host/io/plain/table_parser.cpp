@@ -83,12 +83,15 @@ class TableParser {
 
   /// True if most cells are numbers or times.
   static bool are_numbers(const std::vector<std::string>& cells, char separator) {
-    double value = 0;
-    return 2 * std::ranges::count_if(cells,
-                                     [&](const std::string& cell) {
-                                       return read_cell(cell, separator, value) || parse_time(cell);
-                                     }) >
-           std::ssize(cells);
+    std::size_t numbers = 0;  // missing ones, too
+    std::size_t finite = 0;
+    for (const std::string& cell : cells) {
+      double value = 0;
+      const bool is_number = read_cell(cell, separator, value) || parse_time(cell);
+      numbers += is_number;
+      finite += is_number && std::isfinite(value);
+    }
+    return 2 * numbers > cells.size() && (finite > 0 || numbers == cells.size());
   }
 
   void add_words(std::string_view line) {
@@ -154,8 +157,11 @@ class TableParser {
       return;
     }
     drop_empty_end(cells_, line_cells_);
-    const bool is_word = line_cells_ == 1 && !are_numbers(cells_, separator_);
-    if (cells_.size() != line_cells_ || is_word) return leave_out(line);
+    double value = 0;
+    const bool has_number = std::ranges::any_of(cells_, [&](const std::string& cell) {
+      return read_cell(cell, separator_, value) || parse_time(cell);
+    });
+    if (cells_.size() != line_cells_ || !has_number) return leave_out(line);
     append();
   }
 
@@ -436,15 +442,17 @@ class TableParser {
     const std::uint64_t whole = counts[usual];
     if (whole < 2 || (size && size->rows != usual)) {
       if (cut_between_) {
-        throw Error(cut_, fmt::format("has {} numbers", cut_cells_),
-                    fmt::format("lines before it have {}", line_cells_));
+        table_.refusal.emplace(cut_, fmt::format("has {} numbers", cut_cells_),
+                               fmt::format("lines before it have {}", line_cells_));
+      } else if (whole != blocks_.size() && !size) {
+        const auto other = std::ranges::find_if(blocks_, [&](auto rows) { return rows != usual; });
+        table_.refusal.emplace(
+            fmt::format("{}:{}", reader_.path().string(),
+                        block_ends_[static_cast<std::size_t>(other - blocks_.begin())]),
+            fmt::format("a frame of {} rows ends here", *other),
+            fmt::format("others have {}", usual));
       }
-      if (whole == blocks_.size() || size) return;
-      const auto other = std::ranges::find_if(blocks_, [&](auto rows) { return rows != usual; });
-      throw Error(fmt::format("{}:{}", reader_.path().string(),
-                              block_ends_[static_cast<std::size_t>(other - blocks_.begin())]),
-                  fmt::format("a frame of {} rows ends here", *other),
-                  fmt::format("others have {}", usual));
+      return;
     }
     table_.has_words_between = false;
     std::size_t from = 0;

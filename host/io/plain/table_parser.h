@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/plain/stated_words.h"
+#include "pillarfield/error.h"
 #include "pillarfield/read_options.h"
 
 namespace pillarfield {
@@ -31,6 +32,7 @@ struct Table {
   std::vector<std::string> notes;
   /// Lines of words stand between lines that are rows of frames.
   bool has_words_between = false;
+  std::optional<Error> refusal;  ///< of rows of frames that are cut
 };
 
 /// Reads a table. `header_line` is the number of the line of names, if words precede it; 0: none

@@ -190,6 +190,7 @@ std::unique_ptr<FileSource> open_table_after(const std::filesystem::path& path,
   if (table.has_words_between && line == 0) {
     if (auto frames = open_frames_between_words(path, options)) return frames;
   }
+  if (table.refusal) throw Error(*table.refusal);
   std::vector<std::uint64_t> shape = shape_of(table, path);
   ReadOptions known = options;
   known.columns.clear();
