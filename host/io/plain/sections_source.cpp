@@ -113,8 +113,9 @@ bool count_up(const std::vector<double>& numbers) {
 
 class SectionParser {
  public:
-  explicit SectionParser(const std::filesystem::path& path)
-      : reader_(path, "save its frames as .npy") {}
+  SectionParser(const std::filesystem::path& path, const std::optional<FrameSize>& size)
+      : reader_(path, "save its frames as .npy"),
+        frame_cells_(size ? std::size_t{size->rows} * size->cols : 0) {}
 
   /// Reads all blocks, or of a table, whose lines have a time, the line of names alone.
   void parse() {
@@ -142,6 +143,9 @@ class SectionParser {
       for (const float cell : block.cells) totals.add(cell);
       for (const Statement& stated : block.stated) add_check(block, stated, totals);
     }
+    are_lines_frames_ = frame_cells_ > 0 && std::ranges::any_of(blocks, [&](const auto& block) {
+                          return block.cols == frame_cells_ && block.cells.size() > frame_cells_;
+                        });
     if (!number_) sort_by_size();
   }
 
@@ -149,21 +153,12 @@ class SectionParser {
   /// or the one has row numbers or sums.
   [[nodiscard]] bool has_frames(const ReadOptions& options) const {
     if (!options.columns.empty() || !options.axes.empty() || !options.times.empty()) return false;
-    std::map<std::string, std::size_t> sizes;
-    const CellBlock* usual = nullptr;
-    for (const CellBlock& block : blocks) {
-      const std::size_t count = ++sizes[block.size()];
-      if (usual == nullptr || count > sizes[usual->size()]) usual = &block;
-    }
-    if (usual == nullptr) return false;
+    const auto [usual, count] = usual_block();
+    if (usual == nullptr || are_lines_frames_) return false;
     const auto& size = options.frame_size;
     if (size && usual->cells.size() != std::size_t{size->rows} * size->cols) return false;
-    const auto is_longer = [&](const CellBlock& block) {
-      return block.cols == usual->cells.size() && block.cells.size() > block.cols;
-    };
-    if (size && std::ranges::any_of(blocks, is_longer)) return false;  // Each line is a frame.
     return number_ || (blocks.size() == 1 && (usual->is_labelled || !usual->checks.empty())) ||
-           (sizes[usual->size()] > 1 && 4 * sizes[usual->size()] >= blocks.size());
+           (count > 1 && (size || 4 * count >= blocks.size()));
   }
 
   std::optional<std::uint64_t> table_line;
@@ -172,21 +167,36 @@ class SectionParser {
   std::size_t left_out = 0;  // blocks of other sizes
 
  private:
+  /// The first block of the usual size, or of the one that is given, and how many have it.
+  [[nodiscard]] std::pair<const CellBlock*, std::size_t> usual_block() const {
+    std::map<std::string, std::pair<const CellBlock*, std::size_t>> sizes;
+    for (const CellBlock& block : blocks) {
+      auto& [first, count] = sizes.try_emplace(block.size(), &block, 0).first->second;
+      ++count;
+    }
+    std::pair<const CellBlock*, std::size_t> usual = {nullptr, 0};
+    for (const auto& [name, size] : sizes) {
+      const auto fits = [&](const CellBlock* block) {
+        return block != nullptr && block->cells.size() == frame_cells_;
+      };
+      const bool is_earlier = size.second == usual.second && size.first < usual.first;
+      if (fits(size.first) != fits(usual.first) ? fits(size.first)
+                                                : size.second > usual.second || is_earlier)
+        usual = size;
+    }
+    return usual;
+  }
+
   /// Joins two blocks that words other than those between frames cut from one.
   void join_blocks() {
-    std::map<std::string, std::size_t> sizes;
-    std::string usual;
-    for (const CellBlock& block : blocks) {
-      if (++sizes[block.size()] > sizes[usual]) usual = block.size();
-    }
+    const auto [usual_one, count] = usual_block();
+    const std::string usual = usual_one == nullptr ? "" : usual_one->size();
     std::map<std::string, std::size_t> kinds;  // of lines before whole frames
     for (const CellBlock& block : blocks) {
       if (block.size() != usual) continue;
       for (const std::string& kind : block.before) ++kinds[kind];
     }
-    const auto is_between_frames = [&](const std::string& kind) {
-      return 2 * kinds[kind] > sizes[usual];
-    };
+    const auto is_between_frames = [&](const std::string& kind) { return 2 * kinds[kind] > count; };
     std::vector<CellBlock> joined;
     for (CellBlock& block : blocks) {
       CellBlock* const last = joined.empty() ? nullptr : &joined.back();
@@ -212,12 +222,15 @@ class SectionParser {
   /// Numbers the sizes of blocks that have no numbers of frames, as parts of frames; rare sizes are
   /// frames that are cut.
   void sort_by_size() {
+    const auto [usual, most] = usual_block();
+    if (usual == nullptr) return;
+    const std::size_t cells = usual->cells.size();
     std::map<std::string, std::size_t> counts;
-    std::size_t most = 0;
-    for (const CellBlock& block : blocks) most = std::max(most, ++counts[block.size()]);
-    left_out = std::erase_if(
-        blocks, [&](const CellBlock& block) { return 2 * counts[block.size()] < most; });
-    std::map<std::string, std::size_t> ordinals;
+    std::map<std::string, std::size_t> ordinals = {{usual->size(), 0}};
+    for (const CellBlock& block : blocks) ++counts[block.size()];
+    left_out = std::erase_if(blocks, [&, most = most](const CellBlock& block) {
+      return cells == frame_cells_ ? block.cells.size() != cells : 2 * counts[block.size()] < most;
+    });
     for (CellBlock& block : blocks)
       block.ordinal = ordinals.try_emplace(block.size(), ordinals.size()).first->second;
   }
@@ -243,7 +256,9 @@ class SectionParser {
     }
     const bool counts_columns =
         open_.rows.size() == 1 && count_up(open_.rows[0]) && row.size() == open_.rows[0].size() + 1;
-    if (!fits && !counts_columns) end_block();
+    const bool follows_sums =
+        fits && !is_word && open_.names[0].empty() && !open_.names.back().empty();
+    if ((!fits && !counts_columns) || follows_sums) end_block();
     if (open_.rows.empty()) {
       open_.line = reader_.number();
       open_.stamp_s = stamp_s_;
@@ -393,6 +408,8 @@ class SectionParser {
   }
 
   LineReader reader_;
+  std::size_t frame_cells_;  // 0: not known
+  bool are_lines_frames_ = false;
   std::vector<std::string> cells_;
   CellBlock open_;
   std::uint64_t labels_line_ = 0;
@@ -552,7 +569,7 @@ std::unique_ptr<FileSource> source_of(const SectionParser& parser,
 
 std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
                                           const ReadOptions& options) {
-  SectionParser parser(path);
+  SectionParser parser(path, options.frame_size);
   parser.parse();
   if (!parser.table_line && parser.has_frames(options)) return source_of(parser, path, options);
   return open_table_after(path, options, parser.table_line.value_or(0));
@@ -587,7 +604,7 @@ bool looks_like_sections(std::string_view head) {
 
 std::unique_ptr<FileSource> open_frames_between_words(const std::filesystem::path& path,
                                                       const ReadOptions& options) {
-  SectionParser parser(path);
+  SectionParser parser(path, options.frame_size);
   parser.parse();
   if (parser.table_line || !parser.has_frames(options)) return nullptr;
   return source_of(parser, path, options);

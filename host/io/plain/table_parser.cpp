@@ -112,7 +112,11 @@ class TableParser {
     }
     std::vector<std::string> cells = cells_;
     drop_empty_end(cells, header_.size());
-    const bool is_named = header_.size() > 1 && header_.size() == cells.size();
+    const bool is_named = header_.size() > 1 && header_.size() == cells.size() &&
+                          std::ranges::any_of(cells, [&](const std::string& cell) {
+                            double value = 0;
+                            return read_cell(cell, separator_, value) && std::isfinite(value);
+                          });
     if (!is_named && !are_numbers(cells_, separator_)) return add_words(line);
     if (cells_.size() != length_ && !is_named) {
       if (held_ || cells_.size() != 2) leave_out(line);

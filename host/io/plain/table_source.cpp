@@ -138,6 +138,7 @@ bool looks_like_table(std::string_view head) {
   if (head.starts_with("[[") || head.starts_with('{')) return false;
   if (head.starts_with('<') && head.find("</") != std::string_view::npos) return false;
   std::size_t names = 0;  // of the line before
+  char names_separator = '\0';
   for (int tried = 0; tried < 2 && !head.empty();) {
     const std::size_t end = std::min(head.find('\n'), head.size());
     std::string_view line = head.substr(0, end);
@@ -156,10 +157,13 @@ bool looks_like_table(std::string_view head) {
       double value = 0;
       return read_cell(cell, separator, value);
     });
+    // "Frame 7" names no columns.
+    if (names == 2 && cells.size() == 2 && names_separator != separator) return false;
     const bool has_names = names == cells.size() && numbers > 2 && 2 * numbers > std::ssize(cells);
     if (has_names || resembles_numbers(line))
       return has_names || names == 0 || names + 2 > cells.size() || cells.size() < 4;
     names = cells.size();
+    names_separator = separator;
     // A line of names may be longer than the head.
     constexpr std::ptrdiff_t kManyNames = 100;
     if (is_cut && separator != ' ' && std::ranges::count(line, separator) >= kManyNames)
