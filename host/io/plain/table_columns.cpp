@@ -224,12 +224,13 @@ void take_chosen(TableColumns& columns, std::span<const std::string> header, std
                  const std::string& choice, const std::string& place) {
   columns.readings.clear();
   columns.left_out.clear();
+  std::vector<bool> is_known(count);
   for (std::size_t at = 0; at <= choice.size();) {
     const std::size_t end = std::min(choice.find(',', at), choice.size());
     const std::string part(without_blanks(std::string_view(choice).substr(at, end - at)));
     for (const std::size_t column : columns_named(part, header, count, place)) {
-      const bool is_known = std::ranges::find(columns.readings, column) != columns.readings.end();
-      if (!is_known && column != columns.time) columns.readings.push_back(column);
+      if (!is_known[column] && column != columns.time) columns.readings.push_back(column);
+      is_known[column] = true;
     }
     at = end + 1;
   }

@@ -459,22 +459,17 @@ class TableParser {
       return;
     }
     table_.has_words_between = false;
+    if (whole == blocks_.size()) return;
     std::size_t from = 0;
     std::size_t to = 0;
     for (const std::uint64_t rows : blocks_) {
-      if (rows == usual) {
-        const auto move = [&](auto& numbers, std::size_t each) {
-          if (numbers.empty()) return;
-          std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(from * each), rows * each,
-                      numbers.begin() + static_cast<std::ptrdiff_t>(to * each));
-        };
-        move(table_.readings, table_.cells);
-        move(table_.times, 1);
-        to += rows;
+      for (std::uint64_t row = 0; row < rows; ++row, ++from) {
+        if (rows != usual) continue;
+        if (!table_.times.empty()) table_.times[to] = table_.times[from];
+        std::copy_n(&table_.readings[from * table_.cells], table_.cells,
+                    &table_.readings[to++ * table_.cells]);
       }
-      from += rows;
     }
-    if (from == to) return;
     table_.readings.resize(to * table_.cells);
     if (!table_.times.empty()) table_.times.resize(to);
     table_.lines = to;
