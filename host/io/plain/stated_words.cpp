@@ -396,7 +396,8 @@ std::optional<Pitch> StatedWords::pitch() const {
   return area_mm2 ? std::optional(Pitch(std::sqrt(*area_mm2))) : std::nullopt;
 }
 
-CellUnit unit_of_readings(const std::string& name) {
+CellUnit unit_of_readings(std::string name) {
+  std::erase(name, ' ');
   const auto mpa = unit_size(Dimension::pressure, name);
   const auto newtons = unit_size(Dimension::force, name);
   if (mpa || newtons || name == "counts") return {name, mpa, newtons, 4};

@@ -39,7 +39,7 @@ struct CellUnit {
 };
 
 /// The unit that ReadOptions::readings names. Throws Error if it is none.
-[[nodiscard]] CellUnit unit_of_readings(const std::string& name);
+[[nodiscard]] CellUnit unit_of_readings(std::string name);
 
 /// The facts about all frames that a file states in words, whoever wrote it.
 struct StatedWords {
