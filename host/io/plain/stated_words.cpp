@@ -289,8 +289,12 @@ void StatedWords::add_unit(std::string_view line) {
       is_known = true;
     }
   }
-  if (!is_sure || is_known || has_number || tokens.size() > 4 || unit.rank == 3) return;
-  if (tokens.size() > 1) unclear_unit_ = fmt::format("'{:.40}'", without_blanks(line));
+  const std::string lower = lower_case(line);
+  const std::size_t end = lower.find_first_not_of("nits", lower.find("unit") + 1);
+  const bool is_stated = is_sure && end < line.size() &&
+                         std::string_view(":=;,\"\t").find(line[end]) != std::string_view::npos;
+  if (is_stated && !is_known && !has_number && tokens.size() > 1 && unit.rank < 3)
+    unclear_unit_ = fmt::format("'{:.40}'", without_blanks(line));
 }
 
 void StatedWords::add_heading(std::string name) {
