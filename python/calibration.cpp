@@ -8,6 +8,7 @@
 #include "pillarfield/calibration_file.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/pitch.h"
 
 namespace pillarfield::python {
 namespace {

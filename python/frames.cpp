@@ -16,10 +16,12 @@
 #include <variant>
 #include <vector>
 
+#include "io/plain/stated_words.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
+#include "python/pitch.h"
 #include "python/signals.h"
 
 namespace pillarfield::python {
@@ -34,7 +36,8 @@ times: float64 [frames], s
 skin: Skin with constants; its rows and columns are replaced by those of the array
 calibration: Calibration, or None
 axes_are_known: else raises Error if the frames seem to lie along another axis
-falling: readings fall under load; they are mirrored as they are read)";
+falling: readings fall under load; they are mirrored as they are read
+unit: of the readings; sets the skin's counts_per_newton, with pitch_mm and layout, or the skin's)";
 
 using TimeArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
@@ -171,7 +174,8 @@ std::unique_ptr<Frames> open(
     std::string dataset, std::string times,
     const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
     std::optional<double> rate_hz, std::uint64_t tare_frames, const std::string& axes,
-    const std::string& layout, bool falling, bool untimed, std::string columns, std::string where) {
+    const std::string& layout, bool falling, bool untimed, std::string columns, std::string where,
+    std::string readings, const std::optional<Pitch>& pitch_mm) {
   const py::gil_scoped_release unlocked;
   ReadOptions options;
   options.trust = trust;
@@ -180,6 +184,8 @@ std::unique_ptr<Frames> open(
   if (frame_size) options.frame_size = {frame_size->first, frame_size->second};
   options.columns = std::move(columns);
   options.where = std::move(where);
+  options.readings = std::move(readings);
+  options.sensel_pitch_mm = pitch_mm;
   options.rate_hz = rate_hz;
   options.tare_frames = tare_frames;
   options.falling = falling;
@@ -190,10 +196,22 @@ std::unique_ptr<Frames> open(
       std::visit([&](const auto& given) { return open_frames(given, options); }, path));
 }
 
-std::unique_ptr<Frames> of_array(const py::array& readings, const TimeArray& times,
-                                 const Skin& skin,
+std::unique_ptr<Frames> of_array(const py::array& readings, const TimeArray& times, Skin skin,
                                  const std::optional<SkinCalibration>& calibration,
-                                 bool axes_are_known, bool falling) {
+                                 bool axes_are_known, bool falling, std::string unit,
+                                 std::optional<Pitch> pitch_mm, const std::string& layout) {
+  if (!unit.empty()) {
+    if (!pitch_mm && skin.states_pitch()) pitch_mm = skin.sensel_pitch_mm;
+    ReadOptions known;
+    known.readings = std::move(unit);
+    known.sensel_pitch_mm = pitch_mm;
+    known.layout = layout.empty() ? skin.layout : layout_in(layout);
+    known.falling = falling;
+    std::vector<std::string> notes;
+    const auto newtons = StatedWords().newtons_per_cell(std::nullopt, known, notes, "frames");
+    if (newtons) skin.counts_per_newton = *known.counts_per_newton / *newtons;
+    skin.stated.counts_per_newton |= newtons.has_value();
+  }
   auto source = std::make_unique<ArraySource>(readings, times, skin, calibration, falling);
   if (!axes_are_known) require_likely_axes(*source, "frames");
   return std::make_unique<Frames>(std::move(source));
@@ -251,10 +269,12 @@ void bind_frames(py::module_& module) {
            py::arg("dataset") = "", py::arg("times") = "", py::arg("frame_size") = py::none(),
            py::arg("rate_hz") = py::none(), py::arg("tare_frames") = 0, py::arg("axes") = "",
            py::arg("layout") = "", py::arg("falling") = false, py::arg("untimed") = false,
-           py::arg("columns") = "", py::arg("where") = "")
+           py::arg("columns") = "", py::arg("where") = "", py::arg("readings") = "",
+           py::arg("pitch_mm") = py::none())
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
                   py::arg("calibration"), py::arg("axes_are_known") = false,
-                  py::arg("falling") = false, kArray)
+                  py::arg("falling") = false, py::arg("unit") = "",
+                  py::arg("pitch_mm") = py::none(), py::arg("layout") = "", kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),
            "Writes all frames as a recording.")
       .def_property_readonly(

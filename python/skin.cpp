@@ -28,7 +28,7 @@ constexpr const char* kSkin =
 Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at (r, c)
 stands on the sensels (2r..2r+1, 2c..2c+1).
 
-rows, cols: sensels, 2..65534
+rows, cols: sensels, 1..65534, with pillars from 2 on
 layout: 'pillars', one on each 2 x 2 sensels, with three components of force; 'sensels', nothing on them:
     normal force on each; without a word pillars, of which frames that do not state them warn
 sensel_pitch_mm: distance of sensels, mm, by default 0.632; (7.62, 5.08) where rows lie 7.62 mm apart and

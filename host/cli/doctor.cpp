@@ -38,6 +38,7 @@ Diagnosis look_at_file(const DoctorOptions& options) {
   // Constants of forces do not matter here, so that none is missing.
   read.sensel_pitch_mm = 1;
   read.counts_per_newton = 1;
+  read.readings = "counts";
   read.threshold_counts = 0;
   const auto source = open_frames_with_warnings(options.source, read, options.quiet);
   Doctor doctor(options.source, source->skin(), source->sensel_type());

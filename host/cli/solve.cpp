@@ -187,9 +187,9 @@ std::string story_of(const SolveOptions& options, const SolveSummary& summary) {
                            summary.done.most_contacts);
   }
   std::string story =
-      fmt::format("Contact in {} of {}{}; largest normal force {:.4g} N in all, at {:.4g} s\n",
+      fmt::format("Contact in {} of {}{}; largest normal force {:.4g} N in all, at {:.{}g} s\n",
                   grouped(load.frames), counted(summary.done.frames, "frame"), contacts,
-                  load.largest_n, load.at_s);
+                  load.largest_n, load.at_s, load.at_s < 1e4 ? 4 : 13);
   if (is_hdf5_name(options.output)) {
     story += fmt::format("Look at it: pillarfield-viewer {}\n", printable(options.output));
   }

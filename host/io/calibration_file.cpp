@@ -103,13 +103,13 @@ void write_all(const hdf5::File& file, const SkinCalibration& calibration) {
 
 std::uint32_t read_size(const hdf5::File& file, const hdf5::Attributes& skin, const char* name) {
   const auto size = skin.number(name);
-  if (size && *size >= 2 && *size <= kMaxSensels && *size == std::floor(*size)) {
+  if (size && *size >= 1 && *size <= kMaxSensels && *size == std::floor(*size)) {
     return static_cast<std::uint32_t>(*size);
   }
   const std::string what =
       size ? fmt::format("{} is {}", name, *size) : fmt::format("has no attribute '{}'", name);
   throw Error(fmt::format("{}: {}", file.path.string(), kSkinGroup), what,
-              fmt::format("it must be a whole number in [2, {}]", kMaxSensels));
+              fmt::format("it must be a whole number in [1, {}]", kMaxSensels));
 }
 
 std::vector<CalibrationStep> read_history(const hdf5::File& file) {

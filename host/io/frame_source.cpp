@@ -70,6 +70,8 @@ void refuse_dataset(const std::filesystem::path& path, const ReadOptions& option
 }
 
 void refuse_layout(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.readings.empty() && options.readings != "counts")
+    throw Error(path.string(), "states what its readings are", "leave out --readings");
   if (!options.frame_size && options.axes.empty() && options.columns.empty() &&
       options.where.empty())
     return;

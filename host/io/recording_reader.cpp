@@ -130,10 +130,10 @@ std::string Recording::place(const char* object) const {
 void Recording::read_size() {
   const auto shape = raw_.shape();
   for (const hsize_t size : shape) {
-    if (size >= 2 && size <= kMaxSensels) continue;
+    if (size >= 1 && size <= kMaxSensels) continue;
     throw Error(place(recording_format::kRaw),
                 fmt::format("its frames are {} x {}", shape[0], shape[1]),
-                fmt::format("rows and columns must lie in [2, {}]", kMaxSensels));
+                fmt::format("rows and columns must lie in [1, {}]", kMaxSensels));
   }
   skin_.rows = static_cast<std::uint32_t>(shape[0]);
   skin_.cols = static_cast<std::uint32_t>(shape[1]);

@@ -60,8 +60,9 @@ double straightened(const PowerLaw& law, double reading) {
 }
 
 void check(const Skin& skin, std::string_view where) {
-  check_range(where, {"rows", 2, kMaxSensels}, skin.rows);
-  check_range(where, {"cols", 2, kMaxSensels}, skin.cols);
+  const double least = skin.has_pillars() ? 2 : 1;
+  check_range(where, {"rows", least, kMaxSensels}, skin.rows);
+  check_range(where, {"cols", least, kMaxSensels}, skin.cols);
   if (!is_valid(skin.sensel_pitch_mm)) {
     throw Error(where, "sensel_pitch_mm is " + text_of(skin.sensel_pitch_mm),
                 "it must lie in [0.001, 1000]");

@@ -68,11 +68,12 @@ class Diagnosis:
 
 def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
            times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-           axes: Axes = "", **file: Unpack[FileOptions]) -> Diagnosis:
+           axes: Axes = "", readings: str = "", **file: Unpack[FileOptions]) -> Diagnosis:
     """Looks at frames of any pressure array, swept by a finger, and finds what is wrong with it.
 
     frames, axes: as of solve(), but no iterator
     file: columns, dataset, frame_size and where, as of solve()
+    readings: unit of the numbers, as of solve(); the doctor judges the numbers as they are
     times, rate_hz: of an array, or rate_hz of a file without times; without either there are no times
 
     Raises Error for fewer than 10 frames and for frames of NaN alone.
@@ -92,7 +93,8 @@ def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
         name = os.fspath(frames)
     elif not is_table(frames) and not is_files(frames):
         timed = isinstance(frames, (Recording, Simulation)) or times is not None or rate_hz is not None
-    source = source_of(frames, None, times, rate_hz, axes=axes, untimed=rate_hz is None, **file)
+    judged = "counts" if is_table(frames) or is_files(frames) else ""
+    source = source_of(frames, None, times, rate_hz, axes=axes, untimed=rate_hz is None, readings=judged, **file)
     text, pixels = _core.doctor(source, name, timed)
     facts = json.loads(text)
     findings = [ArrayFinding(each["fault"], each["text"], [(row, col) for row, col in each.get("sensels", [])],

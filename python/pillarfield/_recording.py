@@ -33,6 +33,8 @@ class Recording(_core.FrameSource):
     frame_size: (R, C) of frames that lie in one line of a table or array
     columns: those of a table that are readings, by name or number from 1 on: 'pressure_*', '2-97'
     where: lines of a table that are read, those with this word in a column: 'side=L'
+    readings: unit of the numbers, 'kPa', 'psi', 'N', ... or 'counts'; by default what the file states
+    pitch_mm: distance between sensels, or (from row to row, from column to column), in place of the file's
     rate_hz: frames per second of a file without times
     tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
     axes: order of the axes of an array, such as 'rows,columns,frames'; by default frames first
@@ -48,11 +50,14 @@ class Recording(_core.FrameSource):
                  dataset: str = "", times: str = "",
                  frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
                  tare_frames: int = 0, axes: Axes = "", layout: str = "",
-                 falling: bool = False, columns: str = "", where: str = "") -> None:
+                 falling: bool = False, columns: str = "", where: str = "",
+                 readings: str = "",
+                 pitch_mm: Union[float, tuple[float, float], None] = None) -> None:
         super().__init__(
             path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
             rate_hz=rate_hz, tare_frames=tare_frames, axes=axis_words(axes),
-            layout=layout, falling=falling, columns=columns, where=where)
+            layout=layout, falling=falling, columns=columns, where=where,
+            readings=readings, pitch_mm=pitch_mm)
 
     @property
     def dtype(self) -> np.dtype[Any]:
@@ -115,15 +120,15 @@ class ForceFile(_core.ForceReader):
                 f"{self.estimator}>")
 
 
-def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _core.Calibration]:
+def open(path: Path, *, trust: bool = False, readings: str = "") -> Union[Recording, ForceFile, _core.Calibration]:
     """Opens a file by its content: a Recording, a ForceFile or a Calibration.
 
-    trust: it is your own, so its frames may have any size.
+    trust: it is your own, so its frames may have any size; readings: their unit, as of Recording
     """
     kind = "frames" if os.path.isdir(path) else _core.kind_of(path)
     if kind == "calibration":
         return _core.Calibration.load(path, trust=trust)
-    return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust)
+    return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust, readings=readings)
 
 
 def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
@@ -152,24 +157,30 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
 def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
               rate_hz: Optional[float] = None,
               calibration: Optional[_core.Calibration] = None,
-              axes: Axes = "", falling: bool = False, untimed: bool = False,
+              axes: Axes = "", falling: bool = False, untimed: bool = False, readings: str = "",
+              pitch_mm: Union[float, tuple[float, float], None] = None, layout: str = "",
               **file: Unpack[FileOptions]) -> _core.FrameSource:
     """Frames with random access from a path, an array, a DataFrame, a Recording or a Simulation.
 
-    axes: of an array, or that of a path. untimed, file: of a path or a DataFrame; of an array the frame_size.
+    axes, readings, pitch_mm, layout: of an array, or that of a path. untimed, file: of a path or a DataFrame; of an
+    array the frame_size.
     """
     if is_table(frames):
-        return _source_of_table(frames, rate_hz=rate_hz, axes=axes, falling=falling, untimed=untimed, **file)
+        return _source_of_table(frames, rate_hz=rate_hz, axes=axes, falling=falling, untimed=untimed,
+                                readings=readings, pitch_mm=pitch_mm, layout=layout, **file)
     if (is_files(frames) or isinstance(frames, Recording)) and times is not None:
         raise Error("times", "files have times of their own", "give times with an array")
     if is_files(frames):
         return _core.FrameSource(frames, rate_hz=rate_hz, axes=axis_words(axes), falling=falling,
-                                 untimed=untimed, **file)
+                                 untimed=untimed, readings=readings, pitch_mm=pitch_mm,
+                                 layout=layout, **file)
     is_array = not isinstance(frames, (Recording, Simulation))
     for name, value in file.items():
         if value and not (is_array and name == "frame_size"):
             raise Error(name, "it is of a file or a DataFrame",
                         "leave it out" if is_array else f"give {name} to pf.Recording()")
+    if readings and isinstance(frames, (Recording, Simulation)):
+        raise Error("readings", f"a {type(frames).__name__} has its unit", "give readings to pf.Recording()")
     if falling and isinstance(frames, (Recording, Simulation)):
         raise Error("falling", f"a {type(frames).__name__} has its readings already",
                     "give falling to pf.Recording()" if isinstance(frames, Recording) else "leave it out")
@@ -189,25 +200,25 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
         skin, calibration = skin or frames.skin, calibration or frames.calibration
         times = frames.times if times is None else times
         frames = frames.frames
-    readings = readings_of(frames)
+    array = readings_of(frames)
     size = file.get("frame_size")
     if size is not None:
-        if readings.ndim != 2 or readings.shape[1] != size[0] * size[1]:
-            raise Error("frames", f"the array has the shape {readings.shape}",
+        if array.ndim != 2 or array.shape[1] != size[0] * size[1]:
+            raise Error("frames", f"the array has the shape {array.shape}",
                         f"give [frames, {size[0] * size[1]}], or leave out frame_size=")
-        readings = readings.reshape(-1, *size)
-    if readings.ndim > 3 or not (axes_are_known or size):
-        _core.require_frame_axes(readings)
-    if readings.ndim not in (2, 3):
-        raise Error("frames", f"the array has {readings.ndim} axes",
+        array = array.reshape(-1, *size)
+    if array.ndim > 3 or not (axes_are_known or size):
+        _core.require_frame_axes(array)
+    if array.ndim not in (2, 3):
+        raise Error("frames", f"the array has {array.ndim} axes",
                     "give [rows, cols] for a frame, [frames, rows, cols] for several")
-    if readings.ndim == 2:
+    if array.ndim == 2:
         if not axes_are_known:
-            _core.require_likely_frame(*readings.shape, "frames")
-        readings = readings.reshape(1, *readings.shape)
-    return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
-                                      skin_of(skin, readings.shape[-2:]), calibration,
-                                      axes_are_known or size is not None, falling)
+            _core.require_likely_frame(*array.shape, "frames")
+        array = array.reshape(1, *array.shape)
+    return _core.FrameSource.of_array(array, times_of(len(array), times, rate_hz),
+                                      skin_of(skin, array.shape[-2:]), calibration,
+                                      axes_are_known or size is not None, falling, readings, pitch_mm, layout)
 
 
 def _source_of_table(frames: Any, *, axes: Axes, **options: Any) -> _core.FrameSource:

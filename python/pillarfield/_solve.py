@@ -31,7 +31,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
           skin: Optional[_core.Skin] = None,
           calibration: Union[_core.Calibration, Step, Path, None] = None, tare_frames: int = 0,
           times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
-          axes: Axes = "", falling: bool = False, columns: str = "", dataset: str = "",
+          axes: Axes = "", falling: bool = False, readings: str = "", columns: str = "", dataset: str = "",
           frame_size: Optional[tuple[int, int]] = None, where: str = "", contacts: bool = False, device: str = "",
           **options: Unpack[_core.PlanOptions]) -> ForceField:
     """Solves frames of readings into forces.
@@ -50,6 +50,8 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     falling: readings fall under load; they are mirrored, 255 or 65535 less the reading, or negated
     columns, dataset, frame_size, where: of a file or a DataFrame, as of Recording(); frame_size also of an
         array [T, R * C]
+    readings: unit of the numbers of an array or file, 'kPa', 'psi', 'mmHg', 'N/cm2', 'N', ... or 'counts';
+        pressures need pitch_mm
     contacts: find and track the contacts too
     device: 'host', 'opencl', or an OpenCL device by its index or a part of its name; '': the host for
         small skins, else the best of OpenCL
@@ -84,8 +86,15 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
                                device, settings)
     if isinstance(frames, (list, tuple)) and not is_files(frames):
         frames = array_of(frames)
-    source = source_of(frames, skin, times, rate_hz, axes=axes, falling=falling, columns=columns,
+    reads = is_files(frames) or is_table(frames) or bool(readings)
+    source = source_of(frames, skin, times, rate_hz, axes=axes, falling=falling, readings=readings,
+                       pitch_mm=settings.get("pitch_mm") if reads else None,
+                       layout=settings.get("layout", "") if reads else "", columns=columns,
                        dataset=dataset, frame_size=frame_size, where=where)
+    if readings not in ("", "counts"):
+        if "counts_per_newton" in settings:
+            raise Error("readings", "counts per newton are given, too", "leave out one of them")
+        settings["counts_per_newton"] = source.skin.counts_per_newton
     if not isinstance(tare_frames, numbers.Integral):
         raise ArgumentError("tare_frames", f"it is {tare_frames!r:.60}", "give a whole number of frames")
     if tare_frames:

@@ -54,21 +54,21 @@ const Damage kRecordingDamages[] = {
     {"time integer",
      [](hid_t f) { replace(f, "/frames/time", H5T_STD_I64LE, {5}); },
      {"/frames/time must hold floats"}},
-    {"one row",
+    {"one row of pillars",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {1, 1, 6});
      },
-     {"1 x 6", "[2, 65534]"}},
+     {"rows", "[2, 65534]"}},
     {"no columns",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {1, 6, 0});
      },
-     {"6 x 0", "[2, 65534]"}},
+     {"6 x 0", "[1, 65534]"}},
     {"too many rows",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {0, 65535, 2}, {1, 9, 2});
      },
-     {"65535 x 2", "[2, 65534]"}},
+     {"65535 x 2", "[1, 65534]"}},
     {"frames the file cannot hold",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {5, 60000, 60000}, {1, 99, 99});

@@ -236,7 +236,7 @@ class Errors(unittest.TestCase):
             (pf.Error, lambda: pf.solve(np.zeros((2, 3, 8, 12)))),
             (pf.Error, lambda: pf.solve(np.array([["a", "b"]]))),
             (pf.Error, lambda: pf.solve(frames.astype(complex))),
-            (pf.Error, lambda: pf.solve(np.zeros((1, 1, 1), np.uint8))),
+            (pf.Error, lambda: pf.solve(np.zeros((1, 1, 1), np.uint8), layout="pillars")),
             (pf.Error, lambda: pf.solve([frames[0], frames[0][:4]])),
             (pf.Error, lambda: pf.solve(iter([frames[0], np.ma.array(frames[0], mask=True)]))),
             (pf.Error, lambda: pf.solve(frames, skin=pf.Skin(8, 14))),

@@ -23,13 +23,13 @@ FrameSize frame_size_of(const std::string& text) {
   const auto rows = std::from_chars(text.data(), end, size.rows);
   if (rows.ec == std::errc{} && rows.ptr != end && *rows.ptr == 'x') {
     const auto cols = std::from_chars(rows.ptr + 1, end, size.cols);
-    const auto fits = [](std::uint32_t each) { return each >= 2 && each <= kMaxSensels; };
+    const auto fits = [](std::uint32_t each) { return each >= 1 && each <= kMaxSensels; };
     if (cols.ec == std::errc{} && cols.ptr == end && fits(size.rows) && fits(size.cols))
       return size;
   }
   throw CLI::ValidationError(
       "--shape",
-      fmt::format("'{}' is not ROWSxCOLS of 2 to {} each, such as 40x60", text, kMaxSensels));
+      fmt::format("'{}' is not ROWSxCOLS of 1 to {} each, such as 40x60", text, kMaxSensels));
 }
 
 Pitch pitch_of(const std::string& text) {
@@ -116,7 +116,8 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
   plain.text("--dataset", options.dataset, "NAME",
              "Array of frames in an HDF5 file or .npz archive [the only one]");
   plain.text("--times", options.times, "NAME",
-             "Array of their times in that file, seconds [time of an archive]");
+             "Array of their times in that file, seconds [time of an archive]; column of times of a "
+             "table, by name or number");
   command
       ->add_option_function<std::string>(
           "--shape", [&](const std::string& text) { options.frame_size = frame_size_of(text); },
@@ -128,6 +129,9 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
              "[all but times, row numbers, sums and labels]");
   plain.text("--where", options.where, "COLUMN=WORD",
              "Lines of a table that are read: those with this word in the column, side=L [all]");
+  plain.text(
+      "--readings", options.readings, "UNIT",
+      "Unit of the numbers: kPa, psi, mmHg, N/cm2, N, ..., or counts [the file's, else counts]");
   command
       ->add_option_function<std::string>(
           "--axes", [&](const std::string& text) { options.axes = axes_of(text); },
@@ -183,7 +187,7 @@ CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit) {
   std::vector<std::pair<std::string, PressureUnit>> choices;
   choices.reserve(std::size(kPressureUnits));
   for (const PressureUnit& each : kPressureUnits) choices.emplace_back(each.name, each);
-  return group.choice<PressureUnit>("--pressure-unit", unit, choices, "Unit of pressures [kPa]");
+  return group.choice<PressureUnit>("--pressure-unit", unit, choices, "Unit of pressures in the output [kPa]");
 }
 
 }  // namespace pillarfield::cli

@@ -48,6 +48,11 @@ struct ReadOptions {
   /// The caller needs no times: without a rate, those of a file without times are NaN.
   bool untimed = false;
 
+  /// Unit of the numbers of plain data, such as "kPa", "psi", "mmHg", "N/cm2" or "N", or "counts",
+  /// in place of the one that the file states: readings become newtons, a pressure by the area of a
+  /// sensel. Empty: the unit that the file states, else counts.
+  std::string readings = {};
+
   /// Constants of the skin, in place of those in the file.
   std::optional<Pitch> sensel_pitch_mm = {};
   std::optional<double> counts_per_newton = {};

@@ -58,8 +58,8 @@ struct StatedConstants {
 /// (r, c) stands on the sensels (2r..2r+1, 2c..2c+1); a last odd row or column has no pillar. The
 /// elements of the force field are the pillars, or, without pillars, the sensels.
 struct Skin {
-  std::uint32_t rows = 0;               ///< sensel rows, 2..65534
-  std::uint32_t cols = 0;               ///< sensel columns, 2..65534
+  std::uint32_t rows = 0;               ///< sensel rows, 1..65534, with pillars from 2 on
+  std::uint32_t cols = 0;               ///< sensel columns, the same
   Pitch sensel_pitch_mm = 0.632455532;  ///< 250 per cm²; with pillars the same both ways
   double counts_per_newton =
       320;  ///< k of equation (2): counts a sensel reads per newton on its pillar, or on itself

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -98,13 +99,14 @@ std::size_t NumberArray::slice_bytes() const {
 }
 
 std::vector<double> read_numbers(NumberArray& array) {
-  if (array.shape().size() != 1) {
+  std::uint64_t count = 1;
+  for (const std::uint64_t size : array.shape()) count *= size;
+  if (std::ranges::count_if(array.shape(), [](auto size) { return size != 1; }) > 1) {
     throw Error(array.place(), fmt::format("has the shape {}", text_of_shape(array.shape())),
                 "times need one dimension");
   }
-  const std::size_t count = array.shape()[0];
   std::vector<std::byte> numbers(count * array.type().bytes);
-  array.read(0, count, numbers.data());
+  array.read(0, array.shape()[0], numbers.data());
   return doubles_of(array.type(), numbers);
 }
 

@@ -51,7 +51,8 @@ class NumberArray {
   std::vector<std::uint64_t> shape_;
 };
 
-/// Reads a one-dimensional array of any type. Throws Error if it has more dimensions.
+/// Reads a one-dimensional array of any type, such as [N] or [N, 1]. Throws Error if it has more
+/// dimensions.
 [[nodiscard]] std::vector<double> read_numbers(NumberArray& array);
 
 /// An array in memory.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "io/frame_source.h"
@@ -44,6 +45,8 @@ struct CellBlock {
   std::uint64_t line = 0;
   std::optional<double> number;  ///< of the frame
   std::optional<double> time_s;
+  std::optional<double> stamp_s;          ///< of the serial monitor, at its first row
+  std::set<std::string> before;           ///< words before it, without numbers
   std::vector<Statement> stated;          ///< checks of the whole
   std::vector<std::string> labels;        ///< cells of the words before its rows
   std::vector<std::vector<double>> rows;  ///< as read: with labels, NaN for words, and sums
@@ -70,21 +73,28 @@ bool is_sum(const Statement& stated) {
          stated.has_only({"force", "load", "sum", "total", "est", "estimated", "raw", "pressure"});
 }
 
+/// Sum and largest value of some cells.
+struct CellTotals {
+  double sum = 0;
+  double largest = 0;
+
+  void add(float cell) {
+    if (!std::isfinite(cell)) return;
+    sum += cell;
+    largest = std::max<double>(largest, cell);
+  }
+};
+
 /// Adds what is stated about some cells, if it is a sum or a largest value.
-void add_check(CellBlock& block, const Statement& stated, const std::vector<float>& cells) {
+void add_check(CellBlock& block, const Statement& stated, const CellTotals& totals) {
   if (!is_sum(stated) && !is_largest(stated)) return;
   Check check{fmt::format("{}", fmt::join(stated.words, " ")),
               is_force(stated),
               stated.value,
               stated.rounding,
-              0,
+              is_largest(stated) ? totals.largest : totals.sum,
               stated.line};
   if (check.is_force) check.stated *= unit_size(Dimension::force, stated.unit).value_or(1);
-  for (const float cell : cells) {
-    if (!std::isfinite(cell)) continue;
-    check.of_cells =
-        is_largest(stated) ? std::max<double>(check.of_cells, cell) : check.of_cells + cell;
-  }
   block.checks.push_back(std::move(check));
 }
 
@@ -103,18 +113,22 @@ bool count_up(const std::vector<double>& numbers) {
 
 class SectionParser {
  public:
-  explicit SectionParser(const std::filesystem::path& path)
-      : reader_(path, "save its frames as .npy") {}
+  SectionParser(const std::filesystem::path& path, const std::optional<FrameSize>& size)
+      : reader_(path, "save its frames as .npy"),
+        frame_cells_(size ? std::size_t{size->rows} * size->cols : 0) {}
 
   /// Reads all blocks, or of a table, whose lines have a time, the line of names alone.
   void parse() {
     while (!table_line && reader_.next()) {
       std::string_view line = reader_.line();
       if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      stamp_s_ = take_stamp(line);
       const char separator = separator_of(line);
       split_cells(line, separator, cells_);
       drop_empty_end(cells_);
-      if (!cells_.empty() && !add_row(separator)) add_words(line);
+      const bool is_number_of_frame = cells_.size() == 2 && !is_number(cells_[0]) &&
+                                      std::ranges::any_of(statements_in(line, 0), is_frame_number);
+      if (!cells_.empty() && (is_number_of_frame || !add_row(separator))) add_words(line);
     }
     end_block();
     // Sums that follow the cells came with the words of the next block.
@@ -123,20 +137,104 @@ class SectionParser {
         blocks[i].stated = std::move(i + 1 < blocks.size() ? blocks[i + 1] : open_).stated;
       }
     }
-    std::vector<std::string> sizes;
+    join_blocks();
     for (CellBlock& block : blocks) {
-      for (const Statement& stated : block.stated) add_check(block, stated, block.cells);
-      const auto known = std::ranges::find(sizes, block.size());
-      if (!number_) block.ordinal = static_cast<std::size_t>(known - sizes.begin());
-      if (known == sizes.end()) sizes.push_back(block.size());
+      CellTotals totals;
+      for (const float cell : block.cells) totals.add(cell);
+      for (const Statement& stated : block.stated) add_check(block, stated, totals);
     }
+    are_lines_frames_ = frame_cells_ > 0 && std::ranges::any_of(blocks, [&](const auto& block) {
+                          return block.cols == frame_cells_ && block.cells.size() > frame_cells_;
+                        });
+    if (!number_) sort_by_size();
+  }
+
+  /// True if the blocks are frames, and the lines between them no mere comments: two have one size,
+  /// or the one has row numbers or sums.
+  [[nodiscard]] bool has_frames(const ReadOptions& options) const {
+    if (!options.columns.empty() || !options.axes.empty() || !options.times.empty()) return false;
+    const auto [usual, count] = usual_block();
+    if (usual == nullptr || are_lines_frames_) return false;
+    const auto& size = options.frame_size;
+    if (size && usual->cells.size() != std::size_t{size->rows} * size->cols) return false;
+    return number_ || (blocks.size() == 1 && (usual->is_labelled || !usual->checks.empty())) ||
+           (count > 1 && (size || 4 * count >= blocks.size()));
   }
 
   std::optional<std::uint64_t> table_line;
   StatedWords words;
   std::vector<CellBlock> blocks;
+  std::size_t left_out = 0;  // blocks of other sizes
 
  private:
+  /// The first block of the usual size, or of the one that is given, and how many have it.
+  [[nodiscard]] std::pair<const CellBlock*, std::size_t> usual_block() const {
+    std::map<std::string, std::pair<const CellBlock*, std::size_t>> sizes;
+    for (const CellBlock& block : blocks) {
+      auto& [first, count] = sizes.try_emplace(block.size(), &block, 0).first->second;
+      ++count;
+    }
+    std::pair<const CellBlock*, std::size_t> usual = {nullptr, 0};
+    for (const auto& [name, size] : sizes) {
+      const auto fits = [&](const CellBlock* block) {
+        return block != nullptr && block->cells.size() == frame_cells_;
+      };
+      const bool is_earlier = size.second == usual.second && size.first < usual.first;
+      if (fits(size.first) != fits(usual.first) ? fits(size.first)
+                                                : size.second > usual.second || is_earlier)
+        usual = size;
+    }
+    return usual;
+  }
+
+  /// Joins two blocks that words other than those between frames cut from one.
+  void join_blocks() {
+    const auto [usual_one, count] = usual_block();
+    const std::string usual = usual_one == nullptr ? "" : usual_one->size();
+    std::map<std::string, std::size_t> kinds;  // of lines before whole frames
+    for (const CellBlock& block : blocks) {
+      if (block.size() != usual) continue;
+      for (const std::string& kind : block.before) ++kinds[kind];
+    }
+    const auto is_between_frames = [&](const std::string& kind) { return 2 * kinds[kind] > count; };
+    std::vector<CellBlock> joined;
+    for (CellBlock& block : blocks) {
+      CellBlock* const last = joined.empty() ? nullptr : &joined.back();
+      const bool is_part = last != nullptr && last->size() != usual && block.size() != usual &&
+                           last->cols == block.cols && last->number == block.number &&
+                           !last->is_labelled && !block.is_labelled && last->checks.empty() &&
+                           block.checks.empty() &&
+                           std::ranges::none_of(block.before, is_between_frames);
+      if (!is_part) {
+        joined.push_back(std::move(block));
+        continue;
+      }
+      last->cells.insert(last->cells.end(), block.cells.begin(), block.cells.end());
+      std::ranges::move(block.stated, std::back_inserter(last->stated));
+    }
+    blocks = std::move(joined);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const bool goes_on = i > 0 && blocks[i].number == blocks[i - 1].number;
+      blocks[i].ordinal = goes_on ? blocks[i - 1].ordinal + 1 : 0;
+    }
+  }
+
+  /// Numbers the sizes of blocks that have no numbers of frames, as parts of frames; rare sizes are
+  /// frames that are cut.
+  void sort_by_size() {
+    const auto [usual, most] = usual_block();
+    if (usual == nullptr) return;
+    const std::size_t cells = usual->cells.size();
+    std::map<std::string, std::size_t> counts;
+    std::map<std::string, std::size_t> ordinals = {{usual->size(), 0}};
+    for (const CellBlock& block : blocks) ++counts[block.size()];
+    left_out = std::erase_if(blocks, [&, most = most](const CellBlock& block) {
+      return cells == frame_cells_ ? block.cells.size() != cells : 2 * counts[block.size()] < most;
+    });
+    for (CellBlock& block : blocks)
+      block.ordinal = ordinals.try_emplace(block.size(), ordinals.size()).first->second;
+  }
+
   /// Adds the cells as a row if they are numbers, the first one also a word.
   bool add_row(char separator) {
     std::vector<double> row(cells_.size());
@@ -158,8 +256,13 @@ class SectionParser {
     }
     const bool counts_columns =
         open_.rows.size() == 1 && count_up(open_.rows[0]) && row.size() == open_.rows[0].size() + 1;
-    if (!fits && !counts_columns) end_block();
-    if (open_.rows.empty()) open_.line = reader_.number();
+    const bool follows_sums =
+        fits && !is_word && open_.names[0].empty() && !open_.names.back().empty();
+    if ((!fits && !counts_columns) || follows_sums) end_block();
+    if (open_.rows.empty()) {
+      open_.line = reader_.number();
+      open_.stamp_s = stamp_s_;
+    }
     cells_read_ += row.size();
     if (cells_read_ > kMostCells) {
       throw Error(reader_.place(), "follows 67108864 numbers, the most that are read of a text",
@@ -183,7 +286,10 @@ class SectionParser {
       if (!time_s_) time_s_ = time_in(stated, begins_frame);
       if (is_sum(stated) || is_largest(stated)) open_.stated.push_back(std::move(stated));
     }
-    open_.labels = cells_;
+    open_.labels = begins_frame ? std::vector<std::string>() : cells_;
+    std::string kind(line);
+    std::erase_if(kind, [](char letter) { return has_digit({&letter, 1}); });
+    open_.before.insert(std::move(kind));
     labels_line_ = reader_.number();
     const bool is_text =
         cells_.size() > 1 && !cells_[1].empty() && !has_digit(cells_[1].substr(0, 1));
@@ -208,7 +314,6 @@ class SectionParser {
   }
 
   void begin_frame(double number) {
-    if (number_ != number) ordinal_ = 0;
     number_ = number;
     time_s_.reset();
     open_.name.clear();
@@ -219,10 +324,18 @@ class SectionParser {
     if (open_.rows.empty()) return;
     CellBlock block = std::exchange(open_, {});
     block.number = number_;
-    block.time_s = time_s_;
-    block.ordinal = ordinal_++;
+    block.time_s = block.stamp_s ? block.stamp_s : time_s_;
     take_cells(block);
     blocks.push_back(std::move(block));
+  }
+
+  /// A reading that is finite or missing.
+  [[nodiscard]] float reading_of(double number, std::uint64_t line) const {
+    if (!std::isfinite(number)) return std::numeric_limits<float>::quiet_NaN();
+    if (std::abs(number) <= std::numeric_limits<float>::max()) return static_cast<float>(number);
+    throw Error(fmt::format("{}:{}", reader_.path().string(), line),
+                fmt::format("{:g} is beyond float32", number),
+                "write readings of at most 3.4e38, and nan for a missing one");
   }
 
   /// Takes labels and sums off the rows.
@@ -237,7 +350,8 @@ class SectionParser {
     const std::size_t width = rows[0].size();
     std::size_t cols_end = width;
     std::size_t rows_end = rows.size();
-    if (block.labels.size() == width && is_number(block.labels[width / 2])) {
+    const auto numbers = static_cast<std::size_t>(std::ranges::count_if(block.labels, is_number));
+    if (block.labels.size() == width && 2 * numbers >= width) {
       while (!is_number(block.labels[cols_end - 1])) --cols_end;
       block.is_labelled = block.is_labelled || !is_number(block.labels[0]);
     }
@@ -252,7 +366,7 @@ class SectionParser {
     block.cols = cols_end - begin;
     for (std::size_t i = 0; i < rows_end; ++i) {
       for (std::size_t j = begin; j < cols_end; ++j)
-        block.cells.push_back(static_cast<float>(rows[i][j]));
+        block.cells.push_back(reading_of(rows[i][j], block.line + i));
     }
     add_checks(block, rows, {begin, cols_end, rows_end});
   }
@@ -268,35 +382,41 @@ class SectionParser {
   static void add_checks(CellBlock& block, const std::vector<std::vector<double>>& rows,
                          const CellRange& range) {
     const std::size_t width = rows[0].size();
-    const auto add = [&](const std::string& name, double value, std::size_t row, std::size_t from,
-                         std::size_t step, std::size_t count) {
-      Statement stated{
+    std::vector<CellTotals> of_rows(range.rows_end);
+    std::vector<CellTotals> of_cols(block.cols);
+    CellTotals of_all;
+    for (std::size_t i = 0; i < block.cells.size(); ++i) {
+      for (CellTotals* const each : {&of_rows[i / block.cols], &of_cols[i % block.cols], &of_all})
+        each->add(block.cells[i]);
+    }
+    const auto add = [&](const std::string& name, std::size_t row, std::size_t col,
+                         const CellTotals& totals) {
+      const double value = rows[row][col];
+      const Statement stated{
           words_in(name.empty() ? "sum" : name), value, 0.005, {}, false, block.line + row};
-      std::vector<float> cells;
-      for (std::size_t i = 0; i < count; ++i) cells.push_back(block.cells[from + i * step]);
-      if (std::isfinite(value)) add_check(block, stated, cells);
+      if (std::isfinite(value)) add_check(block, stated, totals);
     };
     for (std::size_t j = range.cols_end; j < width; ++j) {
       const std::string name = block.labels.size() == width ? block.labels[j] : "";
-      for (std::size_t i = 0; i < range.rows_end; ++i)
-        add(name, rows[i][j], i, i * block.cols, 1, block.cols);
+      for (std::size_t i = 0; i < range.rows_end; ++i) add(name, i, j, of_rows[i]);
     }
     for (std::size_t i = range.rows_end; i < rows.size(); ++i) {
       for (std::size_t j = range.first_col; j < range.cols_end; ++j)
-        add(block.names[i], rows[i][j], i, j - range.first_col, block.cols, range.rows_end);
-      if (range.cols_end < width)
-        add(block.names[i], rows[i][range.cols_end], i, 0, 1, block.cells.size());
+        add(block.names[i], i, j, of_cols[j - range.first_col]);
+      if (range.cols_end < width) add(block.names[i], i, range.cols_end, of_all);
     }
   }
 
   LineReader reader_;
+  std::size_t frame_cells_;  // 0: not known
+  bool are_lines_frames_ = false;
   std::vector<std::string> cells_;
   CellBlock open_;
   std::uint64_t labels_line_ = 0;
   std::size_t cells_read_ = 0;
-  std::size_t ordinal_ = 0;
   std::optional<double> number_;
   std::optional<double> time_s_;
+  std::optional<double> stamp_s_;
 };
 
 /// The blocks of one part of the frames, one in each, all of one size.
@@ -329,12 +449,29 @@ std::vector<const CellBlock*> frames_of(const SectionParser& parser, const std::
   }
   std::vector<const CellBlock*> frames;
   for (const CellBlock& block : parser.blocks) {
-    if (block.ordinal != *chosen) continue;
-    frames.push_back(&block);
-    if (block.size() == frames[0]->size()) continue;
-    throw Error(fmt::format("{}:{}", path, block.line),
-                fmt::format("a frame of {} begins here", block.size()),
+    if (block.ordinal == *chosen) frames.push_back(&block);
+  }
+  std::map<std::string, std::size_t> sizes;
+  std::string usual = frames[0]->size();
+  for (const CellBlock* const frame : frames) {
+    if (++sizes[frame->size()] > sizes[usual]) usual = frame->size();
+  }
+  std::size_t left_out = parser.left_out;
+  if (sizes[usual] > 1 && 2 * sizes[usual] > frames.size()) {
+    left_out += std::erase_if(frames, [&](const CellBlock* frame) {
+      return !frame->is_labelled && frame->size() != usual;
+    });
+  }
+  for (const CellBlock* const frame : frames) {
+    if (frame->size() == frames[0]->size()) continue;
+    throw Error(fmt::format("{}:{}", path, frame->line),
+                fmt::format("a frame of {} begins here", frame->size()),
                 fmt::format("frames before it have {}", frames[0]->size()));
+  }
+  if (left_out > 0) {
+    notes.push_back(fmt::format(
+        "{} {} of other sizes than {}, as frames that are cut, {} left out.", left_out,
+        left_out == 1 ? "block" : "blocks", frames[0]->size(), left_out == 1 ? "is" : "are"));
   }
   const auto& [rows, cols] = std::pair(parser.words.rows, parser.words.cols);
   const std::string stated = fmt::format("{} x {}", rows.value_or(0), cols.value_or(0));
@@ -398,38 +535,44 @@ std::vector<double> frame_times(const std::vector<const CellBlock*>& frames,
   return times_s;
 }
 
-std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
-                                          const ReadOptions& options) {
-  SectionParser parser(path);
-  parser.parse();
-  if (parser.table_line) return open_table_after(path, options, *parser.table_line);
-  refuse_layout(path, options);
-  if (!options.times.empty()) refuse_dataset(path, options);
-  if (parser.blocks.empty()) {
-    throw Error(path.string(), "holds words and no frame of numbers", "export it with its frames");
-  }
+std::unique_ptr<FileSource> source_of(const SectionParser& parser,
+                                      const std::filesystem::path& path,
+                                      const ReadOptions& options) {
   std::vector<std::string> notes;
   const auto frames = frames_of(parser, options.dataset, path.string(), notes);
   ReadOptions known = options;
   known.axes = {ArrayAxis::frames, ArrayAxis::rows, ArrayAxis::columns};
+  const std::size_t cells = frames[0]->cells.size();
+  if (frames[0]->cols == cells && cells > 1 && !known.frame_size) {
+    throw Error(path.string(), fmt::format("has one line of {} readings in each frame", cells),
+                fmt::format("give the size of a frame, --shape ROWSxCOLS, or 1x{}", cells));
+  }
   const auto by_forces = check_frames(frames, notes, path.string());
   const auto newtons = parser.words.newtons_per_cell(by_forces, known, notes, path.string());
+  known.readings.clear();
   std::vector<float> readings;
   for (const CellBlock* const block : frames) {
     for (const float cell : block->cells) {
       readings.push_back(newtons ? static_cast<float>(cell * *newtons) : cell);
     }
   }
-  const std::size_t cols = frames[0]->cols;
-  auto source = array_source(
-      path, "text of frames",
-      array_of(readings, {frames.size(), frames[0]->cells.size() / cols, cols}, path.string()),
-      frame_times(frames, parser.words.period_s), known);
+  const std::size_t cols = known.frame_size ? known.frame_size->cols : frames[0]->cols;
+  auto source = array_source(path, "text of frames",
+                             array_of(readings, {frames.size(), cells / cols, cols}, path.string()),
+                             frame_times(frames, parser.words.period_s), known);
   source->warn(fmt::format("Each block between lines of words is a frame of {}{}.",
                            frames[0]->size(),
                            frames[0]->is_labelled ? ", behind its row numbers" : ""));
   for (std::string& note : notes) source->warn(std::move(note));
   return source;
+}
+
+std::unique_ptr<FileSource> open_sections(const std::filesystem::path& path,
+                                          const ReadOptions& options) {
+  SectionParser parser(path, options.frame_size);
+  parser.parse();
+  if (!parser.table_line && parser.has_frames(options)) return source_of(parser, path, options);
+  return open_table_after(path, options, parser.table_line.value_or(0));
 }
 
 /// True if a text has a line of words first and then one of numbers, or states a unit of pressure.
@@ -447,16 +590,25 @@ bool looks_like_sections(std::string_view head) {
     std::string_view line = head.substr(0, head.find('\n'));
     head.remove_prefix(std::min(line.size() + 1, head.size()));
     if (line.ends_with('\r')) line.remove_suffix(1);
+    (void)take_stamp(line);
     if (line.starts_with('[')) return false;  // of a scene
     words.add(line, statements_in(line, number));
     split_cells(line, separator_of(line), cells);
     drop_empty_end(cells);
     if (number > 1 && cells.size() > 1 && std::ranges::all_of(cells, is_number)) return true;
   }
-  return words.mpa.has_value();
+  return words.unit.rank > 0;
 }
 
 }  // namespace
+
+std::unique_ptr<FileSource> open_frames_between_words(const std::filesystem::path& path,
+                                                      const ReadOptions& options) {
+  SectionParser parser(path, options.frame_size);
+  parser.parse();
+  if (parser.table_line || !parser.has_frames(options)) return nullptr;
+  return source_of(parser, path, options);
+}
 
 SourceFormat sections_format() {
   return {.name = "text of frames between lines of words",

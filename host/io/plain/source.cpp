@@ -9,6 +9,7 @@
 #include "base/number_type.h"
 #include "io/frame_source.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/plain/stated_words.h"
 #include "pillarfield/array_axes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/layout_note.h"
@@ -146,10 +147,10 @@ void ArraySource::take_lines(const FrameSize& size) {
 }
 
 void ArraySource::check_size(const ReadOptions& options) const {
-  const auto fits = [](std::uint32_t size) { return size >= 2 && size <= kMaxSensels; };
+  const auto fits = [](std::uint32_t size) { return size >= 1 && size <= kMaxSensels; };
   if (!fits(skin_.rows) || !fits(skin_.cols)) {
     throw Error(array_->place(),
-                fmt::format("with the shape {} has no frames of 2 to {} rows and columns",
+                fmt::format("with the shape {} has no frames of 1 to {} rows and columns",
                             text_of_shape(array_->shape()), kMaxSensels),
                 "frames need the shape (frames, rows, columns)");
   }
@@ -190,8 +191,15 @@ std::unique_ptr<FileSource> array_source(const std::filesystem::path& path, std:
                                          std::unique_ptr<NumberArray> readings,
                                          std::vector<double> times_s, const ReadOptions& options) {
   const std::string place = readings->place();
+  ReadOptions known = options;
+  std::vector<std::string> notes;
+  if (!options.readings.empty()) {
+    const auto newtons = StatedWords().newtons_per_cell(std::nullopt, known, notes, place);
+    if (newtons) *known.counts_per_newton /= *newtons;
+  }
   auto source = std::make_unique<ArraySource>(path, std::move(format), std::move(readings),
-                                              std::move(times_s), options);
+                                              std::move(times_s), known);
+  for (std::string& note : notes) source->warn(std::move(note));
   if (options.axes.empty() && !options.frame_size) require_likely_axes(*source, place);
   return source;
 }

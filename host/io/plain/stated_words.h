@@ -28,6 +28,19 @@ struct Statement {
 /// The numbers that line `number` states.
 [[nodiscard]] std::vector<Statement> statements_in(std::string_view line, std::uint64_t number);
 
+/// The unit of the cells, as some words name it.
+struct CellUnit {
+  std::string name = "counts";
+  std::optional<double> mpa;      ///< of a cell of 1
+  std::optional<double> newtons;  ///< of a cell of 1
+  int rank = 0;                   ///< of the words: 3 if they are about the unit of all cells
+
+  [[nodiscard]] bool is_same(const CellUnit& other) const;
+};
+
+/// The unit that ReadOptions::readings names. Throws Error if it is none.
+[[nodiscard]] CellUnit unit_of_readings(std::string name);
+
 /// The facts about all frames that a file states in words, whoever wrote it.
 struct StatedWords {
   std::optional<double> rows;
@@ -36,15 +49,16 @@ struct StatedWords {
   std::optional<double> width_mm;  ///< of a sensel
   std::optional<double> height_mm;
   std::optional<double> area_mm2;
-  std::optional<double> mpa;    ///< of a cell of 1
-  std::string unit = "counts";  ///< of the cells
-  bool is_unit_sure = false;    ///< the line is about units
+  CellUnit unit;
 
   void add(std::string_view line, const std::vector<Statement>& statements);
+  /// Adds the name of a column of readings, such as "left pressure 1[N/cm²]" or "p3_kPa".
+  void add_heading(std::string name);
 
   /// Newtons on a sensel whose cell is 1, and the constants of such readings in `options`; unset
-  /// for counts. `by_forces`: that of the forces that the file states. Throws Error if pressures
-  /// have no area, or if forces contradict them.
+  /// for counts. `by_forces`: that of the forces that the file states. ReadOptions::readings and
+  /// the pitch of the options win, with a note. Throws Error if pressures have no area, if words
+  /// about a size or a unit are not understood as a whole, or if forces contradict them.
   [[nodiscard]] std::optional<double> newtons_per_cell(std::optional<double> by_forces,
                                                        ReadOptions& options,
                                                        std::vector<std::string>& notes,
@@ -52,8 +66,14 @@ struct StatedWords {
 
  private:
   void add_unit(std::string_view line);
+  void add_unit(CellUnit unit);
   void add_number(const Statement& stated);
+  void add_size(std::string_view line);
   [[nodiscard]] std::optional<Pitch> pitch() const;
+
+  std::string unclear_size_;  // words about the size of a sensel
+  std::string unclear_unit_;
+  bool is_order_taken_ = false;  // of a width and a height
 };
 
 }  // namespace pillarfield

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "io/plain/column_names.h"
@@ -15,6 +17,7 @@
 #include "io/plain/text_cells.h"
 #include "io/proposal.h"
 #include "io/tekscan/line_reader.h"
+#include "io/units.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 
@@ -43,73 +46,112 @@ class TableParser {
   }
 
   Table parse() {
-    bool is_first = true;
-    for (std::uint64_t number = 1; !is_ended_ && reader_.next(); ++number) {
+    find_length();
+    while (!is_ended_ && reader_.next()) {
       std::string_view line = reader_.line();
-      if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
-      if (number < header_line_ || is_comment(line)) {
-        table_.words.add(line, statements_in(line, number));
-        comment_ = line.substr(line.starts_with('#') ? 1 : 0);
-      } else if (line.find_first_not_of(" \t\f,;") == std::string_view::npos) {
+      if (reader_.number() == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+      stamp_s_ = take_stamp(line);
+      if (reader_.number() < header_line_ || is_comment(line)) {
+        add_words(line);
+        comment_ = line.substr(std::min(line.find_first_not_of("#%/"), line.size()));
+      } else if (is_blank_or_rule(line)) {
         end_block();
-      } else if (std::exchange(is_first, false)) {
+      } else if (line_cells_ == 0) {
         add_first(line);
       } else if (header_text_.empty() || line != header_text_) {  // Each frame may have a header.
         add(line);
       }
     }
-    if (held_) take_held();
     end_block();
     if (lines_) lines_->check(reader_.place());
+    finish();
     if (!entries_.empty()) sort_entries();
     return std::move(table_);
   }
 
  private:
-  /// Takes the first line of the table, which may name the columns, or state the size of a frame.
+  /// Finds the usual number of cells in the first lines of numbers.
+  void find_length() {
+    constexpr int kLooks = 100;
+    LineReader reader(reader_.path(), "save it as .npy");
+    std::map<std::size_t, int> lengths;
+    std::vector<std::string> cells;
+    for (int looks = 0; looks < kLooks && reader.next();) {
+      std::string_view line = reader.line();
+      (void)take_stamp(line);
+      const char separator = separator_of(line);
+      if (reader.number() < header_line_ || is_comment(line) || is_blank_or_rule(line)) continue;
+      split_cells(line, separator, cells);
+      if (!are_numbers(cells, separator)) continue;
+      ++looks;
+      if (++lengths[cells.size()] > lengths[length_]) length_ = cells.size();
+    }
+  }
+
+  /// True if most cells are numbers or times.
+  static bool are_numbers(const std::vector<std::string>& cells, char separator) {
+    std::size_t numbers = 0;  // missing ones, too
+    std::size_t finite = 0;
+    for (const std::string& cell : cells) {
+      double value = 0;
+      const bool is_number = read_cell(cell, separator, value) || parse_time(cell);
+      numbers += is_number;
+      finite += is_number && std::isfinite(value);
+    }
+    return 2 * numbers > cells.size() && (finite > 0 || numbers == cells.size());
+  }
+
+  void add_words(std::string_view line) {
+    table_.words.add(line, statements_in(line, reader_.number()));
+  }
+
+  /// Takes a line before the first one of numbers, which may name the columns, or state the size of
+  /// a frame.
   void add_first(std::string_view line) {
     separator_ = separator_of(line);
     split_cells(line, separator_, cells_);
     if (is_header(cells_, separator_)) {
+      add_words(header_text_);
       header_text_ = line;
-      take_header();
+      header_ = cells_;
+      drop_empty_end(header_, 1);
+      return;
+    }
+    std::vector<std::string> cells = cells_;
+    drop_empty_end(cells, header_.size());
+    const bool is_named = header_.size() > 1 && header_.size() == cells.size() &&
+                          std::ranges::any_of(cells, [&](const std::string& cell) {
+                            double value = 0;
+                            return read_cell(cell, separator_, value) && std::isfinite(value);
+                          });
+    if (!is_named && !are_numbers(cells_, separator_)) return add_words(line);
+    if (cells_.size() != length_ && !is_named) {
+      if (held_ || cells_.size() != 2) leave_out(line);
+      if (cells_.size() == 2) held_ = line;
       return;
     }
     std::vector<std::string> names;  // A comment above the numbers may be their names.
     split_cells(comment_, separator_, names);
-    if (names.size() > 1 && names.size() == cells_.size() && is_header(names, separator_)) {
-      std::swap(cells_, names);
-      take_header();
-      return add(line);
+    if (header_.empty() && names.size() > 1 && names.size() == cells_.size() &&
+        is_header(names, separator_)) {
+      header_ = std::move(names);
     }
-    drop_empty_end(cells_, 2);
-    double each = 0;
-    if (cells_.size() == 2 && read_cell(cells_[0], separator_, each) &&
-        read_cell(cells_[1], separator_, each)) {
-      held_ = line;
-    } else {
-      add(line);
-    }
+    begin();
+    if (line_cells_ > 0 && lines_->takes(cells_)) append();
   }
 
-  void take_header() {
-    header_ = cells_;
-    drop_empty_end(header_, 1);
-    separator_ = '\0';
-  }
-
-  /// Takes a first line of two numbers as rows and columns if their product is the length of the
-  /// others, else as a line like the others.
+  /// Takes a first line of two numbers as rows and columns if their product is the number of
+  /// readings in the others.
   void take_held() {
     const std::string line = *std::exchange(held_, std::nullopt);
     double rows = 0;
     double cols = 0;
     std::vector<std::string> numbers;
-    split_cells(line, separator_, numbers);
-    const bool is_size = read_cell(numbers[0], separator_, rows) &&
-                         read_cell(numbers[1], separator_, cols) && rows >= 2 && cols >= 2 &&
-                         rows * cols == static_cast<double>(cells_.size());
-    if (!is_size) return add(line);
+    split_cells(line, separator_of(line), numbers);
+    const bool is_size = read_cell(numbers[0], separator_of(line), rows) &&
+                         read_cell(numbers[1], separator_of(line), cols) && rows >= 1 &&
+                         rows * cols == static_cast<double>(table_.cells);
+    if (!is_size) return leave_out(line);
     const FrameSize stated = {static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(cols)};
     if (!table_.size) table_.size = stated;
     table_.notes.push_back(fmt::format(
@@ -118,28 +160,36 @@ class TableParser {
   }
 
   void add(std::string_view line) {
-    if (held_) {
-      split_cells(line, separator_of(line), cells_);
-      drop_empty_end(cells_, 1);
-      take_held();
-    }
-    if (separator_ == '\0') separator_ = separator_of(line);
     split_cells(line, separator_, cells_);
-    if (line_cells_ == 0) {
-      begin();
-    } else if (header_line_ > 0 && ends_table()) {
+    if (header_line_ > 0 && ends_table()) {
       is_ended_ = true;
       table_.notes.push_back(fmt::format("The table ends before line {}, '{:.20}'.",
                                          reader_.number(), without_blanks(line)));
       return;
-    } else {
-      drop_empty_end(cells_, line_cells_);
     }
-    if (cells_.size() != line_cells_) {
-      throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
-                  fmt::format("lines before it have {}", line_cells_));
-    }
+    drop_empty_end(cells_, line_cells_);
+    double value = 0;
+    const bool has_number = std::ranges::any_of(cells_, [&](const std::string& cell) {
+      return read_cell(cell, separator_, value) || parse_time(cell);
+    });
+    if (cells_.size() != line_cells_ || !has_number) return leave_out(line);
     if (lines_->takes(cells_)) append();
+  }
+
+  /// Leaves out a line of words or one that is cut.
+  void leave_out(std::string_view line) {
+    double value = 0;
+    const bool has_word = std::ranges::any_of(cells_, [&](const std::string& cell) {
+      return !read_cell(cell, separator_, value) && !parse_time(cell);
+    });
+    if (has_word) add_words(line);
+    if (left_out_++ == 0)
+      first_left_out_ = fmt::format("'{:.30}' in line {}", without_blanks(line), reader_.number());
+    (has_word ? words_since_ : cut_since_) = true;
+    if (!has_word && cut_.empty()) {
+      cut_ = reader_.place();
+      cut_cells_ = cells_.size();
+    }
   }
 
   /// True if a line of words or of another table follows, as after the frames of an export.
@@ -175,7 +225,12 @@ class TableParser {
       throw Error(reader_.place(), "begins with an empty cell, as a table with an index does",
                   "save it without index and header");
     }
-    if (header_.size() == 1) header_.clear();  // A title.
+    const bool is_title = header_.size() == 1 || separator_of(header_text_) == ' ' ||
+                          2 * header_.size() < cells_.size();
+    if (!header_.empty() && header_.size() != cells_.size() && is_title) {
+      add_words(std::exchange(header_text_, {}));
+      header_.clear();
+    }
     if (!header_.empty() && header_.size() != cells_.size()) {
       throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
                   fmt::format("the line of names before it has {}", header_.size()));
@@ -187,10 +242,11 @@ class TableParser {
           "the table without a header.");
     }
     columns_ = choose_columns(header_, cells_, separator_, options_, reader_.place());
+    take_times();
     lines_.emplace(options_, header_, cells_.size(), columns_, reader_.place());
     long_columns_ = long_columns(header_, columns_, options_, reader_.place());
     for (const std::size_t column : columns_.readings) {
-      if (column < header_.size()) add_unit(header_[column]);
+      if (column < header_.size()) table_.words.add_heading(header_[column]);
     }
     if (!columns_.left_out.empty()) {
       table_.notes.push_back(
@@ -200,7 +256,8 @@ class TableParser {
     table_.cells = columns_.readings.size();
     table_.time_unit_s = columns_.time_unit_s;
     if (long_columns_) return;
-    if (!table_.size) table_.size = columns_.size;
+    if (held_) take_held();
+    if (!table_.size && options_.axes.empty()) table_.size = columns_.size;
     table_.notes.insert(table_.notes.end(), columns_.notes.begin(), columns_.notes.end());
     const auto& size = table_.size;
     const std::size_t sensels = size ? std::size_t{size->rows} * size->cols : 0;
@@ -210,22 +267,43 @@ class TableParser {
     throw ProposingError(
         reader_.place(),
         fmt::format("has {} numbers, {} of them readings", line_cells_, table_.cells),
-        needs + (line_cells_ > sensels ? "choose them with --columns, and name a column of times "
-                                         "'time'"
+        needs + (line_cells_ > sensels ? "choose them with --columns, and a column of times with "
+                                         "--times"
                                        : "give the --shape of one frame"),
         needs + "choose them with",
         proposals_by_cells(path_, separator_, line_cells_, sensels, options_));
   }
 
-  /// Takes the unit of pressure in a name of readings, as "left pressure 1[N/cm²]" or "p3 (kPa)".
-  void add_unit(std::string name) {
-    if (name.find_first_of("([") == std::string::npos && !lower_case(name).starts_with("press"))
-      return;
-    std::ranges::replace(name, '_', ' ');
-    table_.words.add("pressure " + name, {});
+  /// Takes the column of times that the options name; an empty one is none.
+  void take_times() {
+    if (!options_.times.empty()) {
+      std::size_t column = 0;
+      const auto [end, error] = std::from_chars(
+          options_.times.data(), options_.times.data() + options_.times.size(), column);
+      const auto named = std::ranges::find(header_, options_.times);
+      if (named != header_.end()) {
+        column = static_cast<std::size_t>(named - header_.begin()) + 1;
+      } else if (error != std::errc{} || *end != '\0' || column < 1 || column > line_cells_) {
+        throw Error(reader_.place(),
+                    fmt::format("has {} columns and none for --times '{:.60}'", line_cells_,
+                                options_.times),
+                    fmt::format("give its name or number, from 1 to {}", line_cells_));
+      }
+      columns_.time = column - 1;
+      std::erase(columns_.readings, column - 1);
+      const auto words = words_in(named == header_.end() ? "" : *named);
+      columns_.time_unit_s =
+          words.empty() ? 0 : unit_size(Dimension::time, words.back()).value_or(0);
+      if (parse_time(cells_[column - 1])) columns_.time_unit_s = 1;
+    }
+    if (!columns_.time || !cells_[*columns_.time].empty()) return;
+    columns_.time.reset();
+    table_.notes.emplace_back("The first time is empty, and the column of times is left out.");
   }
 
   void append() {
+    if (std::exchange(cut_since_, false)) cut_between_ = cut_between_ || table_.lines > 0;
+    if (std::exchange(words_since_, false)) table_.has_words_between |= table_.lines > 0;
     if (table_.readings.size() + table_.cells > kMostTableReadings) {
       throw Error(reader_.place(), fmt::format("follows {} readings", table_.readings.size()),
                   "tables of at most 134217728 readings are read; save it as .npy");
@@ -235,13 +313,9 @@ class TableParser {
     ++block_rows_;
     if (long_columns_) return append_long(time);
     if (columns_.time) table_.times.push_back(time);
-    for (const std::size_t column : columns_.readings) {
-      constexpr double kMost = std::numeric_limits<float>::max();
-      const double number = column == kNoColumn ? NAN : number_in(column);
-      const bool is_missing = !(std::abs(number) <= kMost);
-      table_.readings.push_back(is_missing ? std::numeric_limits<float>::quiet_NaN()
-                                           : static_cast<float>(number));
-    }
+    if (!columns_.time && stamp_s_) table_.times.push_back(rising_(*stamp_s_));
+    for (const std::size_t column : columns_.readings)
+      table_.readings.push_back(column == kNoColumn ? NAN : reading_in(column));
   }
 
   /// Takes a line that holds one reading: its frame, row and column, time and value.
@@ -263,7 +337,7 @@ class TableParser {
     if (entries_.size() == kMostTableReadings / 4) {
       throw Error(reader_.place(), "follows 33554432 lines of one reading", "save it as .npy");
     }
-    entries_.push_back({frame, row, col, time, number_in(columns.value)});
+    entries_.push_back({frame, row, col, time, reading_in(columns.value)});
   }
 
   /// Puts the readings of single lines in order; cells without one are missing.
@@ -325,6 +399,16 @@ class TableParser {
                 "with --columns");
   }
 
+  /// The reading in a column, NaN if it is missing.
+  [[nodiscard]] float reading_in(std::size_t column) const {
+    const double number = number_in(column);
+    if (!std::isfinite(number)) return std::numeric_limits<float>::quiet_NaN();
+    if (std::abs(number) <= std::numeric_limits<float>::max()) return static_cast<float>(number);
+    throw Error(reader_.place(),
+                fmt::format("'{:.30}' in column {} is beyond float32", cells_[column], column + 1),
+                "write a reading of at most 3.4e38, and nan for a missing one");
+  }
+
   [[nodiscard]] double time_in(std::size_t column) {
     const std::string& cell = cells_[column];
     if (table_.lines == 0) is_clock_ = parse_time(cell).has_value();
@@ -337,13 +421,66 @@ class TableParser {
 
   void end_block() {
     if (block_rows_ == 0) return;
-    if (table_.blocks == 0) table_.rows = block_rows_;
-    if (block_rows_ != table_.rows && !table_.size && !long_columns_) {
-      throw Error(reader_.place(), fmt::format("a frame of {} rows ends here", block_rows_),
-                  fmt::format("frames before it have {}", table_.rows));
+    blocks_.push_back(std::exchange(block_rows_, 0));
+    block_ends_.push_back(reader_.number());
+  }
+
+  /// Leaves out blocks that are cut, and says what was left out.
+  void finish() {
+    if (!columns_.time && table_.times.size() == table_.lines) table_.time_unit_s = 1;
+    if (!columns_.time && table_.times.size() != table_.lines) table_.times.clear();
+    if (left_out_ > 0 && table_.lines > 0) {
+      table_.notes.push_back(fmt::format("{} line{} of words or cut {} left out, first {}.",
+                                         left_out_, left_out_ == 1 ? "" : "s",
+                                         left_out_ == 1 ? "is" : "are", first_left_out_));
     }
-    ++table_.blocks;
-    block_rows_ = 0;
+    const auto& size = table_.size;
+    const bool are_frames = long_columns_ || (size && table_.cells != size->cols) ||
+                            (size && size->rows == 1) ||
+                            (!size && blocks_.size() == 1 && !table_.times.empty());
+    table_.has_words_between = table_.has_words_between && !are_frames;
+    table_.blocks = blocks_.size();
+    if (blocks_.empty() || are_frames) return;
+    std::map<std::uint64_t, std::uint64_t> counts;
+    std::uint64_t usual = blocks_[0];
+    for (const std::uint64_t rows : blocks_) {
+      if (++counts[rows] > counts[usual]) usual = rows;
+    }
+    table_.rows = usual;
+    const std::uint64_t whole = counts[usual];
+    if (whole < 2 || (size && size->rows != usual)) {
+      if (cut_between_) {
+        table_.refusal.emplace(cut_, fmt::format("has {} numbers", cut_cells_),
+                               fmt::format("lines before it have {}", line_cells_));
+      } else if (whole != blocks_.size() && !size) {
+        const auto other = std::ranges::find_if(blocks_, [&](auto rows) { return rows != usual; });
+        table_.refusal.emplace(
+            fmt::format("{}:{}", reader_.path().string(),
+                        block_ends_[static_cast<std::size_t>(other - blocks_.begin())]),
+            fmt::format("a frame of {} rows ends here", *other),
+            fmt::format("others have {}", usual));
+      }
+      return;
+    }
+    table_.has_words_between = false;
+    if (whole == blocks_.size()) return;
+    std::size_t from = 0;
+    std::size_t to = 0;
+    for (const std::uint64_t rows : blocks_) {
+      for (std::uint64_t row = 0; row < rows; ++row, ++from) {
+        if (rows != usual) continue;
+        if (!table_.times.empty()) table_.times[to] = table_.times[from];
+        std::copy_n(&table_.readings[from * table_.cells], table_.cells,
+                    &table_.readings[to++ * table_.cells]);
+      }
+    }
+    table_.readings.resize(to * table_.cells);
+    if (!table_.times.empty()) table_.times.resize(to);
+    table_.lines = to;
+    table_.blocks = whole;
+    table_.notes.push_back(
+        fmt::format("{} of {} blocks have not the {} rows of the others and are left out.",
+                    blocks_.size() - whole, blocks_.size(), usual));
   }
 
   const std::filesystem::path& path_;
@@ -361,18 +498,25 @@ class TableParser {
   std::optional<LongColumns> long_columns_;
   std::vector<std::array<double, 5>> entries_;  // frame, row, column, time, value
   std::vector<std::string> cells_;
-  std::size_t line_cells_ = 0;    // of the first line
-  std::uint64_t block_rows_ = 0;  // of the block so far
+  std::size_t length_ = 0;                 // usual number of cells in a line
+  std::size_t line_cells_ = 0;             // of the first line
+  std::uint64_t block_rows_ = 0;           // of the block so far
+  std::vector<std::uint64_t> blocks_;      // rows of each
+  std::vector<std::uint64_t> block_ends_;  // their lines
+  std::optional<double> stamp_s_;          // of the line
+  std::uint64_t left_out_ = 0;             // lines
+  std::string first_left_out_;
+  std::string cut_;  // place of the first line that is cut
+  std::size_t cut_cells_ = 0;
+  bool cut_since_ = false;    // after the last line of numbers
+  bool words_since_ = false;  // the same
+  bool cut_between_ = false;
   bool is_clock_ = false;
   bool is_ended_ = false;
   RisingClock rising_;
 };
 
 }  // namespace
-
-bool is_comment(std::string_view line) {
-  return line.starts_with('#') || lower_case(line.substr(0, 4)) == "sep=";
-}
 
 Table parse_table(const std::filesystem::path& path, const ReadOptions& options,
                   std::uint64_t header_line) {

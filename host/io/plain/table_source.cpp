@@ -22,14 +22,14 @@
 namespace pillarfield {
 namespace {
 
-/// True if a line has several cells, all of them numbers, times or missing, for recognising a
+/// True if a line has cells, all of them numbers, times or missing, for recognising a
 /// table.
 bool resembles_numbers(std::string_view line) {
   std::vector<std::string> cells;
   const char separator = separator_of(line);
   split_cells(line, separator, cells);
   double value = 0;
-  return cells.size() > 1 && line.find_first_of("0123456789") != std::string_view::npos &&
+  return line.find_first_of("0123456789") != std::string_view::npos &&
          std::ranges::all_of(cells, [&](const std::string& cell) {
            return read_cell(cell, separator, value) || parse_time(cell);
          });
@@ -129,13 +129,15 @@ bool looks_like_table(std::string_view head) {
   if (head.starts_with("[[") || head.starts_with('{')) return false;
   if (head.starts_with('<') && head.find("</") != std::string_view::npos) return false;
   std::size_t names = 0;  // of the line before
+  char names_separator = '\0';
   for (int tried = 0; tried < 2 && !head.empty();) {
     const std::size_t end = std::min(head.find('\n'), head.size());
     std::string_view line = head.substr(0, end);
     const bool is_cut = end == head.size();
     head.remove_prefix(std::min(end + 1, head.size()));
     if (line.ends_with('\r')) line.remove_suffix(1);
-    if (is_comment(line) || without_blanks(line).empty()) continue;
+    (void)take_stamp(line);
+    if (is_comment(line) || is_blank_or_rule(line)) continue;
     const char separator = separator_of(line);
     // The last cell of a line that the head cuts is left out.
     if (is_cut) line = line.substr(0, line.find_last_of(separator));
@@ -146,10 +148,13 @@ bool looks_like_table(std::string_view head) {
       double value = 0;
       return read_cell(cell, separator, value);
     });
+    // "Frame 7" names no columns.
+    if (names == 2 && cells.size() == 2 && names_separator != separator) return false;
     const bool has_names = names == cells.size() && numbers > 2 && 2 * numbers > std::ssize(cells);
     if (has_names || resembles_numbers(line))
       return has_names || names == 0 || names + 2 > cells.size() || cells.size() < 4;
     names = cells.size();
+    names_separator = separator;
     // A line of names may be longer than the head.
     constexpr std::ptrdiff_t kManyNames = 100;
     if (is_cut && separator != ' ' && std::ranges::count(line, separator) >= kManyNames)
@@ -174,9 +179,13 @@ std::unique_ptr<NumberArray> array_of(const std::vector<float>& readings,
 
 std::unique_ptr<FileSource> open_table_after(const std::filesystem::path& path,
                                              const ReadOptions& options, std::uint64_t line) {
-  refuse_dataset(path, options);
+  if (!options.dataset.empty()) refuse_dataset(path, options);
   refuse_output(path);
   Table table = parse_table(path, options, line);
+  if (table.has_words_between && line == 0) {
+    if (auto frames = open_frames_between_words(path, options)) return frames;
+  }
+  if (table.refusal) throw Error(*table.refusal);
   std::vector<std::uint64_t> shape = shape_of(table, path);
   ReadOptions known = options;
   known.columns.clear();
@@ -186,6 +195,8 @@ std::unique_ptr<FileSource> open_table_after(const std::filesystem::path& path,
           table.words.newtons_per_cell(std::nullopt, known, table.notes, path.string())) {
     for (float& reading : table.readings) reading = static_cast<float>(reading * *newtons);
   }
+  known.readings.clear();
+  known.times.clear();
   const std::uint64_t frame_lines =
       table.long_shape.empty() ? table.lines / shape.front() : std::uint64_t{1};
   const double unit_s = unit_of(table);

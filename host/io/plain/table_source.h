@@ -21,4 +21,8 @@ namespace pillarfield {
                                                            const ReadOptions& options,
                                                            std::uint64_t line);
 
+/// Opens a text whose frames stand between lines of words; null if they are mere comments.
+[[nodiscard]] std::unique_ptr<FileSource> open_frames_between_words(
+    const std::filesystem::path& path, const ReadOptions& options);
+
 }  // namespace pillarfield

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -72,7 +73,7 @@ std::size_t end_of_cell(std::string_view line, char separator) {
   const std::size_t end = std::min(line.find(separator), line.size());
   if (separator != ' ' || end == line.size()) return end;
   const std::size_t end_of_time = std::min(line.find(separator, end + 1), line.size());
-  return parse_iso_time(line.substr(0, end_of_time)) ? end_of_time : end;
+  return parse_time(line.substr(0, end_of_time)) ? end_of_time : end;
 }
 
 std::string_view without_quotes(std::string_view cell) {
@@ -146,7 +147,34 @@ std::optional<double> parse_time(std::string_view text) {
   const std::string padded = text.find(':') == 1 ? "0" + std::string(text) : std::string(text);
   std::string_view rest = padded;
   const auto clock_s = take_clock(rest, true);
-  return rest.empty() ? clock_s : std::nullopt;
+  const std::string half = lower_case(without_blanks(rest));
+  if (!clock_s || half.empty()) return clock_s;
+  constexpr double kHalfDayS = 43200;
+  const bool is_of_half = *clock_s >= 3600 && *clock_s < kHalfDayS + 3600;
+  if ((half != "am" && half != "pm") || !is_of_half) return std::nullopt;
+  return std::fmod(*clock_s, kHalfDayS) + (half == "pm" ? kHalfDayS : 0);
+}
+
+std::optional<double> take_stamp(std::string_view& line) {
+  const std::string_view text = without_blanks(line);
+  const bool is_in_brackets = text.starts_with('[');
+  const std::size_t end = is_in_brackets ? text.find(']') : text.find("->");
+  if (end == std::string_view::npos) return std::nullopt;
+  const auto time_s = parse_time(without_blanks(text.substr(is_in_brackets, end - is_in_brackets)));
+  if (time_s) line = without_blanks(text.substr(end + (is_in_brackets ? 1 : 2)), " ");
+  return time_s;
+}
+
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//") ||
+         lower_case(line.substr(0, 4)) == "sep=";
+}
+
+bool is_blank_or_rule(std::string_view line) {
+  line = without_blanks(line, " \t\f,;");
+  constexpr std::string_view kRules = "-=_*~+";
+  return line.empty() || (line.size() > 2 && kRules.find(line[0]) != std::string_view::npos &&
+                          line.find_first_not_of(line[0]) == std::string_view::npos);
 }
 
 double RisingClock::operator()(double time_s) {

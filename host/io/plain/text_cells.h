@@ -15,7 +15,7 @@ namespace pillarfield {
 [[nodiscard]] char separator_of(std::string_view line);
 
 /// Splits a line into cells without blanks and quotes around them. Between blanks, a date and the
-/// time after it are one cell.
+/// time after it are one cell, and so are a time and AM or PM.
 void split_cells(std::string_view line, char separator, std::vector<std::string>& cells);
 
 /// Removes empty cells at the end, such as spreadsheets write, down to `least` cells.
@@ -29,8 +29,18 @@ void drop_empty_end(std::vector<std::string>& cells, std::size_t least = 0);
 /// may be a T, and Z or an offset such as +02:00 may follow; without them it is taken as UTC.
 [[nodiscard]] std::optional<double> parse_iso_time(std::string_view text);
 
-/// A time of day, "08:21:17.982", in seconds since midnight, or a parse_iso_time().
+/// A time of day, "08:21:17.982" or "8:21:17.982 PM", in seconds since midnight, or a
+/// parse_iso_time().
 [[nodiscard]] std::optional<double> parse_time(std::string_view text);
+
+/// Takes the stamp of a serial monitor off a line, "08:21:17.982 -> " or "[08:21:17] ", s.
+[[nodiscard]] std::optional<double> take_stamp(std::string_view& line);
+
+/// True if a line is a comment, behind '#', '%' or '//', or Excel's word on the separator.
+[[nodiscard]] bool is_comment(std::string_view line);
+
+/// True if a line has no cells: blanks and separators, or a row of dashes or their like.
+[[nodiscard]] bool is_blank_or_rule(std::string_view line);
 
 /// Times of day that pass midnight go on rising: adds a day to each that falls by half a day.
 class RisingClock {

@@ -25,6 +25,7 @@ class LineReader {
 
   /// Number of the line, from 1 on.
   [[nodiscard]] std::uint64_t number() const { return number_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
   /// "file:line", for messages.
   [[nodiscard]] std::string place() const;
 

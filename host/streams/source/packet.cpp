@@ -59,7 +59,7 @@ std::optional<SenselType> reading_type(std::uint32_t type) {
 std::size_t FrameShape::most_packet_bytes() const { return bytes() + kChecksumBytes; }
 
 bool is_size_allowed(const FrameShape& shape) {
-  return std::min(shape.rows, shape.cols) >= 2 && std::max(shape.rows, shape.cols) <= kMaxSensels &&
+  return std::min(shape.rows, shape.cols) >= 1 && std::max(shape.rows, shape.cols) <= kMaxSensels &&
          std::size_t{shape.rows} * shape.cols <= PILLARFIELD_MAX_SENSELS;
 }
 

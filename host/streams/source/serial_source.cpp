@@ -81,11 +81,11 @@ std::uint32_t size_option(const AddressOptions& options, const std::string& name
   const std::string& text = found->second;
   std::uint32_t number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || rest != text.data() + text.size() || number < 2 ||
+  if (error != std::errc() || rest != text.data() + text.size() || number < 1 ||
       number > kMaxSensels) {
     throw Error(
         source,
-        fmt::format("{} is '{}', not a number from 2 to {}", name, printable(text), kMaxSensels),
+        fmt::format("{} is '{}', not a number from 1 to {}", name, printable(text), kMaxSensels),
         kExample);
   }
   return number;

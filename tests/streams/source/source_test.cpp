@@ -421,7 +421,7 @@ constexpr const char* kWrongSources[][2] = {
     {"serial:x?protocol=flexitac",
      "needs rows and cols; rows is missing; give, in quotes, 'serial:"},
     {"serial:x?protocol=flexitac&rows=16", "cols is missing"},
-    {"serial:x?protocol=flexitac&cols=32&rows=1", "rows is '1', not a number from 2 to 65534"},
+    {"serial:x?protocol=flexitac&cols=32&rows=0", "rows is '0', not a number from 1 to 65534"},
     {"serial:x?protocol=flexitac&cols=32&rows=-2", "rows is '-2', not a number"},
     {"serial:x?protocol=flexitac&cols=32&rows=65535", "rows is '65535', not a number"},
     {"serial:x?protocol=flexitac&cols=32&rows=16x", "rows is '16x', not a number"},
