@@ -41,8 +41,9 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
  * drift                       added to the tares of sensels that are not untouched */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration, global uchar* restrict results,
-                            Layout layout, float rate, Drift drift, uint first_row, uint interval) {
-  const Calibration planes = calibration_of(calibration, results, layout);
+                            Layout layout, constant PlanNumbers* restrict numbers, float rate,
+                            Drift drift, uint first_row, uint interval) {
+  const Calibration planes = calibration_of(calibration, results, layout, numbers);
   global const uchar* const status = results + layout.touched;
   const uint rows = (uint)layout.rows;
   const uint cols = (uint)layout.cols;
