@@ -7,12 +7,7 @@ if(NOT PILLARFIELD_CLANG)
   return()
 endif()
 
-# The constants of the stages, from their table.
 file(READ "${CMAKE_CURRENT_LIST_DIR}/../kernels/frame/stage_table.h" lint_table)
-string(REGEX MATCHALL "X\\([a-z_]+, [^\n]*(exact|above|from|per_count|fraction),"
-  lint_constants "${lint_table}")
-list(TRANSFORM lint_constants REPLACE ".*X\\(([a-z_]+),.*" "-DPF_VALUE_\\1=1.0f")
-list(TRANSFORM lint_constants REPLACE "=1.0f" "=1" OUTPUT_VARIABLE lint_whole_constants)
 # The macros of the stages, those of a sensor's effects apart, and what the host defines beside them.
 string(REGEX MATCHALL "X\\([a-z_]+, PF_[^X]*" lint_stages "${lint_table}")
 list(FILTER lint_stages EXCLUDE REGEX "PF_PAPER|PF_SENSELS|PF_WIRES_AFTER_TARE")
@@ -24,13 +19,8 @@ list(TRANSFORM lint_effects REPLACE ".*(PF_[A-Z_]+).*" "-D\\1")
 list(APPEND lint_all_stages -DPF_NOISE -DPF_TARE_PLANE=0 -DPF_GAIN_PLANE=1 -DPF_DEAD_ZONE_PLANE=2
   -DPF_NOISE_PLANE=3 -DPF_MASK_PLANE=4 -DPF_BEND_X_PLANE=10 -DPF_BEND_Y_PLANE=11 -DPF_BEND_XY_PLANE=12
   -DPF_RELEASE_PLANE=8)
-list(APPEND lint_effects -DPF_TILE_ROWS=64 -DPF_TILE_COLS=60 -DPF_ROW_PER_COUNT=1.0f
-  -DPF_COLUMN_PER_COUNT=1.0f -DPF_IDLE_PER_COUNT=1.0f -DPF_CURVE_PER_COUNT=1.0f -DPF_CURVE_ROOT=1
-  "-DPF_CURVE_COEFFICIENTS={1.0f}" -DPF_MEMORY_PLANE=7 -DPF_PLAYS=4 -DPF_CREEPS=2
-  "-DPF_PLAY_WIDTHS={1.0f, 2.0f, 3.0f, 4.0f}" "-DPF_PLAY_WEIGHTS={1.0f}" "-DPF_CREEP_RATES={1.0f, 0.5f}" "-DPF_CREEP_DECAYS={1.0f}"
-  "-DPF_CREEP_WEIGHTS={1.0f}")
-set(lint_skipping -DPF_SKIP_IDLE -DPF_ACTIVATION=1 -DPF_ACTIVATION_CUT=1.0f -DPF_ACTIVATION_STEP=1.0f
-  -DPF_ACTIVATION_LOWEST=0.0f -DPF_ACTIVATION_HIGHEST=1.0f -DPF_ACTIVATION_NEVER=1.0f)
+list(APPEND lint_effects -DPF_TILE_ROWS=64 -DPF_TILE_COLS=60 -DPF_MEMORY_PLANE=7 -DPF_PLAYS=4 -DPF_CREEPS=2)
+set(lint_skipping -DPF_SKIP_IDLE)
 
 set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
   -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
@@ -40,16 +30,16 @@ set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
     foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5"
-        "${lint_effects};${lint_skipping}" "${lint_effects};-DPF_WIRES_AFTER_TARE;-DPF_IDLE_LOAD=1.0f;${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5")
+        "${lint_effects};${lint_skipping}" "${lint_effects};-DPF_WIRES_AFTER_TARE;${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        ${lint_constants} ${stages} ${PROJECT_SOURCE_DIR}/kernels/all.h)
+        ${stages} ${PROJECT_SOURCE_DIR}/kernels/all.h)
     endforeach()
   endforeach()
 endforeach()
 foreach(lanes 2 4 8 16)
   foreach(stages "" "${lint_skipping};-DPF_SATURATION;-DPF_PARITY_TEST")
     list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=uchar -DPF_LANES=${lanes}
-      -DPF_WHOLE=4 ${lint_whole_constants} ${stages} ${PROJECT_SOURCE_DIR}/kernels/all.h)
+      -DPF_WHOLE=4 ${stages} ${PROJECT_SOURCE_DIR}/kernels/all.h)
   endforeach()
 endforeach()
 set(lint_pack ${PROJECT_SOURCE_DIR}/kernels/frame/pack_results.cl)

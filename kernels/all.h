@@ -3,6 +3,8 @@
  * CMake embeds its files as one OpenCL C program, which clang lints. */
 /* clang-format off */
 #include "portable.h"
+#include "frame/stage_table.h"
+#include "plan.h"
 #include "pillar/status.h"
 #include "pillar/pillar_model.h"
 #ifndef PF_WHOLE /* The other programs compute fractions. */
@@ -29,7 +31,6 @@
 #if !defined(PF_WHOLE) && (!defined(__cplusplus) || PF_PRECISION == 32)
 #include "frame/wire_sweep.h"
 #endif
-#include "frame/stage_table.h"
 #include "frame/stages.h"
 #include "frame/correct_solution.h"
 #if !defined(__cplusplus) || defined(PF_LANES)

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "pillarfield/skin.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
 
@@ -16,6 +17,9 @@ constexpr int block_lanes(int lanes, std::uint32_t pillar_cols) {
   while (lanes > 1 && static_cast<std::uint32_t>(lanes) > pillar_cols) lanes /= 2;
   return lanes;
 }
+
+/// True if the program of a plan computes with whole numbers; `lanes`: its block_lanes().
+[[nodiscard]] bool solves_in_whole_numbers(const SolverPlan& plan, int lanes);
 
 /// The OpenCL C type of a reading.
 constexpr const char* sensel_macro(SenselType type) {

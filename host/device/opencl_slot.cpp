@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "device/kernel_source.h"
 #include "skin/quads.h"
 #include "solve/stages.h"
 
@@ -37,6 +38,7 @@ enum Argument : cl_uint {
   kCalibration,
   kResults,
   kLayout,
+  kNumbers,
   kPace,
   kDrift,
   kFirstRow,
@@ -104,10 +106,14 @@ OpenClSlot::OpenClSlot(Device::State& device, const SolverPlan& plan, const Slot
 
 void OpenClSlot::make_kernels(const SolverPlan& plan, const SlotSettings& settings,
                               const DeviceCalibration& calibration) {
+  auto numbers = plan_numbers(plan, solves_in_whole_numbers(plan, settings.lanes));
+  numbers_ = {queue_.getInfo<CL_QUEUE_CONTEXT>(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+              sizeof(numbers), &numbers};
   const auto kernel = [&](const char* name) {
     cl::Kernel made(settings.program, name);
     made.setArg(kCalibration, calibration.buffer());
     made.setArg(kResults, memory_->results());
+    made.setArg(kNumbers, numbers_);
     return made;
   };
   kernel_ = kernel("solve_frame");

@@ -75,6 +75,7 @@ class OpenClSlot final : public Slot {
   cl::NDRange global_;
   cl::NDRange local_;
   cl::CommandQueue queue_;
+  cl::Buffer numbers_;  ///< of the plan
   cl::Kernel kernel_;
   cl::Kernel wires_;  ///< null without crosstalk of wires
   cl::NDRange tiles_;

@@ -31,6 +31,7 @@ using ulong = std::uint64_t;
 
 #undef INFINITY
 #define global
+#define constant const
 #define kernel inline __attribute__((always_inline))
 #define restrict __restrict
 #define INFINITY __builtin_inff()
@@ -39,12 +40,6 @@ using ulong = std::uint64_t;
 #define PF_PRECISION 32
 #define PF_SKIP_IDLE
 #define PF_ACTIVATION_PLANE (given->planes.activation)
-#define PF_ACTIVATION_CUT (given->activation.cut)
-#define PF_ACTIVATION_STEP (given->activation.step)
-#define PF_ACTIVATION_LOWEST (given->activation.lowest)
-#define PF_ACTIVATION_HIGHEST (given->activation.highest)
-#define PF_ACTIVATION_NEVER (given->activation.never)
-#define PF_IDLE_LOAD (given->activation.idle_load)
 #define PF_TARE_PLANE (given->planes.tare)
 #define PF_GAIN_PLANE (given->planes.gain)
 #define PF_DEAD_ZONE_PLANE (given->planes.dead_zone)
@@ -58,13 +53,10 @@ using ulong = std::uint64_t;
 #define PF_MEMORY_PLANE (given->planes.memory)
 #define PF_PLAYS (named.memory_model.plays)
 #define PF_CREEPS (named.memory_model.creeps)
-#define PF_TILE_ROWS (given->wires.tile_rows)
-#define PF_TILE_COLS (given->wires.tile_cols)
+#define PF_TILE_ROWS (given->tile_rows)
+#define PF_TILE_COLS (given->tile_cols)
 #define PF_MOST_TILE_ROWS 1024
 #define PF_MOST_TILE_PARTS 1024
-#define PF_ROW_PER_COUNT (given->wires.row_per_count)
-#define PF_COLUMN_PER_COUNT (given->wires.column_per_count)
-#define PF_IDLE_PER_COUNT (given->wires.idle_per_count)
 
 /// Base of both programs: the work-item that runs.
 struct WorkItem {
@@ -91,7 +83,6 @@ struct Numbers : WorkItem {
 #undef PF_NOISE_PLANE
 #undef PF_ACTIVATION_PLANE
 #include "lanes/forget_kernels.h"
-#define PF_ACTIVATION (given->activation.of_all)
 #define PF_SENSEL uchar
 #define PF_LANES PF_WHOLE_LANES
 #define PF_WHOLE 16
@@ -105,8 +96,7 @@ Program program_of(const LanePlan& plan, LaneRange range) {
   Program program{};
   program.given = &plan;
   program.range = range;
-  // The members of both structs are the same; whole numbers lack the last ones.
-  static_assert(sizeof(program.named) <= sizeof(plan.stages));
+  static_assert(sizeof(program.named) == sizeof(plan.stages));
   std::memcpy(&program.named, &plan.stages, sizeof(program.named));
   return program;
 }
@@ -134,10 +124,11 @@ void for_each_item(const LanePlan& plan, const LaneFrame& frame, LaneRange range
 #define PF_DEFINE_RUN(name)                                                                        \
   void name(const LanePlan& plan, const LaneFrame& frame, LaneRange range, size_t first,           \
             size_t last) {                                                                         \
-    for_each_item<Numbers>(                                                                        \
-        plan, frame, range, first, last, [&](Numbers& program, const Numbers::Layout& l) {         \
-          program.name(static_cast<const float*>(frame.raw), frame.calibration, frame.results, l); \
-        });                                                                                        \
+    for_each_item<Numbers>(plan, frame, range, first, last,                                        \
+                           [&](Numbers& program, const Numbers::Layout& l) {                       \
+                             program.name(static_cast<const float*>(frame.raw), frame.calibration, \
+                                          frame.results, l, &program.named);                       \
+                           });                                                                     \
   }
 PF_DEFINE_RUN(find_wires)
 PF_DEFINE_RUN(remove_pillar_leak)
@@ -149,18 +140,19 @@ PF_DEFINE_RUN(solve_frame)
 void solve_any_frame(const LanePlan& plan, const LaneFrame& frame, LaneRange range, size_t first,
                      size_t last) {
   if (!plan.whole) return solve_frame(plan, frame, range, first, last);
-  for_each_item<WholeNumbers>(plan, frame, range, first, last,
-                              [&](WholeNumbers& program, const WholeNumbers::Layout& l) {
-                                program.solve_frame(static_cast<const uchar*>(frame.raw),
-                                                    frame.calibration, frame.results, l);
-                              });
+  for_each_item<WholeNumbers>(
+      plan, frame, range, first, last, [&](WholeNumbers& program, const WholeNumbers::Layout& l) {
+        program.solve_frame(static_cast<const uchar*>(frame.raw), frame.calibration, frame.results,
+                            l, &program.named);
+      });
 }
 
 void bend_tare(const LanePlan& plan, const LaneFrame& frame,
                const single_precision::Curvature& change) {
   auto program = program_of<Numbers>(plan, {});
   program.bend_tare(nullptr, frame.calibration, frame.results,
-                    same_bits<Numbers::Layout>(frame.layout), change.x, change.y, change.xy);
+                    same_bits<Numbers::Layout>(frame.layout), &program.named, change.x, change.y,
+                    change.xy);
 }
 
 void follow_baseline(const LanePlan& plan, const LaneFrame& frame,
@@ -169,7 +161,7 @@ void follow_baseline(const LanePlan& plan, const LaneFrame& frame,
                      std::uint32_t interval) {
   auto program = program_of<Numbers>(plan, {});
   program.follow_baseline(static_cast<const float*>(frame.raw), frame.calibration, frame.results,
-                          same_bits<Numbers::Layout>(frame.layout),
+                          same_bits<Numbers::Layout>(frame.layout), &program.named,
                           same_bits<Numbers::BaselinePace>(pace), same_bits<Numbers::Drift>(drift),
                           first_row, interval);
 }

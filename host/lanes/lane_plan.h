@@ -24,33 +24,13 @@ struct LanePlanes {
   bool has_noise = false;
 };
 
-/// The numbers of activation thresholds (ActivationRange), counts.
-struct LaneActivation {
-  float cut = 0;
-  float step = 0;
-  float lowest = 0;
-  float highest = 0;
-  float never = 0;
-  float idle_load = 0;
-  float of_all = 0;  ///< of all sensels, where they do not differ
-};
-
-/// Wires (WireCrosstalk).
-struct LaneWires {
-  std::uint32_t tile_rows = 2;
-  std::uint32_t tile_cols = 2;
-  float row_per_count = 0;
-  float column_per_count = 0;
-  float idle_per_count = 0;
-};
-
 /// Part of a plan that a program of lanes knows, and that OpenCL programs have as macros.
 struct LanePlan {
-  single_precision::Stages stages{};  ///< constants in units of whole numbers, if `whole`
+  single_precision::Stages stages{};  ///< with numbers in units of whole ones, if `whole`
   bool whole = false;                 ///< counts are whole numbers: 8-bit readings as they are
   LanePlanes planes;
-  LaneActivation activation;
-  LaneWires wires;
+  std::uint32_t tile_rows = 2;  ///< sensels of a tile of wires (WireCrosstalk)
+  std::uint32_t tile_cols = 2;
 };
 
 /// Work-items of a launch, as OpenCL numbers them: two dimensions.

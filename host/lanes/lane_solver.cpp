@@ -25,20 +25,7 @@ std::size_t bands_of(const SolverPlan& plan) {
 
 single_precision::Stages lane_stages(const SolverPlan& plan, bool whole) {
   auto stages = named_stages<single_precision::Stages>(plan);
-  const std::vector<StageConstant> constants = stage_constants(plan);
-  std::size_t i = 0;
-  const auto next = [&] {
-    const StageConstant& constant = constants[i++];
-    if (!constant.is_needed) return 0.0F;
-    return single_constant(whole ? whole_value(constant, plan) : constant.value);
-  };
-#define PF_SET(name, needed, kind, formula) stages.name = next();
-  PF_STAGE_CONSTANTS(PF_SET)
-#undef PF_SET
-  stages.largest = static_cast<float>(kMaxCounts);  // find_wires.cl reads it of all types
-  const SensorEffects& effects = plan.calibration.effects;
-  if (!effects.curve.empty()) stages.curve_polynomial = curve_polynomial(effects.curve).polynomial;
-  if (effects.memory) stages.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
+  static_cast<single_precision::PlanNumbers&>(stages) = plan_numbers(plan, whole);
   return stages;
 }
 
@@ -62,29 +49,6 @@ LanePlanes places_of(const std::vector<CalibrationPlane>& planes) {
   find(CalibrationPlane::release, places.release);
   find(CalibrationPlane::memory, places.memory);
   return places;
-}
-
-LaneActivation activation_of(const SolverPlan& plan, bool whole) {
-  const ActivationRange range = activation_range(plan);
-  LaneActivation activation;
-  activation.cut = single_constant(range.threshold);
-  activation.step = single_constant(range.step);
-  activation.lowest = single_constant(range.lowest);
-  activation.highest = single_constant(range.highest);
-  activation.never = single_constant(range.never);
-  if (has_offset_tares(plan.calibration.effects)) {
-    activation.idle_load = single_constant(idle_load(plan));
-  }
-  if (whole) activation.of_all = activation_thresholds(plan).front();
-  return activation;
-}
-
-LaneWires wires_of(const SolverPlan& plan) {
-  if (!plan.calibration.effects.wires) return {};
-  const WireCrosstalk& wires = *plan.calibration.effects.wires;
-  return {static_cast<std::uint32_t>(wires.tile_rows), static_cast<std::uint32_t>(wires.tile_cols),
-          single_constant(wires.row_per_count), single_constant(wires.column_per_count),
-          single_constant(wires.idle_per_count)};
 }
 
 template <class Reading>
@@ -188,8 +152,11 @@ LaneSolver::LaneSolver(const SolverPlan& plan, const LaneSettings& settings,
 void LaneSolver::set_plan(const SolverPlan& plan, const LaneSettings& settings,
                           const CalibrationMemory& calibration) {
   if (is_narrow(plan)) return set_plan(widened(plan), settings, calibration);
-  plan_ = {lane_stages(plan, settings.whole), settings.whole, places_of(calibration.planes()),
-           activation_of(plan, settings.whole), wires_of(plan)};
+  plan_ = {lane_stages(plan, settings.whole), settings.whole, places_of(calibration.planes())};
+  if (const auto& wires = plan.calibration.effects.wires) {
+    plan_.tile_rows = static_cast<std::uint32_t>(wires->tile_rows);
+    plan_.tile_cols = static_cast<std::uint32_t>(wires->tile_cols);
+  }
   corrects_ = corrects_forces(plan);
   frame_.calibration = reinterpret_cast<unsigned char*>(calibration.bytes());
   memory_.clear_flags();

@@ -11,7 +11,9 @@
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
+#include "solve/activation_thresholds.h"
 #include "solve/sensor_corrections.h"
+#include "solve/whole_numbers.h"
 
 namespace pillarfield {
 namespace {
@@ -66,6 +68,9 @@ std::vector<StageConstant> stage_constants(const SolverPlan& plan) {
   const ForceScale scale = force_scale(plan.skin);
   const ShearCoefficient coefficient = effects.shear_coefficient.value_or(ShearCoefficient{});
   const ResidualError residual = effects.residual.value_or(ResidualError{});
+  const WireCrosstalk wires = effects.wires.value_or(WireCrosstalk{});
+  const ActivationRange activation = activation_range(plan);
+  const double of_all = has_activation_plane(plan) ? 0 : activation_thresholds(plan).front();
   const double residual_variance = residual.offset_counts * residual.offset_counts;
   const auto leak =
       effects.sensel_leak ? leak_taps(*effects.sensel_leak) : double_precision::LeakTaps{};
@@ -76,6 +81,25 @@ std::vector<StageConstant> stage_constants(const SolverPlan& plan) {
       PF_STAGE_CONSTANTS(PF_VALUE_OF)
 #undef PF_VALUE_OF
   };
+}
+
+single_precision::PlanNumbers plan_numbers(const SolverPlan& plan, bool whole) {
+  const std::vector<StageConstant> constants = stage_constants(plan);
+  std::size_t i = 0;
+  const auto next = [&] {
+    const StageConstant& constant = constants[i++];
+    if (!constant.is_needed) return 0.0F;
+    return single_constant(whole ? whole_value(constant, plan) : constant.value);
+  };
+  single_precision::PlanNumbers numbers{};
+#define PF_SET(name, needed, kind, formula) numbers.name = next();
+  PF_STAGE_CONSTANTS(PF_SET)
+#undef PF_SET
+  numbers.largest = static_cast<float>(kMaxCounts);  // find_wires.cl reads it of all types
+  const SensorEffects& effects = plan.calibration.effects;
+  if (!effects.curve.empty()) numbers.curve_polynomial = curve_polynomial(effects.curve).polynomial;
+  if (effects.memory) numbers.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
+  return numbers;
 }
 
 }  // namespace pillarfield

@@ -46,6 +46,10 @@ struct StageConstant {
 /// The constants of a plan, in the order of kernels/frame/stage_table.h.
 [[nodiscard]] std::vector<StageConstant> stage_constants(const SolverPlan& plan);
 
+/// The numbers of a plan, as its programs take them (kernels/plan.h); `whole`: of a program of
+/// whole numbers. Throws Error if one is not finite.
+[[nodiscard]] single_precision::PlanNumbers plan_numbers(const SolverPlan& plan, bool whole);
+
 /// True if frames must be solved in their order on the device.
 [[nodiscard]] bool has_memory_on_device(const SolverPlan& plan);
 

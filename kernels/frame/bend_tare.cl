@@ -16,8 +16,9 @@ PF_INLINE void bend_row(Calibration calibration, Place place, Curvature change, 
 
 /* Adds a change of curvature, 1/mm. A work-item updates blocks as in follow_baseline. */
 kernel void bend_tare(global const PF_SENSEL* restrict raw, global uchar* restrict calibration,
-                      global uchar* restrict results, Layout layout, float x, float y, float xy) {
-  const Calibration planes = calibration_of(calibration, results, layout);
+                      global uchar* restrict results, Layout layout,
+                      constant PlanNumbers* restrict numbers, float x, float y, float xy) {
+  const Calibration planes = calibration_of(calibration, results, layout, numbers);
   const Curvature change = {x, y, xy};
   const uint cols = (uint)layout.cols;
   const Band band = band_of_rows((uint)layout.rows);

@@ -120,6 +120,7 @@ PF_INLINE SenselPair finish_sensels(SenselPair pair, Calibration calibration, Pl
 PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration, Place place) {
   const CountsPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, place);
+  const Stages stages = calibration.stages;
   RealPair noise = {PF_VALUE(Real, noise), PF_VALUE(Real, noise)};
   if (PF_HAS_NOISE_PLANE) {
     noise =
@@ -183,12 +184,12 @@ PF_INLINE uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }
 
 /* The calibration of a frame; `results` holds what earlier entry points found. */
 PF_INLINE Calibration calibration_of(global const uchar* planes, global uchar* results,
-                                     Layout layout) {
+                                     Layout layout, Stages stages) {
   Calibration calibration;
   calibration.planes = planes;
   calibration.plane_bytes = layout.plane_bytes;
   calibration.stride = layout.plane_stride;
-  calibration.stages = 0;
+  calibration.stages = stages;
   calibration.frame = (uint)layout.frame;
 #ifdef PF_WIRES
   calibration.wires = wire_vectors((global float*)(results + layout.wires), 2 * (uint)layout.rows,

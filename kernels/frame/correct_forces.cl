@@ -111,7 +111,8 @@ PF_INLINE Real load_beside(global const float* plane, Layout layout, uint row, i
 }
 
 /* A component of the force without the leak of the pillars around. */
-PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int col, bool inside) {
+PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int col, bool inside,
+                        Stages stages) {
 #define PF_AT(down, right) load_beside(plane, layout, row, down, col + (right), inside)
   const Real edges = (PF_AT(0, -1) + PF_AT(0, 1)) + (PF_AT(-1, 0) + PF_AT(1, 0));
   const Real corners = (PF_AT(-1, -1) + PF_AT(-1, 1)) + (PF_AT(1, -1) + PF_AT(1, 1));
@@ -124,7 +125,8 @@ PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int 
  * corrects blocks as in solve_frame. */
 kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
                                global const uchar* restrict calibration,
-                               global uchar* restrict results, Layout layout) {
+                               global uchar* restrict results, Layout layout,
+                               constant PlanNumbers* restrict numbers) {
   const Band band = band_of_rows((uint)layout.rows);
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
@@ -143,8 +145,8 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
             (global const float*)(results + layout.forces + plane * layout.result_bytes);
         PF_PREFETCH_SPAN(solved + index + 2 * cols, PF_LANES, 3);
         global float* const to = (global float*)(results + plane * layout.result_bytes);
-        const Real all = inside ? unleaked(solved, layout, row, (int)col, true)
-                                : unleaked(solved, layout, row, (int)col, false);
+        const Real all = inside ? unleaked(solved, layout, row, (int)col, true, numbers)
+                                : unleaked(solved, layout, row, (int)col, false, numbers);
         store_plane(loaded ? all : PF_CONSTANT(Real, 0.0f), to + index, lanes);
       }
     }
@@ -225,8 +227,9 @@ PF_INLINE void find_ratios_of_row(global uchar* results, Calibration planes, Lay
  * solve_frame. */
 kernel void find_shear_ratios(global const PF_SENSEL* restrict raw,
                               global const uchar* restrict calibration,
-                              global uchar* restrict results, Layout layout) {
-  const Calibration planes = calibration_of(calibration, results, layout);
+                              global uchar* restrict results, Layout layout,
+                              constant PlanNumbers* restrict numbers) {
+  const Calibration planes = calibration_of(calibration, results, layout, numbers);
   const Band band = band_of_rows((uint)layout.rows);
 #ifdef PF_SCALAR
   const uint step = 1;
@@ -327,8 +330,8 @@ PF_INLINE void store_corrected(Solution solution, Output output, size_t index, L
  * work-item corrects blocks as in solve_frame. */
 kernel void correct_forces(global const PF_SENSEL* restrict raw,
                            global const uchar* restrict calibration, global uchar* restrict results,
-                           Layout layout) {
-  const Calibration planes = calibration_of(calibration, results, layout);
+                           Layout layout, constant PlanNumbers* restrict numbers) {
+  const Calibration planes = calibration_of(calibration, results, layout, numbers);
   const Band band = band_of_rows((uint)layout.rows);
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);

@@ -1,6 +1,6 @@
 /* Finds how the wires of each tile act on its readings, before solve_frame reads them, and which
- * tiles are idle. Stage PF_WIRES, with PF_ROW_PER_COUNT, PF_COLUMN_PER_COUNT, PF_IDLE_PER_COUNT,
- * PF_TILE_ROWS and PF_TILE_COLS. Stage PF_WIRES_AFTER_TARE: the wires act on readings less the
+ * tiles are idle. Stage PF_WIRES, with PF_TILE_ROWS and
+ * PF_TILE_COLS. Stage PF_WIRES_AFTER_TARE: the wires act on readings less the
  * tare, which is an offset behind them. */
 #ifdef PF_WIRES
 
@@ -13,7 +13,7 @@
 #endif
 /* Readings less their offset for the sums; missing sensels count as zero. */
 #define PF_DEFINE_SUMMED(name, type)                                               \
-  PF_INLINE type name(type reading, type offset, type good) {                      \
+  PF_INLINE type name(type reading, type offset, type good, Stages stages) {       \
     const type none = PF_CONSTANT(type, 0.0f);                                     \
     const type summed = good == PF_CONSTANT(type, 1.0f) ? reading - offset : none; \
     return PF_IN_RANGE(type, reading) ? summed : none;                             \
@@ -23,8 +23,11 @@ PF_DEFINE_SUMMED(summed_reading, float)
 PF_DEFINE_SUMMED(summed_readings, Real)
 #endif
 
-#define PF_WIRE_MODEL \
-  { (float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT), (float)(PF_IDLE_PER_COUNT) }
+PF_INLINE WireModel wire_model(Stages stages) {
+  const WireModel model = {PF_NUMBER(row_per_count), PF_NUMBER(column_per_count),
+                           PF_NUMBER(idle_per_count)};
+  return model;
+}
 
 /* Reads the sensels of a tile's row. */
 PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
@@ -49,7 +52,8 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
     if (PF_NAMED(mask)) valid = PF_TO_REAL(PF_LOAD_WHOLE(uchar, good + col));
 #endif
     const Real reading = PF_TO_REAL(PF_LOAD_WHOLE(PF_SENSEL, raw + col));
-    PF_STORE_WIRES(summed_readings(reading, PF_OFFSETS_AT(col), valid), readings + col);
+    PF_STORE_WIRES(summed_readings(reading, PF_OFFSETS_AT(col), valid, calibration.stages),
+                   readings + col);
   }
 #endif
   for (; col < cols; ++col) {
@@ -57,7 +61,7 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
 #ifdef PF_MASK
     if (PF_NAMED(mask)) valid = (float)good[col];
 #endif
-    readings[col] = summed_reading((float)raw[col], PF_OFFSET_AT(col), valid);
+    readings[col] = summed_reading((float)raw[col], PF_OFFSET_AT(col), valid, calibration.stages);
   }
 }
 
@@ -113,7 +117,7 @@ PF_INLINE float loss_in_tile(global const PF_SENSEL* raw, Calibration calibratio
 /* Finds the wires of a tile with the other work-items of the group. */
 PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
                           Tile tile, global float* rows, global float* own, global float* gains) {
-  const WireModel model = PF_WIRE_MODEL;
+  const WireModel model = wire_model(calibration.stages);
   for (uint row = PF_TILE_ITEM; row < tile.rows; row += PF_TILE_ITEMS) {
     rows[row] = 1.0f;
     own[row] = 0.0f;
@@ -162,7 +166,7 @@ PF_INLINE void fill_floats(float* values, uint count, float value) {
 PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
                           Tile tile, global float* rows, global float* own, global float* gains) {
   if (tile.rows == 0) return;
-  const WireModel model = PF_WIRE_MODEL;
+  const WireModel model = wire_model(calibration.stages);
   TileWires found;
   float readings[PF_LANES * PF_MOST_TILE_PARTS];
   float losses[PF_MOST_TILE_PARTS];
@@ -212,8 +216,8 @@ PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, 
 /* A work-item, with one lane a group of PF_TILE_ITEMS, finds the wires of one tile. */
 kernel void find_wires(global const PF_SENSEL* restrict raw,
                        global const uchar* restrict calibration, global uchar* restrict results,
-                       Layout layout) {
-  const Calibration planes = calibration_of(calibration, results, layout);
+                       Layout layout, constant PlanNumbers* restrict numbers) {
+  const Calibration planes = calibration_of(calibration, results, layout, numbers);
   const WireVectors wires = planes.wires;
   const uint across = (uint)(get_global_id(0) / PF_TILE_ITEMS);
   const uint down = (uint)get_global_id(1);
@@ -232,11 +236,11 @@ kernel void find_wires(global const PF_SENSEL* restrict raw,
   const TileRange range = range_of_tile(raw, planes, layout, tile);
 #endif
   /* An idle tile sweeps nothing: to return here would part its group at the barriers. */
-  if (find_idle_tile(range, tile, wires, first, gains)) tile.rows = tile.cols = 0;
+  if (find_idle_tile(range, tile, wires, first, gains, planes.stages)) tile.rows = tile.cols = 0;
 #endif
   sweep_tile(raw, planes, layout, tile, wires.row + first, wires.own + first, gains);
 #ifdef PF_SKIP_IDLE
-  bound_rows(range, tile, wires, first, gains);
+  bound_rows(range, tile, wires, first, gains, planes.stages);
 #endif
 }
 

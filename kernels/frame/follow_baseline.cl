@@ -112,9 +112,9 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
  * drift                       added to the tares of sensels that do not follow */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration, global uchar* restrict results,
-                            Layout layout, BaselinePace pace, Drift drift, uint first_row,
-                            uint interval) {
-  const Calibration planes = calibration_of(calibration, results, layout);
+                            Layout layout, constant PlanNumbers* restrict numbers,
+                            BaselinePace pace, Drift drift, uint first_row, uint interval) {
+  const Calibration planes = calibration_of(calibration, results, layout, numbers);
   global const uchar* const status = results + layout.touched;
   const uint rows = (uint)layout.rows;
   const uint cols = (uint)layout.cols;

@@ -3,7 +3,7 @@
  * (docs/performance_decisions.md). Stage PF_SKIP_IDLE.
  *
  * Activation thresholds are a plane of readings where sensels differ (PF_ACTIVATION_PLANE), else
- * PF_ACTIVATION. A masked sensel is never active; NaN and readings at or beyond the end of the
+ * one number. A masked sensel is never active; NaN and readings at or beyond the end of the
  * range always are. */
 
 /* The plane of activation thresholds; null without PF_ACTIVATION_PLANE. */
@@ -38,19 +38,19 @@ PF_INLINE ulong eight_flags(global const uchar* flags) {
 
 #if defined(PF_BASELINE) || defined(PF_BEND)
 /* Activation threshold of sensels with these tares and corrections, raw counts. */
-PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
+PF_INLINE Real threshold_of_sensel(Real tare, Correction at, Stages stages) {
   Real gain = PF_CONSTANT(Real, 1.0f);
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) gain = at.gain;
 #endif
-  const Real lowest = PF_CONSTANT(Real, PF_ACTIVATION_LOWEST);
-  const Real highest = PF_CONSTANT(Real, PF_ACTIVATION_HIGHEST);
-  const Real threshold = activation_threshold(tare, gain, PF_CONSTANT(Real, PF_ACTIVATION_CUT),
-                                              PF_CONSTANT(Real, PF_ACTIVATION_STEP), lowest);
+  const Real lowest = PF_VALUE(Real, activation_lowest);
+  const Real highest = PF_VALUE(Real, activation_highest);
+  const Real threshold = activation_threshold(tare, gain, PF_VALUE(Real, activation_cut),
+                                              PF_VALUE(Real, activation_step), lowest);
   const Real bounded = threshold < lowest ? lowest : (threshold < highest ? threshold : highest);
 #ifdef PF_MASK
   if (!PF_NAMED(mask)) return bounded;
-  return at.good != PF_CONSTANT(Real, 1.0f) ? PF_CONSTANT(Real, PF_ACTIVATION_NEVER) : bounded;
+  return at.good != PF_CONSTANT(Real, 1.0f) ? PF_VALUE(Real, activation_never) : bounded;
 #else
   return bounded;
 #endif
@@ -67,7 +67,8 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
 /* True if no sensel under PF_LANES pillars is active. `activation` points to the first sensel's
  * threshold. */
 PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
-                       global const PF_SENSEL* activation, size_t activation_stride) {
+                       global const PF_SENSEL* activation, size_t activation_stride,
+                       Stages stages) {
 #ifdef PF_SCALAR
 #define PF_READING(place, i) (place)[i]
 #else
@@ -76,13 +77,13 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
 #ifdef PF_ACTIVATION_PLANE
 #define PF_THRESHOLD_AT(row, i) PF_READING(activation + row * activation_stride, i)
 #else
-#define PF_THRESHOLD_AT(row, i) (PF_SENSEL)(PF_ACTIVATION)
+#define PF_THRESHOLD_AT(row, i) (PF_SENSEL)(PF_NUMBER(activation))
 #endif
 #define PF_ACTIVE(row, i) \
   PF_IS_ACTIVE(PF_READING(raw + row * row_stride, i), PF_THRESHOLD_AT(row, i))
 #ifdef PF_SCALAR
   return !(PF_ACTIVE(0, 0) || PF_ACTIVE(0, 1) || PF_ACTIVE(1, 0) || PF_ACTIVE(1, 1));
-#elif defined(PF_ACTIVATION) && !defined(PF_RANGE)
+#elif !defined(PF_ACTIVATION_PLANE) && !defined(PF_RANGE)
   /* One threshold for all sensels, and no NaN: comparing the largest reading suffices. */
   global const PF_SENSEL* const below_raw = raw + row_stride;
   const PF_LANE_TYPE(PF_SENSEL) above = max(PF_READING(raw, 0), PF_READING(raw, 1));
@@ -104,8 +105,8 @@ PF_INLINE void store_tares(RealPair tares, Calibration calibration, Place place,
   const size_t offset = offset_of(calibration, place);
   store_pair(tares, (global float*)PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset, lanes);
 #ifdef PF_SKIP_IDLE
-  const RealPair thresholds = {threshold_of_sensel(tares.left, at.left),
-                               threshold_of_sensel(tares.right, at.right)};
+  const RealPair thresholds = {threshold_of_sensel(tares.left, at.left, calibration.stages),
+                               threshold_of_sensel(tares.right, at.right, calibration.stages)};
   store_readings(thresholds, (global PF_SENSEL*)activation_thresholds(calibration) + offset, lanes);
 #endif
 }

@@ -11,12 +11,9 @@
 #define PF_FLOAT(x) x##f
 #define PF_ROWS_AHEAD 64 /* that are prefetched */
 /* The largest load of an idle sensel: with PF_WIRES_AFTER_TARE the wires act on what it reads above
- * its tare, which the activation threshold bounds (PF_IDLE_LOAD). */
-#if !defined(PF_WIRES_AFTER_TARE) && !defined(__cplusplus)
-#define PF_IDLE_LOAD 0.0f
-#endif
-#define PF_LARGEST_LOAD(range) (PF_AFTER_TARE ? (float)(PF_IDLE_LOAD) : (range).largest)
-#define PF_LOAD_OF(counts) (PF_AFTER_TARE ? PF_CONSTANT(Real, PF_IDLE_LOAD) : fabs(counts))
+ * its tare, which the activation threshold bounds (idle_load). */
+#define PF_LARGEST_LOAD(range) (PF_AFTER_TARE ? PF_NUMBER(idle_load) : (range).largest)
+#define PF_LOAD_OF(counts) (PF_AFTER_TARE ? PF_VALUE(Real, idle_load) : fabs(counts))
 /* Factor above 1 that covers the rounding of a bound. */
 #define PF_BOUND_RESERVE 1.00001f
 
@@ -63,7 +60,8 @@ typedef PF_LANE_TYPE(PF_SENSEL) SenselLanes;
 #define PF_THRESHOLDS_AT(calibration, offset) \
   PF_READINGS_AT(activation_thresholds(calibration) + (offset))
 #else
-#define PF_THRESHOLDS_AT(calibration, offset) (PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION)))
+#define PF_THRESHOLDS_AT(calibration, offset) \
+  (PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_NUMBER(activation))))
 #endif
 
 /* The same by lanes. */
@@ -72,7 +70,8 @@ typedef struct {
   SenselLanes distance;
 } LaneRange;
 
-PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
+PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold,
+                               Stages stages) {
 #ifdef PF_RANGE
   const Real size = fabs(reading);
   const Real distance =
@@ -140,9 +139,9 @@ PF_INLINE TileRange range_of_wide_lanes(const PF_SENSEL* largest, const PF_SENSE
  * on this thread, is prefetched. */
 PF_INLINE TileRange range_of_whole_tile(global const PF_SENSEL* raw,
                                         global const PF_SENSEL* thresholds, size_t row_stride,
-                                        size_t threshold_stride, uint rows) {
+                                        size_t threshold_stride, uint rows, Stages stages) {
   WideLanes largest = (WideLanes)(0);
-  WideLanes distance = (WideLanes)((PF_SENSEL)(PF_ACTIVATION_NEVER));
+  WideLanes distance = (WideLanes)((PF_SENSEL)(PF_NUMBER(activation_never)));
   for (uint row = 0; row < rows; ++row) {
     for (uint col = 0; col < PF_TILE_COLS; col += PF_WIDE_LANES) {
       PF_PREFETCH_SPAN(raw + row * row_stride + col + PF_TILE_COLS, 1, 2);
@@ -162,18 +161,19 @@ PF_INLINE TileRange range_of_whole_tile(global const PF_SENSEL* raw,
 
 PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
                                   Layout layout, Tile tile) {
-  const TileRange unknown = {(float)(PF_ACTIVATION_NEVER), -1.0f};
+  const Stages stages = calibration.stages;
+  const TileRange unknown = {(float)(PF_NUMBER(activation_never)), -1.0f};
   if (tile.cols < PF_LANES) return unknown;
 #ifdef PF_WIDE_LANES
   if (PF_TILE_COLS % PF_WIDE_LANES == 0 && tile.cols == PF_TILE_COLS) {
     return range_of_whole_tile(
         raw + tile.row * layout.row_stride + tile.col,
         activation_thresholds(calibration) + tile.row * calibration.stride + tile.col,
-        layout.row_stride, calibration.stride, tile.rows);
+        layout.row_stride, calibration.stride, tile.rows, stages);
   }
 #endif
   LaneRange range = {PF_CONSTANT(SenselLanes, 0),
-                     PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_ACTIVATION_NEVER))};
+                     PF_CONSTANT(SenselLanes, (PF_SENSEL)(PF_NUMBER(activation_never)))};
   for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
     prefetch_tile_row(raw, calibration, layout, tile, row);
   }
@@ -185,7 +185,8 @@ PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calib
     for (uint at = 0; at < tile.cols; at += PF_LANES) {
       const uint col = min(at, tile.cols - PF_LANES);
       range = range_with(range, PF_READINGS_AT(readings + col),
-                         PF_THRESHOLDS_AT(calibration, row * calibration.stride + tile.col + col));
+                         PF_THRESHOLDS_AT(calibration, row * calibration.stride + tile.col + col),
+                         stages);
     }
   }
   return range_of_lanes(range);
@@ -195,7 +196,8 @@ PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calib
 /* The range of a tile by the work-items of a group. `ranges`: of PF_TILE_ITEMS parts. */
 PF_INLINE TileRange range_in_group(global const PF_SENSEL* raw, Calibration calibration,
                                    Layout layout, Tile tile, local TileRange* ranges) {
-  TileRange range = {0.0f, (float)(PF_ACTIVATION_NEVER)};
+  const Stages stages = calibration.stages;
+  TileRange range = {0.0f, (float)(PF_NUMBER(activation_never))};
   for (uint row = PF_TILE_ITEM; row < tile.rows; row += PF_TILE_ITEMS) {
     const Tile part = {tile.row + row, tile.col, 1, tile.cols};
     range = wider_range(range, range_of_tile(raw, calibration, layout, part));
@@ -209,25 +211,25 @@ PF_INLINE TileRange range_in_group(global const PF_SENSEL* raw, Calibration cali
 
 /* A bound on the gains of all sensels of a tile, by the sweeps of find_wires with the largest
  * reading everywhere. */
-PF_INLINE float largest_gain(float largest, Tile tile) {
-  const float own = 1.0f + 2.0f * (float)(PF_COLUMN_PER_COUNT)*largest;
+PF_INLINE float largest_gain(float largest, Tile tile, Stages stages) {
+  const float own = 1.0f + 2.0f * PF_NUMBER(column_per_count) * largest;
   float row = 1.0f;
   float column = 1.0f;
   for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
-    row = gain_of_loss((float)(PF_ROW_PER_COUNT) * (float)tile.cols * largest * own * column);
-    column = gain_of_loss((float)(PF_COLUMN_PER_COUNT) * (float)tile.rows * largest * own * row);
+    row = gain_of_loss(PF_NUMBER(row_per_count) * (float)tile.cols * largest * own * column);
+    column = gain_of_loss(PF_NUMBER(column_per_count) * (float)tile.rows * largest * own * row);
   }
   return row * column * own * PF_BOUND_RESERVE;
 }
 
 /* True if a tile is idle; then writes gains of 1. */
 PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, size_t first,
-                              global float* columns) {
+                              global float* columns, Stages stages) {
   if (!PF_SKIPS_IDLE_TILES) return false;
   const float largest = PF_LARGEST_LOAD(range);
-  const float gain = largest_gain(largest, tile);
+  const float gain = largest_gain(largest, tile, stages);
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
-                    largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
+                    largest * (gain - 1.0f) + PF_NUMBER(activation_step) <= range.distance;
   for (uint i = PF_TILE_ITEM; idle && i < tile.rows; i += PF_TILE_ITEMS) {
     wires.row[first + i] = 1.0f;
     wires.own[first + i] = 0.0f;
@@ -239,7 +241,7 @@ PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, siz
 
 /* Bounds of a tile's rows: how far a gain of their sensels is from 1 at most, plus 1. */
 PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t first,
-                          global const float* columns) {
+                          global const float* columns, Stages stages) {
   float least = columns[0];
   float most = columns[0];
   for (uint col = 1; col < tile.cols; ++col) {
@@ -266,10 +268,10 @@ PF_INLINE float bound_of(WireVectors wires, Place place) {
   return bound;
 }
 
-PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise) {
+PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise, Stages stages) {
   const Real counts = PF_REALS_OF(reading);
   const Mask idle = counts + PF_LOAD_OF(counts) * rise <=
-                    PF_REALS_OF(threshold) - PF_CONSTANT(Real, PF_ACTIVATION_STEP);
+                    PF_REALS_OF(threshold) - PF_VALUE(Real, activation_step);
 #ifdef PF_RANGE
   return idle && fabs(counts) <= PF_VALUE(Real, largest);
 #else
@@ -280,6 +282,7 @@ PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise)
 /* As is_idle(), behind wires with this bound_of(). */
 PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
                              Calibration calibration, Place place, float bound) {
+  const Stages stages = calibration.stages;
   const Real rise = PF_CONSTANT(Real, bound - 1.0f);
   Mask idle = mask_of(PF_BITS(-1));
   for (uint row = 0; row < 2; ++row) {
@@ -288,7 +291,7 @@ PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
           idle && stays_idle(PF_READINGS_AT(raw + row * row_stride + side * PF_LANES),
                              PF_THRESHOLDS_AT(calibration, (place.row + row) * calibration.stride +
                                                                place.col + side * PF_LANES),
-                             rise);
+                             rise, stages);
     }
   }
   return !any_lane(!idle);

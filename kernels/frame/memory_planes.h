@@ -4,14 +4,11 @@
 
 #define PF_MEMORY_WORDS (1 + 2 * (PF_PLAYS + PF_CREEPS)) /* of a pillar */
 
-PF_INLINE MemoryModel memory_model(void) {
-#ifdef __cplusplus
-  return named.memory_model;
-#else
-  const MemoryModel model = {PF_PLAY_WIDTHS,   PF_PLAY_WEIGHTS, PF_CREEP_RATES, PF_CREEP_DECAYS,
-                             PF_CREEP_WEIGHTS, PF_PLAYS,        PF_CREEPS};
+PF_INLINE MemoryModel memory_model(Stages stages) {
+  MemoryModel model = PF_NUMBER(memory_model);
+  model.plays = PF_PLAYS;
+  model.creeps = PF_CREEPS;
   return model;
-#endif
 }
 
 /* Word `word` of a block's pillars. With several lanes all words of a block lie together, lane by
@@ -33,9 +30,10 @@ PF_INLINE void prefetch_states(Calibration calibration, Block block) {
 
 /* Removes hysteresis and creep from a block's sensels, and updates their states. */
 PF_INLINE Pillar recall_block(Pillar pillar, Calibration calibration, Block block) {
+  const Stages stages = calibration.stages;
   const Real threshold = PF_VALUE(Real, threshold);
   if (!any_lane(is_touched_pillar(pillar, threshold))) return pillar;
-  const MemoryModel model = memory_model();
+  const MemoryModel model = memory_model(stages);
   const uint row = block.top.row / 2;
   Memory memory;
   memory.last = *word_at(calibration, 0, row, block);

@@ -12,6 +12,7 @@ typedef struct {
 
 /* The leak sources in one row of sensels under PF_LANES pillars. */
 PF_INLINE RealPair leak_sources(global const PF_SENSEL* raw, Calibration calibration, Place place) {
+  const Stages stages = calibration.stages;
   const Real threshold = PF_VALUE(Real, threshold);
   const SenselPair pair = read_linear(raw, calibration, place);
   const Real left = leak_source(pair.left, threshold);
@@ -161,9 +162,9 @@ PF_INLINE Neighbours neighbours_of(Surroundings around, int row, int col) {
 }
 
 /* Removes what the upper (side 0) or lower (side 1) sensels of PF_LANES pillars receive. */
-PF_INLINE SenselPair without_leak(SenselPair pair, Surroundings around, int side) {
+PF_INLINE SenselPair without_leak(SenselPair pair, Surroundings around, int side, Stages stages) {
   const Real threshold = PF_VALUE(Real, threshold);
-  const LeakTaps taps = leak_taps(0);
+  const LeakTaps taps = leak_taps(stages);
   pair.left = remove_leak(pair.left, neighbours_of(around, side, 0), taps, threshold);
   pair.right = remove_leak(pair.right, neighbours_of(around, side, 1), taps, threshold);
   return pair;

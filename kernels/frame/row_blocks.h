@@ -9,6 +9,7 @@ typedef struct {
   global const PF_SENSEL* activation; /* its activation threshold */
   size_t row_stride;
   size_t activation_stride;
+  Stages stages;
   global uchar* idle; /* flag of the first block, of the frame before too */
 #ifdef PF_RING
   global const uchar* idle_now; /* flag of the first block in the ring */
@@ -52,13 +53,14 @@ PF_INLINE bool readings_are_idle(Row row, size_t sensel, bool was_idle) {
     const float bound = bound_of(row.calibration.wires, place);
     if (bound == PF_IDLE_TILE) return true;
     prefetch_readings(row, sensel, was_idle);
-    return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel,
-                   row.activation_stride) &&
+    return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride,
+                   row.stages) &&
            rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, bound);
   }
 #endif
   prefetch_readings(row, sensel, was_idle);
-  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
+  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride,
+                 row.stages);
 }
 
 /* The same of block `at`; the ring knows it. */
@@ -78,6 +80,7 @@ PF_INLINE Row row_of(Input input, global uchar* idle, uint at_row) {
   row.activation = activation_thresholds(calibration) + 2 * at_row * calibration.stride;
   row.row_stride = input.row_stride;
   row.activation_stride = calibration.stride;
+  row.stages = calibration.stages;
   row.idle = idle + (size_t)at_row * blocks_of_row(cols);
 #ifdef PF_RING
   if (PF_NAMED(leak)) row.idle_now = idle_in_ring(input.ring, at_row);

@@ -1,23 +1,20 @@
 /* Solves a frame: readings in, forces and status bytes out. This file indexes, loads and stores;
  * the mathematics is in pillar/, the order of the stages in stages.h.
  *
- * The host defines the plan's stages and constants (stage_table.h) in the first lines of the
- * program, constants as PF_VALUE_ and their names, and beside them:
+ * The host defines the plan's stages (stage_table.h) in the first lines of the program, and beside
+ * them:
  *
  *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8 or 16
  *   PF_SENSEL                       uchar, ushort or float
  *   PF_WHOLE                        counts are whole numbers of 1 / PF_WHOLE counts: portable.h
  *   PF_TARE_PLANE, ...              indices of the calibration planes
- *   PF_CURVE_COEFFICIENTS           in braces, and
- *   PF_CURVE_PER_COUNT, ..._ROOT    members of CurvePolynomial
  *   PF_PLAYS, PF_CREEPS             states of a sensel
- *   PF_PLAY_WIDTHS, ...             members of MemoryModel, in braces
+ *   PF_TILE_ROWS, PF_TILE_COLS      sensels of a tile of wires
  *   PF_NOISE                        with PF_UNCERTAINTY: reads the noise from its plane
  *   PF_STREAM                       results bypass the caches: load_store.h
  *   PF_SKIP_IDLE                    skips idle blocks: idle.h
- *   PF_ACTIVATION_PLANE, or PF_ACTIVATION     activation thresholds: one per sensel, or one
  *
- * A stage without its macro is not compiled. Constants are exact (hexadecimal); with PF_WHOLE those
+ * A stage without its macro is not compiled. Numbers are an argument (plan.h); with PF_WHOLE those
  * in counts are multiples of its unit. */
 
 /* Noise of a block's sensels, counts; zero without PF_UNCERTAINTY. */
@@ -71,8 +68,8 @@ PF_INLINE Pillar corrected_block(Pillar linear, Block block, Input input) {
     top = pair_in_ring(top, around, 0);
     bottom = pair_in_ring(bottom, around, 1);
 #endif
-    top = without_leak(top, around, 0);
-    bottom = without_leak(bottom, around, 1);
+    top = without_leak(top, around, 0, calibration.stages);
+    bottom = without_leak(bottom, around, 1, calibration.stages);
   }
 #endif
 #ifdef PF_MEMORY
@@ -314,12 +311,12 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
  *              the idle flags [rows, blocks_of_row(cols)], zero at first */
 kernel void solve_frame(global const PF_SENSEL* restrict raw,
                         global const uchar* restrict calibration, global uchar* restrict results,
-                        Layout layout) {
+                        Layout layout, constant PlanNumbers* restrict numbers) {
   const Band band = band_of_rows((uint)layout.rows);
   Input input;
   input.raw = raw;
   input.row_stride = layout.row_stride;
-  input.calibration = calibration_of(calibration, results, layout);
+  input.calibration = calibration_of(calibration, results, layout, numbers);
   input.rows = (uint)layout.rows;
   input.cols = (uint)layout.cols;
   global uchar* forces = results;

@@ -39,7 +39,7 @@
   X(follow_baseline, PF_BASELINE, frame, true, plan.baseline_rate.has_value())                     \
   X(estimate_contacts, none, host, true, estimator_of(plan) == Estimator::contact)
 
-/* Constants of the stages. X(name, needed, kind, value):
+/* Numbers of the stages. X(name, needed, kind, value):
  *   needed  by the stages `is`
  *   kind    exact, or in a program of whole numbers: above, a limit of x > value; from, one of
  *           x >= value; per_count, newtons per unit; fraction, n of 1 - 1 / 2^n
@@ -76,4 +76,17 @@
   X(pillar_leak_self, is.pillar_leak, exact, pillar_leak.self)                                  \
   X(pillar_leak_edge, is.pillar_leak, exact, pillar_leak.edge)                                  \
   X(pillar_leak_corner, is.pillar_leak, exact, pillar_leak.corner)                              \
-  X(pitch_over_arm, is.lean, exact, plan.skin.pillar_pitch_mm() / effects.arm_mm.value_or(1))
+  X(pitch_over_arm, is.lean, exact, plan.skin.pillar_pitch_mm() / effects.arm_mm.value_or(1))   \
+  /* Per count (WireCrosstalk). */                                                              \
+  X(row_per_count, is.wires, exact, wires.row_per_count)                                        \
+  X(column_per_count, is.wires, exact, wires.column_per_count)                                  \
+  X(idle_per_count, is.wires, exact, wires.idle_per_count)                                      \
+  /* Counts (ActivationRange); the threshold of all sensels, where they do not differ. */       \
+  X(activation, !has_activation_plane(plan), exact, of_all)                                     \
+  X(activation_cut, true, exact, activation.threshold)                                          \
+  X(activation_step, true, exact, activation.step)                                              \
+  X(activation_lowest, true, exact, activation.lowest)                                          \
+  X(activation_highest, true, exact, activation.highest)                                        \
+  X(activation_never, true, exact, activation.never)                                            \
+  /* The most that an idle sensel reads above its tare. */                                      \
+  X(idle_load, is.wires_after_tare, exact, idle_load(plan))

@@ -19,12 +19,11 @@
 #ifdef __cplusplus
 #ifdef PF_LANES
 #define PF_NAMED(stage) named.stage
-#define PF_NUMBER(name) named.name
+#define PF_NUMBER(name) (stages->name)
 #else
 #define PF_NAMED(stage) stages.stage
 #define PF_NUMBER(name) stages.name
 #endif
-#define PF_VALUE(type, name) PF_CONSTANT(type, PF_NUMBER(name))
 #ifdef PF_WHOLE
 #define PF_SATURATION
 #define PF_PARITY_TEST
@@ -34,41 +33,31 @@
 #define PF_WIRES_ACT(after_tare) (PF_NAMED(wires) && PF_AFTER_TARE == (after_tare))
 #endif
 
-/* The stages that a plan names, and their constants. */
-typedef struct {
+/* The stages that a plan names, and its numbers. */
+struct NamedStages : PlanNumbers {
 #define PF_MEMBER(name, macro, place, state, named) bool name;
   PF_STAGES(PF_MEMBER)
 #undef PF_MEMBER
-#ifdef PF_LANES
-#define PF_MEMBER(name, needed, kind, value) float name;
-#else
-#define PF_MEMBER(name, needed, kind, value) Real name;
-#endif
-  PF_STAGE_CONSTANTS(PF_MEMBER)
-#undef PF_MEMBER
-#ifndef PF_WHOLE
-  CurvePolynomial curve_polynomial;
-  MemoryModel memory_model;
-#endif
-} NamedStages;
+};
 #ifdef PF_LANES
 NamedStages named;
-typedef int Stages; /* They are a member of the program. */
+typedef const PlanNumbers* Stages;
 #else
 typedef NamedStages Stages;
 #endif
 #else
 #define PF_NAMED(stage) 1
-#define PF_NUMBER(name) (PF_VALUE_##name)
-#define PF_VALUE(type, name) PF_CONSTANT(type, PF_VALUE_##name)
+#define PF_NUMBER(name) (stages->name)
 #ifdef PF_WIRES_AFTER_TARE
 #define PF_AFTER_TARE 1
 #else
 #define PF_AFTER_TARE 0
 #endif
 #define PF_WIRES_ACT(after_tare) (PF_AFTER_TARE == (after_tare))
-typedef int Stages; /* A program has macros instead. */
+typedef constant PlanNumbers* Stages; /* A program has macros for the stages. */
 #endif
+/* A number of a plan in every lane of a type, where `stages` is known. */
+#define PF_VALUE(type, name) PF_CONSTANT(type, PF_NUMBER(name))
 
 /* Calibration of a sensel; members of stages that are not named are not read. */
 typedef struct {
@@ -97,14 +86,7 @@ PF_INLINE Sensel validate_reading(Counts raw, Counts good, Stages stages) {
 }
 
 #ifdef PF_CURVE
-PF_INLINE CurvePolynomial curve_of(Stages stages) {
-#ifdef __cplusplus
-  return PF_NUMBER(curve_polynomial);
-#else
-  const CurvePolynomial curve = {PF_CURVE_COEFFICIENTS, PF_CURVE_PER_COUNT, PF_CURVE_ROOT};
-  return curve;
-#endif
-}
+PF_INLINE CurvePolynomial curve_of(Stages stages) { return PF_NUMBER(curve_polynomial); }
 #endif
 
 /* Applies the stages before the tare. */

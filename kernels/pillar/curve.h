@@ -2,16 +2,6 @@
  * where x is the reading r over the reach of the fit, within [0, 1]
  * (docs/derivations/sensor_effects.md, E1). Beyond the reach V is proportional to r. */
 
-#define PF_CURVE_TERMS 7
-#define PF_CURVE_LAST_POWER 6.0f
-
-/* Coefficients of P, lowest power first, and the scale of x, 1/counts. */
-typedef struct {
-  float terms[PF_CURVE_TERMS];
-  float per_count;
-  int root; /* t is the root of x */
-} CurvePolynomial;
-
 PF_INLINE Real curve_position(Real reading, CurvePolynomial curve) {
   const Real x = reading * PF_CONSTANT(Real, curve.per_count);
   const Real above = x > PF_REAL(0.0) ? x : PF_REAL(0.0);

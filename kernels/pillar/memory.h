@@ -3,23 +3,9 @@
  * they lose meanwhile follows from the number of frames since, so that idle blocks may be skipped.
  */
 
-#define PF_MAX_PLAYS 4
-#define PF_MAX_CREEPS 2
 #define PF_MAX_STATES                                                        \
   (PF_MAX_PLAYS + PF_MAX_CREEPS) /* places of a sensel's states, plays first \
                                   */
-
-/* The inverse of SenselMemory: V = r + sum of weight * play with r = reading - sum of weight *
- * creep. Unused weights are zero. */
-typedef struct {
-  float play_width[PF_MAX_PLAYS];
-  float play_weight[PF_MAX_PLAYS];
-  float creep_rate[PF_MAX_CREEPS];  /* part of the way to V in one frame */
-  float creep_decay[PF_MAX_CREEPS]; /* frame interval over the time of the creep */
-  float creep_weight[PF_MAX_CREEPS];
-  int plays;
-  int creeps;
-} MemoryModel;
 
 #if !defined(__cplusplus) || PF_PRECISION == 32
 
