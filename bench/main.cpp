@@ -39,7 +39,7 @@ Usage: pillarfield-bench [OPTIONS]
   --benchmark_counters_tabular=BOOL, --benchmark_enable_random_interleaving=BOOL, ...
 
 Cases: limit/ size/ contact/ regions/ type/ lanes/ stage/ sensor/ latency/ throughput/
-       baseline/ field/ choice/
+       baseline/ field/
 
 Try:  pillarfield-bench --benchmark_filter=size/
       pillarfield-bench --benchmark_filter=baseline/ --seconds=5
@@ -153,7 +153,7 @@ int run(const Arguments& arguments) {
   session.length.seconds = arguments.seconds;
   add_context(session.device);
   for (const auto add : {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases,
-                         add_baseline_cases, add_field_cases, add_choice_cases}) {
+                         add_baseline_cases, add_field_cases}) {
     add(session);
   }
   UnsuffixedReporter reporter;

@@ -13,6 +13,5 @@ void add_plan_cases(const Session& session);      ///< type/, lanes/, stage/, se
 void add_time_cases(const Session& session);      ///< latency/, throughput/
 void add_baseline_cases(const Session& session);  ///< baseline/
 void add_field_cases(const Session& session);     ///< field/
-void add_choice_cases(const Session& session);    ///< choice/
 
 }  // namespace pillarfield::bench

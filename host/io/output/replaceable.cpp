@@ -80,8 +80,8 @@ void require_disposable(const std::filesystem::path& path, Replace replace) {
   const InputFile part(path);
   const DetectedFormat detected = detect_format(part);
   const std::string head = part.text_at(0, 1024);
-  bool is_kept = detected.frames != nullptr && format_by_beginning(head) == nullptr;
   bool is_ours = head.starts_with(kMcapBeginning);
+  bool is_kept = is_ours || (detected.frames != nullptr && format_by_beginning(head) == nullptr);
   if (detected.kind == FileKind::hdf5) {
     const auto format = hdf5::format_of(path);  // Unset: a writer died before its first flush.
     is_kept = format && format != force_format::kName &&
