@@ -21,7 +21,7 @@ constexpr double kTouchSignal = 0.25;
 constexpr float kReleased = 0.5F;
 /// Least change of a rest: in the touch, in the noise of its mean, and in the changes of sensels
 /// that were not touched.
-constexpr double kLeastOfTouch = 0.05;
+constexpr double kLeastOfTouch = 0.03;
 constexpr double kOverNoise = 6;
 constexpr double kOverOthers = 6;
 /// Releases that a sensel needs, and the share of them that must agree.
@@ -123,11 +123,12 @@ class RestSearch {
       RestChanges& changes = changes_[i];
       ++changes.releases;
       const double change = after[i] - before_[i] - common;
-      const double noise = seen_.noise_of(i) * std::sqrt(2.0 / kRestFrames);
-      if (std::abs(change) <
-          std::max({kLeastOfTouch * peaks_[i], kOverNoise * noise, kOverOthers * spread})) {
-        continue;
-      }
+      // Windows with a touch overrate the noise of touched sensels.
+      const double noise = std::max<double>(seen_.jitter[i], seen_.typical_noise);
+      const double least =
+          std::max({kLeastOfTouch * peaks_[i], kOverNoise * noise * std::sqrt(2.0 / kRestFrames),
+                    kOverOthers * spread * noise / seen_.typical_noise});
+      if (std::abs(change) < least) continue;
       (change > 0 ? changes.up : changes.down).push_back(change);
     }
     before_ = std::move(after);
