@@ -20,7 +20,7 @@ constexpr double kTouchSignal = 0.25;
 constexpr float kReleased = 0.5F;
 /// Least change of a rest: in the touch, in the noise of its mean, and in the changes of sensels
 /// that were not touched.
-constexpr double kLeastOfTouch = 0.03;
+constexpr double kLeastOfTouch = 0.05;
 constexpr double kOverNoise = 6;
 constexpr double kOverOthers = 6;
 /// Releases that a sensel needs, and the share of them that must agree.
