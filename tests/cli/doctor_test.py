@@ -218,6 +218,15 @@ class DoctorTest(CommandTest):
         self.assertIn("no calibration step mends it", report["findings"][0]["text"])
         self.assert_sound(self.examine((100 + 1400 * true + noise).round().astype("u2")))
 
+    def test_solve_warns_of_a_dead_column(self):
+        pad = Pad(5).sweep()
+        pad.load[:, :, 20] *= 0
+        pad.load[:50] = 0
+        np.save(self.folder / "pad.npy", pad.readings())
+        solved = run("solve", self.folder / "pad.npy", "--rate", RATE_HZ, "--tare-frames", 50, "--counts-per-newton",
+                     40, "--pitch-mm", 5, "-o", self.folder / "pad.h5")
+        self.assertIn("Dead: column 20 does not respond", solved.stderr)
+
     def test_a_tare_of_equal_frames_is_refused(self):
         np.save(self.folder / "pad.npy", np.full((50, 8, 8), 7, "u1"))
         refused = run("calibrate", "tare", self.folder / "pad.npy", "-o", self.folder / "tared.h5", "-q",

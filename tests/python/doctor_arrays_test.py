@@ -263,7 +263,7 @@ class Faulty(World):
             return found.polarity == ("falls" if self.falls else "rises")
         if fault == "rest":
             name = "rest after release" if self.sign > 0 else "followed baseline"
-            return name in findings and self.place_of_load() in findings[name].sensels
+            return name in findings and all(self.load.max(0)[place] > 0.2 for place in findings[name].sensels)
         if fault == "drift":
             true = self.drift * (-1 if self.falls else 1) * 60 * self.rate / len(self.load)
             drift = found.facts["drift_counts_per_minute"]
@@ -274,9 +274,6 @@ class Faulty(World):
         if name not in findings and fault in ("dead", "stuck", "weak"):
             return any(self.place in each.sensels for name, each in findings.items() if name in ("dead", "stuck", "weak"))
         return name in findings and (not findings[name].sensels or self.place in findings[name].sensels)
-
-    def place_of_load(self):
-        return tuple(int(each) for each in np.unravel_index(self.load.max(0).argmax(), self.y.shape))
 
 
 def named(world, found):
@@ -299,8 +296,8 @@ class DoctorArrays(unittest.TestCase):
                 words.append(f"{seed} " + named(world, found))
         print("accused", {kind: f"{accused[kind]} of {count[kind]}" for kind in TOUCHING}, f"reversed {reversed_}")
         print("\n".join(words))
-        self.assertLessEqual(accused.total(), 0.01 * ARGUMENTS.count, words)
-        self.assertLessEqual(reversed_, 0.01 * ARGUMENTS.count, words)
+        self.assertLessEqual(accused.total(), max(1, 0.01 * ARGUMENTS.count), words)
+        self.assertLessEqual(reversed_, max(1, 0.01 * ARGUMENTS.count), words)
 
     def test_shown_faults_are_found(self):
         found_of, count = collections.Counter(), collections.Counter()
@@ -314,7 +311,7 @@ class DoctorArrays(unittest.TestCase):
                 words.append(f"{seed} {world.fault} {world.place} {found.polarity} {world.falls}: {named(world, found)}")
         print("found", {kind: f"{found_of[kind]} of {count[kind]}" for kind in FAULTS})
         print("\n".join(words))
-        self.assertGreaterEqual(found_of.total(), 0.95 * ARGUMENTS.count, words)
+        self.assertGreaterEqual(found_of.total(), min(0.95 * ARGUMENTS.count, ARGUMENTS.count - 2), words)
 
 
 if __name__ == "__main__":

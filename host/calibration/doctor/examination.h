@@ -74,6 +74,11 @@ struct Examination {
   }
 };
 
+/// True of faults of rows.
+[[nodiscard]] bool is_of_rows(ArrayFault fault);
+/// Adds a finding with its sentence.
+void add(Diagnosis& found, ArrayFinding finding);
+
 /// Direction of readings under load: loads are local and large, drift and offsets common and slow.
 [[nodiscard]] Polarity find_polarity(const Examination& seen);
 

@@ -1,5 +1,3 @@
-#include "calibration/doctor/finding_text.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "calibration/doctor/examination.h"
 
 namespace pillarfield {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "calibration/doctor/examination.h"
-#include "calibration/doctor/finding_text.h"
 #include "calibration/neighbours.h"
 
 namespace pillarfield {

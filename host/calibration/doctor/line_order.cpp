@@ -8,7 +8,6 @@
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
-#include "calibration/doctor/finding_text.h"
 
 namespace pillarfield {
 namespace {

@@ -10,7 +10,6 @@
 #include "base/number_text.h"
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
-#include "calibration/doctor/finding_text.h"
 
 namespace pillarfield {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
-#include "calibration/doctor/finding_text.h"
 #include "calibration/neighbours.h"
 
 namespace pillarfield {

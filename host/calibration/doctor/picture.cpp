@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/quantile.h"
-#include "calibration/doctor/finding_text.h"
+#include "calibration/doctor/examination.h"
 #include "pillarfield/doctor.h"
 
 namespace pillarfield {

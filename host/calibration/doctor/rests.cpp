@@ -8,7 +8,6 @@
 
 #include "base/quantile.h"
 #include "calibration/doctor/examination.h"
-#include "calibration/doctor/finding_text.h"
 
 namespace pillarfield {
 namespace {
@@ -123,11 +122,12 @@ class RestSearch {
       RestChanges& changes = changes_[i];
       ++changes.releases;
       const double change = after[i] - before_[i] - common;
-      const double noise = seen_.noise_of(i) * std::sqrt(2.0 / kRestFrames);
-      if (std::abs(change) <
-          std::max({kLeastOfTouch * peaks_[i], kOverNoise * noise, kOverOthers * spread})) {
-        continue;
-      }
+      // Windows with a touch overrate the noise of touched sensels.
+      const double noise = std::max<double>(seen_.jitter[i], seen_.typical_noise);
+      const double least =
+          std::max({kLeastOfTouch * peaks_[i], kOverNoise * noise * std::sqrt(2.0 / kRestFrames),
+                    kOverOthers * spread * noise / seen_.typical_noise});
+      if (std::abs(change) < least) continue;
       (change > 0 ? changes.up : changes.down).push_back(change);
     }
     before_ = std::move(after);
