@@ -325,7 +325,11 @@ TareResult take_tare(const SkinCalibration& before, const TareFrames& unloaded,
   set_threshold(result.calibration, options.threshold_factor);
   result.findings = found.findings();
   result.tare_counts = judge.typical().level;
-  result.noise_counts = judge.typical().noise;
+  std::vector<float> noises;
+  for (std::size_t i = 0; i < still.sensels().size(); ++i) {
+    if (found.good(i)) noises.push_back(result.calibration.planes.noise[i]);
+  }
+  result.noise_counts = median(noises);
   result.spikes = examined.spikes;
   const TareChange change(still, known, result.calibration.planes);
   result.unseen_counts = change.limit;

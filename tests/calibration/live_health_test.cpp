@@ -167,7 +167,7 @@ TEST(LiveTare, ComparesWithTheTareBefore) {
        }},
       {"a load that is gone", nullptr,
        [](std::uint8_t* readings) {
-         for (int i = 0; i < 30; ++i) readings[i] = 0;
+         for (int i = 0; i < 30; ++i) readings[i] = static_cast<std::uint8_t>(readings[i] / 2);
        }},
       {"a finger on one sensel", "1 sensel changed since the tare before",
        [](std::uint8_t* readings) {
