@@ -83,8 +83,9 @@ PF_INLINE Real drift_at(Drift drift, Real col, Real row) {
          (col * PF_CONSTANT(Real, drift.per_col) + row * PF_CONSTANT(Real, drift.per_row));
 }
 
-/* Updates a tare: that of a sensel that follows, with a valid reading, by `rate` times the difference
- * between the raw reading and the tare, another one by the drift that untouched sensels share. */
+/* Updates a tare: that of a sensel that follows, with a valid reading, by `rate` times the
+ * difference between the raw reading and the tare, another one by the drift that untouched sensels
+ * share. */
 PF_INLINE Real follow_tare(Real tare, Sensel raw, Mask may_follow, Real rate, Real drift) {
   const Mask follows = may_follow && !(raw.missing || raw.saturated);
   return tare + (follows ? rate * (raw.reading - tare) : drift);
