@@ -88,7 +88,7 @@ def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
                     "give one of its arrays")
     array = array_of(missing_as_nan(frames))
     if array.dtype.kind not in "uif":
-        raise Error("frames", f"their type is {array.dtype}", "give numbers")
+        raise Error("frames", f"their type is {array.dtype}", "give counts")
     if kind is not None:
         wanted = np.dtype(kind)
         if not np.can_cast(array.dtype, wanted) and wanted.kind == "u":

@@ -124,8 +124,8 @@ AxisComponents components_along(const std::vector<std::uint64_t>& shape, std::si
       const double change = slices[t][i] - rest;
       if (!std::isfinite(change)) continue;
       activity[axis == 0 ? t : i / inner % 3] += std::abs(change);
-      low = std::min(low, change);
-      high = std::max(high, change);
+      low = std::min(low, slices[t][i]);
+      high = std::max(high, slices[t][i]);
     }
   }
   AxisComponents found = {.normal = {},

@@ -68,12 +68,11 @@ void LineChoice::check(const std::string& place) const {
     if (options_.where.empty() && chosen.where.find('\'') == std::string::npos) {
       proposals.push_back({fmt::format("--where '{}'", chosen.where), chosen});
     }
-    throw ProposingError(
-        place,
-        fmt::format("'{}' alternates between {}, as lines of several arrays do", watched.name,
-                    fmt::join(words, ", ")),
-        "choose one with --where COLUMN=WORD",
-        "choose one, as with", std::move(proposals));
+    throw ProposingError(place,
+                         fmt::format("'{}' alternates between {}, as lines of several arrays do",
+                                     watched.name, fmt::join(words, ", ")),
+                         "choose one with --where COLUMN=WORD", "choose one, as with",
+                         std::move(proposals));
   }
 }
 
