@@ -146,6 +146,13 @@ TEST_F(PlainTable, IsoTimesAreSecondsSince1970) {
         "2024-05-01T12:00:00+00\t1\t2\t3\t4\n2024-05-01T12:00:00,002\t5\t6\t7\t8\n", quoted}) {
     expect_two_frames(text, times_s);
   }
+  expect_two_frames("12:30:00.5 AM,1,2,3,4\n1:00:00 PM,5,6,7,8\n", {1800.5, 46800});
+  ReadOptions named = square();
+  named.times = "1";
+  expect_two_frames("0.5\t1\t2\t3\t4\n0.75\t5\t6\t7\t8\n", {0.5, 0.75}, named);
+  named = square();
+  named.rate_hz = 4;
+  expect_two_frames("time,a,b,c,d\n,1,2,3,4\n,5,6,7,8\n", {0, 0.25}, named);
   ReadOptions blocks;
   expect_two_frames(
       "time,a,b\n2024-05-01 12:00:00,1,2\n2024-05-01 12:00:00,3,4\n\n"

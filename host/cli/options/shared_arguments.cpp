@@ -187,7 +187,8 @@ CLI::Option* add_pressure_unit(Group& group, PressureUnit& unit) {
   std::vector<std::pair<std::string, PressureUnit>> choices;
   choices.reserve(std::size(kPressureUnits));
   for (const PressureUnit& each : kPressureUnits) choices.emplace_back(each.name, each);
-  return group.choice<PressureUnit>("--pressure-unit", unit, choices, "Unit of pressures in the output [kPa]");
+  return group.choice<PressureUnit>("--pressure-unit", unit, choices,
+                                    "Unit of pressures in the output [kPa]");
 }
 
 }  // namespace pillarfield::cli
