@@ -120,6 +120,7 @@ File open_to_read(const InputFile& input, bool trusted) {
 
 std::optional<std::string> format_of(const std::filesystem::path& path) {
   const QuietErrors quiet;
+  const CrashGuard guard(path, false, CrashGuard::kNoLimit);
   try {
     const File file = open_to_read(InputFile(path), false);
     return Attributes(file).text("format").value_or("");
