@@ -104,7 +104,7 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
       if (!first) first = i;
     }
     const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(share, 4);
-    if (together > 100 * by_chance) return first;
+    if (together > (by_chance < 0.01 ? 0 : 10 + 5 * by_chance)) return first;
     if (share == 0) break;
   }
   return std::nullopt;
@@ -118,7 +118,10 @@ void refuse_resting_touch(const FrameStatistics& unloaded, const std::vector<std
   for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
     levels.push_back(judge.sensels()[i].level);
     const auto fault = judge.verdict(i).value_or(SenselFault::saturated);  // or none
-    used.push_back((mask.empty() || mask[i] == kGood) && fault == SenselFault::saturated ? 1 : 0);
+    // A constant low reading is that of a dead sensel.
+    const bool may_be_touched =
+        fault == SenselFault::saturated || (fault == SenselFault::stuck && judge.is_far_above(i));
+    used.push_back((mask.empty() || mask[i] == kGood) && may_be_touched ? 1 : 0);
   }
   for (const char* const side_words : {"above", "below"}) {
     const auto at = standing_out(unloaded.skin(), levels, used, judge.typical().noise);
