@@ -58,7 +58,7 @@ PF_INLINE Lean lean_of(Real own, Real part, Real deviation) {
 /* The lean towards `after` of a pillar with the normal force `own`, N; the pillars in its line are
  * far_before, before, own, after, far_after. An odd polynomial in four ratios, exact to first
  * order in a pressure that varies linearly; its coefficients are least squares over wide and narrow
- * bodies on an elastic half-space (lab/lean), and the deviation is what they leave. */
+ * bodies on an elastic half-space, and the deviation is what they leave. */
 PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
   const LineRatios ratios = line_ratios(far_before, before, own, after, far_after);
   const Real d = ratios.d;
