@@ -12,7 +12,7 @@ namespace {
 /// Ratio of the squares that speak for one polarity and for the other that decides.
 constexpr double kDecisive = 3;
 /// Distance of a load from the levels of sensels that do not change, in deviations of these.
-constexpr double kStandsOut = 4;
+constexpr double kLoadStandsOut = 4;
 /// Share of the largest span from which a change is load: drift is below.
 constexpr double kLoadChange = 0.3;
 /// Moving contacts load at most the first share of all sensels that they ever load at a time, so
@@ -111,7 +111,7 @@ class Changes {
       const double beyond = 2.5 * seen_.noise_of(changing_[n]);  // of an extreme reading
       rise += std::pow(std::max(0.0, std::abs(high[n] - rest) - beyond), 2);
       fall += std::pow(std::max(0.0, std::abs(low[n] - rest) - beyond), 2);
-      noise += std::pow(kStandsOut * spread, 2);
+      noise += std::pow(kLoadStandsOut * spread, 2);
     }
     return std::max(rise, fall) > noise ? decide(rise, fall) : Polarity::unknown;
   }

@@ -28,7 +28,7 @@ constexpr std::size_t kLeastRest = 10;      ///< frames
 constexpr std::size_t kLoadedAtRest = 500;  ///< one of so many sensels
 constexpr double kOddSpans = 0.01;          ///< share of the sensels
 /// Sudden change of a load, in the range of its sensel and in noise.
-constexpr double kSudden = 0.25;
+constexpr double kSuddenStep = 0.25;
 constexpr double kSuddenNoise = 8;
 /// Multiples of the usual noise, and of that around, of sensels that do not tell of load.
 constexpr double kUnsteady = 7;
@@ -232,7 +232,7 @@ void find_noise_and_ranges(Examination& seen, Diagnosis& found) {
   for (std::size_t i = 0; i < sensels; ++i) {
     if (!seen.is_steady(i)) continue;
     const double span = double{seen.highest[i]} - seen.lowest[i];
-    if (steps[i] < std::max(kSudden * span, kSuddenNoise * seen.noise_of(i))) continue;
+    if (steps[i] < std::max(kSuddenStep * span, kSuddenNoise * seen.noise_of(i))) continue;
     seen.sudden[i] = 1;
     seen.has_load = true;
     spans.push_back(span);
