@@ -101,9 +101,9 @@ bool are_letters_in_a_row(std::vector<std::string> words) {
 }
 
 /// The one word in which the patterns differ, of each kind; nothing if they differ otherwise.
-std::vector<std::string> differing_words(const std::vector<ColumnKind>& kinds) {
+std::vector<std::string> differing_words(const std::vector<ColumnFamily>& kinds) {
   std::vector<std::vector<std::string>> words;
-  for (const ColumnKind& kind : kinds) words.push_back(words_in(kind.pattern));
+  for (const ColumnFamily& kind : kinds) words.push_back(words_in(kind.pattern));
   std::vector<std::string> differing;
   for (std::size_t at = 0; at < words[0].size(); ++at) {
     const auto is_like_first = [&](const auto& each) {
@@ -120,7 +120,7 @@ std::vector<std::string> differing_words(const std::vector<ColumnKind>& kinds) {
 }
 
 /// Distinct values of a number of the columns.
-std::set<std::uint64_t> values_at(const ColumnKind& kind, std::size_t at) {
+std::set<std::uint64_t> values_at(const ColumnFamily& kind, std::size_t at) {
   std::set<std::uint64_t> values;
   for (const auto& numbers : kind.numbers) values.insert(numbers[at]);
   return values;
@@ -141,13 +141,13 @@ std::vector<std::size_t> axis_letters(std::string_view name) {
 
 }  // namespace
 
-std::vector<ColumnKind> kinds_of(std::span<const std::string> header,
-                                 std::span<const std::size_t> columns) {
+std::vector<ColumnFamily> kinds_of(std::span<const std::string> header,
+                                   std::span<const std::size_t> columns) {
   std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
   for (const std::size_t column : columns) {
     alike[NameParts(header[column]).texts].push_back(column);
   }
-  std::vector<ColumnKind> kinds;
+  std::vector<ColumnFamily> kinds;
   std::map<std::string, std::size_t> known;  // of a pattern
   for (const auto& [texts, members] : alike) {
     std::vector<NameParts> names;
@@ -163,8 +163,8 @@ std::vector<ColumnKind> kinds_of(std::span<const std::string> header,
       for (const std::size_t at : varying.order) numbers.push_back(names[i].number(at));
     }
   }
-  std::ranges::sort(kinds, {}, [](const ColumnKind& kind) { return kind.columns.front(); });
-  for (ColumnKind& kind : kinds) {
+  std::ranges::sort(kinds, {}, [](const ColumnFamily& kind) { return kind.columns.front(); });
+  for (ColumnFamily& kind : kinds) {
     std::vector<std::pair<std::vector<std::uint64_t>, std::size_t>> order;
     for (std::size_t i = 0; i < kind.columns.size(); ++i) {
       order.emplace_back(kind.numbers[i], kind.columns[i]);
@@ -178,14 +178,14 @@ std::vector<ColumnKind> kinds_of(std::span<const std::string> header,
   }
   if (are_rows(kinds) && are_letters_in_a_row(differing_words(kinds))) {
     std::ranges::stable_sort(kinds, {},
-                             [](const ColumnKind& kind) { return words_in(kind.pattern); });
+                             [](const ColumnFamily& kind) { return words_in(kind.pattern); });
   }
   return kinds;
 }
 
-bool are_rows(const std::vector<ColumnKind>& kinds) {
+bool are_rows(const std::vector<ColumnFamily>& kinds) {
   if (kinds.size() < 2) return false;
-  const auto is_row = [&](const ColumnKind& kind) {
+  const auto is_row = [&](const ColumnFamily& kind) {
     return kind.numbers == kinds[0].numbers && kind.columns.size() > 1 &&
            kind.numbers[0].size() == 1;
   };
@@ -196,7 +196,7 @@ bool are_rows(const std::vector<ColumnKind>& kinds) {
          words == std::vector<std::string>{"left", "right"} || are_letters_in_a_row(words);
 }
 
-std::optional<FrameSize> stated_size(const std::vector<ColumnKind>& kinds) {
+std::optional<FrameSize> stated_size(const std::vector<ColumnFamily>& kinds) {
   std::size_t rows = kinds.size();
   std::size_t cols = kinds[0].columns.size();
   if (kinds.size() > 1 && !are_rows(kinds)) return std::nullopt;
@@ -230,7 +230,7 @@ std::optional<FrameSize> stated_size(const std::vector<ColumnKind>& kinds) {
   return FrameSize{static_cast<std::uint32_t>(rows), static_cast<std::uint32_t>(cols)};
 }
 
-std::vector<std::size_t> in_order(const std::vector<ColumnKind>& kinds,
+std::vector<std::size_t> in_order(const std::vector<ColumnFamily>& kinds,
                                   const std::optional<FrameSize>& size) {
   std::vector<std::size_t> columns;
   if (size && kinds.size() == 1 && kinds[0].states_places) {
@@ -243,21 +243,21 @@ std::vector<std::size_t> in_order(const std::vector<ColumnKind>& kinds,
     }
     return columns;
   }
-  for (const ColumnKind& kind : kinds) {
+  for (const ColumnFamily& kind : kinds) {
     columns.insert(columns.end(), kind.columns.begin(), kind.columns.end());
   }
   return columns;
 }
 
-std::vector<Components> components_of(const std::vector<ColumnKind>& kinds,
-                                      std::vector<ColumnKind>& others) {
-  std::map<std::string, const ColumnKind*> by_pattern;
-  for (const ColumnKind& kind : kinds) by_pattern[kind.pattern] = &kind;
+std::vector<Components> components_of(const std::vector<ColumnFamily>& kinds,
+                                      std::vector<ColumnFamily>& others) {
+  std::map<std::string, const ColumnFamily*> by_pattern;
+  for (const ColumnFamily& kind : kinds) by_pattern[kind.pattern] = &kind;
   std::map<std::string, Components> found;  // by the word of the axis
-  for (const ColumnKind& kind : kinds) {
+  for (const ColumnFamily& kind : kinds) {
     bool is_component = false;
     for (const std::size_t at : axis_letters(kind.pattern)) {
-      std::array<const ColumnKind*, 3> axes = {};
+      std::array<const ColumnFamily*, 3> axes = {};
       std::string name = kind.pattern;
       const char x = std::isupper(static_cast<unsigned char>(name[at])) != 0 ? 'X' : 'x';
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -273,7 +273,7 @@ std::vector<Components> components_of(const std::vector<ColumnKind>& kinds,
       while (begin > 0 && std::isalpha(static_cast<unsigned char>(name[begin - 1])) != 0) --begin;
       Components& all =
           found[name.substr(begin, at - begin) + (kind.columns.size() > 1 ? "*" : "")];
-      ColumnKind* const to[] = {&all.x, &all.y, &all.z};
+      ColumnFamily* const to[] = {&all.x, &all.y, &all.z};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         to[axis]->pattern += (to[axis]->pattern.empty() ? "" : ",") + axes[axis]->pattern;
         for (const std::size_t column : axes[axis]->columns) to[axis]->columns.push_back(column);
@@ -295,7 +295,7 @@ bool names_readings(const std::string& name) {
                              [](const auto& word) { return kReadingWords.contains(word); });
 }
 
-std::string choice_of(std::span<const std::string> header, const ColumnKind& kind) {
+std::string choice_of(std::span<const std::string> header, const ColumnFamily& kind) {
   std::set<std::size_t> fitting;
   std::string_view rest = kind.pattern;
   while (!rest.empty()) {

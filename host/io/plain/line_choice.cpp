@@ -98,7 +98,7 @@ std::vector<Proposal> proposals_by_cells(const std::filesystem::path& path, char
       before[i] = value;
     }
   }
-  ColumnKind kind;
+  ColumnFamily kind;
   for (std::size_t i = 0; i < cells; ++i) {
     if (is_reading[i] && !rises[i]) kind.columns.push_back(i);
   }

@@ -84,7 +84,7 @@ bool count_columns(std::span<const std::string> cells) {
 }
 
 /// Ways on that take one kind of columns each.
-Proposal proposal_of(std::span<const std::string> header, const ColumnKind& kind,
+Proposal proposal_of(std::span<const std::string> header, const ColumnFamily& kind,
                      const ReadOptions& options) {
   const std::string choice = choice_of(header, kind);
   ReadOptions chosen = options;
@@ -93,10 +93,10 @@ Proposal proposal_of(std::span<const std::string> header, const ColumnKind& kind
   return {fmt::format("--columns '{}'", choice), chosen, is_open ? kind.columns.size() : 0};
 }
 
-std::string list_of(const std::vector<ColumnKind>& kinds) {
+std::string list_of(const std::vector<ColumnFamily>& kinds) {
   constexpr std::size_t kMostListed = 12;
   std::vector<std::string> list;
-  for (const ColumnKind& kind : kinds) {
+  for (const ColumnFamily& kind : kinds) {
     list.push_back(fmt::format("{} ({})", kind.pattern, kind.columns.size()));
   }
   if (list.size() > kMostListed) list.resize(kMostListed);
@@ -105,12 +105,12 @@ std::string list_of(const std::vector<ColumnKind>& kinds) {
 
 /// The kind of readings: the most columns, and the only ones with the name of readings; null if
 /// it is not certain.
-const ColumnKind* likely_readings(const std::vector<ColumnKind>& kinds) {
-  const auto is_named = [](const ColumnKind& kind) {
+const ColumnFamily* likely_readings(const std::vector<ColumnFamily>& kinds) {
+  const auto is_named = [](const ColumnFamily& kind) {
     return kind.columns.size() > 1 && (kind.states_places || names_readings(kind.pattern));
   };
   const auto& most = *std::ranges::max_element(
-      kinds, {}, [](const ColumnKind& kind) { return kind.columns.size(); });
+      kinds, {}, [](const ColumnFamily& kind) { return kind.columns.size(); });
   return std::ranges::count_if(kinds, is_named) == 1 && is_named(most) ? &most : nullptr;
 }
 
@@ -142,13 +142,13 @@ void refuse_components(std::span<const std::string> header, const std::vector<Co
 }
 
 /// Refuses names of several kinds, such as 12 pressures and a setting, or two pads.
-void refuse_kinds(std::span<const std::string> header, const std::vector<ColumnKind>& kinds,
+void refuse_kinds(std::span<const std::string> header, const std::vector<ColumnFamily>& kinds,
                   bool has_components, const ReadOptions& options, const std::string& place) {
-  const auto is_one = [](const ColumnKind& kind) { return kind.columns.size() == 1; };
+  const auto is_one = [](const ColumnFamily& kind) { return kind.columns.size() == 1; };
   if (kinds.size() < 2 || are_rows(kinds)) return;
   if (std::ranges::all_of(kinds, is_one) && !has_components) return;
   std::vector<Proposal> proposals;
-  if (const ColumnKind* const likely = likely_readings(kinds))
+  if (const ColumnFamily* const likely = likely_readings(kinds))
     proposals.push_back(proposal_of(header, *likely, options));
   throw ProposingError(place, fmt::format("has columns of several kinds: {}", list_of(kinds)),
                        "choose the readings with --columns", "choose the readings with",
@@ -279,15 +279,15 @@ TableColumns sorted_columns(std::span<const std::string> header, std::span<const
 namespace {
 
 /// "L_*', 'R_*", in the order of the rows.
-std::string rows_of(const std::vector<ColumnKind>& kinds) {
+std::string rows_of(const std::vector<ColumnFamily>& kinds) {
   std::vector<std::string> patterns;
-  for (const ColumnKind& kind : kinds) patterns.push_back(kind.pattern);
+  for (const ColumnFamily& kind : kinds) patterns.push_back(kind.pattern);
   return fmt::format("{}", fmt::join(patterns, "', '"));
 }
 
 /// Puts the columns in the order of their names, with the size that these state.
 void take_order(TableColumns& found, std::span<const std::string> header,
-                const std::vector<ColumnKind>& kinds, const ReadOptions& options) {
+                const std::vector<ColumnFamily>& kinds, const ReadOptions& options) {
   const auto& given = options.frame_size;
   const auto stated = stated_size(kinds);
   const bool is_taken = stated && options.axes.empty() &&
@@ -324,12 +324,12 @@ TableColumns choose_columns(std::span<const std::string> header, std::span<const
     throw Error(place, "has no column of readings", "choose them with --columns");
   }
   if (header.empty() || long_columns(header, found, options, place)) return found;
-  const std::vector<ColumnKind> kinds = kinds_of(header, found.readings);
-  std::vector<ColumnKind> others;
+  const std::vector<ColumnFamily> kinds = kinds_of(header, found.readings);
+  std::vector<ColumnFamily> others;
   const std::vector<Components> components = components_of(kinds, others);
   std::size_t most = static_cast<std::size_t>(std::ranges::count_if(
-      others, [](const ColumnKind& kind) { return kind.columns.size() == 1; }));
-  for (const ColumnKind& kind : others) most = std::max(most, kind.columns.size());
+      others, [](const ColumnFamily& kind) { return kind.columns.size() == 1; }));
+  for (const ColumnFamily& kind : others) most = std::max(most, kind.columns.size());
   refuse_components(header, components, most, options, place);
   if (options.columns.empty()) refuse_kinds(header, kinds, !components.empty(), options, place);
   if (!found.keeps_order) take_order(found, header, kinds, options);
@@ -355,7 +355,7 @@ std::optional<LongColumns> long_columns(std::span<const std::string> header,
     if (!found.frame && frames.contains(words[0])) found.frame = i;
   }
   if (!row || !col) return std::nullopt;
-  ColumnKind values;
+  ColumnFamily values;
   for (const std::size_t column : columns.readings) {
     if (column != *row && column != *col) values.columns.push_back(column);
   }
@@ -366,7 +366,7 @@ std::optional<LongColumns> long_columns(std::span<const std::string> header,
   if (is_named && values.columns.size() > 1) {
     const auto kinds = kinds_of(header, values.columns);
     std::vector<Proposal> proposals;
-    const auto is_force = [](const ColumnKind& kind) { return names_readings(kind.pattern); };
+    const auto is_force = [](const ColumnFamily& kind) { return names_readings(kind.pattern); };
     const auto force = std::ranges::find_if(kinds, is_force);
     if (std::ranges::count_if(kinds, is_force) == 1) {
       proposals.push_back(proposal_of(header, *force, options));
