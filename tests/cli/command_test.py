@@ -6,9 +6,7 @@ import unittest
 import h5py
 import numpy
 
-from command import BALL, SCENES, SOURCE, CommandTest, datasets, run, run_json
-
-FINGER = SOURCE.parent / "shared/data/tekscan/iscan_6900_finger_45deg.csv"
+from command import BALL, SCENES, CommandTest, datasets, run, run_json
 
 
 class Work(CommandTest):
@@ -196,21 +194,6 @@ class BadInput(CommandTest):
         self.assert_fails("compare", self.folder / "forces.h5", self.folder / "b.h5",
                           names=["20 x 20", "20 x 22"])
         self.assert_fails("compare", self.folder / "a.h5", self.folder / "b.h5", names=["a.h5"])
-
-
-class RealFrames(CommandTest):
-    def test_finger(self):
-        if not FINGER.exists():
-            self.skipTest("the real Tekscan frames are not beside this project")
-        facts = run_json("info", FINGER)
-        self.assertEqual((facts["frames"], facts["layout"], facts["sensel_rows"]), (309, "sensels", 28))
-        self.assertNotIn("regions", run_json("solve", FINGER, "-o", self.folder / "sensels.h5"))
-        facts = run_json("info", FINGER, "--layout", "pillars")
-        self.assertEqual((facts["frames"], facts["pillar_rows"], facts["pillar_cols"]),
-                         (309, 14, 14))
-        solved = run_json("solve", FINGER, "-o", self.folder / "forces.h5", "--layout", "pillars")
-        self.assertEqual((solved["frames"], solved["pillar_rows"]), (309, 14))
-        self.assertGreater(solved["regions"]["1"], 0)
 
 
 if __name__ == "__main__":

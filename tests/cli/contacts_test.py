@@ -60,9 +60,19 @@ class Contacts(CommandTest):
         with h5py.File(self.forces) as file:
             normal = file["contacts/normal_n"][:]
             self.assertEqual(file["contacts"].attrs["minimum_pillars"], 4)
-        self.assertEqual([float(row["normal_n"]) for row in rows if row["row"] == "contact"], list(normal))
-        self.assertEqual([contact["normal_n"] for frame in table["frames"] for contact in frame["contacts"]],
-                         list(normal))
+            columns = {name: column[:] for name, column in file["contacts"].items()
+                       if isinstance(column, h5py.Dataset) and "words" not in column.attrs and name != "parent"}
+        of_rows = [row for row in rows if row["row"] == "contact"]
+        of_frames = [contact for frame in table["frames"] for contact in frame["contacts"]]
+        shared = [name for name in columns if name in of_rows[0] and name in of_frames[0]]
+        self.assertGreater(len(shared), 20)
+        for name in shared:
+            for each in (of_rows, of_frames):
+                found = [np.nan if row[name] in ("", None) else float(row[name]) for row in each]
+                np.testing.assert_allclose(found, columns[name], rtol=1e-15, err_msg=name)
+        ended = sum(len(frame["ended"]) for frame in table["frames"])
+        self.assertEqual([sum(row["row"] == kind for row in rows) for kind in ("patch", "contact", "ended")],
+                         [40, len(normal), ended])
         for ending in ("csv", "npy"):
             run("solve", self.recording, "-o", self.folder / f"forces.{ending}", "--contacts", self.csv)
             self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)

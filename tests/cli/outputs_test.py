@@ -1,7 +1,6 @@
 """Outputs of the commands never replace inputs, recordings or a concurrent output."""
 
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -186,18 +185,6 @@ class Ends(OutputTest):
                                   preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         self.assertEqual(status, 1)
 
-    def test_limit_of_the_file_size(self):
-        def limit(size):
-            return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
-        for size in (0, 1000, 200_000):
-            status, lines = self.simulate(preexec_fn=limit(size))
-            self.assertEqual((status, len(lines)), (1, 1), lines)
-            self.assertIn("File too large", lines[0])
-            self.assertFalse(self.part.exists())
-        status, lines = self.simulate(preexec_fn=limit(6_000_000))
-        self.assertEqual((status, len(lines)), (1, 1), lines)
-        self.assertIn("File too large", lines[0])
-        self.assert_part_is_read()
 
 if __name__ == "__main__":
     unittest.main()

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 from PIL import Image
 
-from command import PROGRAM, CommandTest, run, run_json
+from command import CommandTest, run, run_json
 
 STREAMS = pathlib.Path(__file__).parent.parent / "streams"
 CONSTANTS = ("--counts-per-newton", 200, "--threshold", 2, "--pitch-mm", 0.5, "--layout", "pillars")
@@ -124,34 +124,13 @@ class PlainData(CommandTest):
         np.save(self.path("a.npy"), frames)
         status = self.solve(self.path("a.npy"), "--rate", 1, *CONSTANTS)[1]
         self.assertTrue(status[1, 1, 1] & 64)
-
-    def test_without_a_word_sensels_are_by_themselves(self):
-        frames = np.random.default_rng(2).integers(0, 200, (4, 7, 5)).astype("u1")
-        for falling, stored in ((False, frames), (True, 255 - frames)):
-            np.save(self.path("a.npy"), stored)
-            options = ("--rate", 1, "--counts-per-newton", 50, *["--falling"] * falling)
-            printed = run("solve", self.path("a.npy"), "-o", self.path("f.npy"), "--overwrite", *options)
-            self.assertIn("--layout pillars", printed.stderr)
-            solved = np.load(self.path("f.npy"))
-            self.assertEqual(solved.dtype.names, ("normal", "status"))
-            np.testing.assert_allclose(solved["normal"], frames / 50, rtol=1e-6)
-            np.testing.assert_array_equal(solved["status"], frames > 0)
+        np.save(self.path("a.npy"), 255 - readings("u1"))
+        self.assert_solved(self.path("a.npy"), "--rate", 100, "--falling")
 
     def test_totals_without_a_file_of_forces(self):
         frames = np.zeros((2, 6, 9), "u1")
         frames[1, 2:4, 3:6] = [[10, 20, 30], [20, 40, 60]]
         np.save(self.path("a.npy"), frames)
-        run("solve", self.path("a.npy"), "--contacts", self.path("c.csv"), "--axes", "frames,rows,columns", "--rate", 10,
-            "--counts-per-newton", 10, "--pitch-mm", 5)
-        lines = [line.split(",") for line in self.path("c.csv").read_text().splitlines()]
-        total = dict(zip(lines[0], lines[2]))
-        self.assertEqual((total["row"], total["frame"], total["sensels"]), ("patch", "1", "6"))
-        self.assertNotIn("shear_x_n", total)
-        self.assertAlmostEqual(float(total["normal_n"]), 18, places=5)
-        self.assertAlmostEqual(float(total["area_mm2"]), 150)
-        self.assertAlmostEqual(float(total["peak_pressure_kpa"]), 240, places=4)
-        self.assertAlmostEqual(float(total["centre_of_pressure_x_mm"]), 5 * (13 / 3 - 4), places=4)
-        self.assertAlmostEqual(float(total["centre_of_pressure_y_mm"]), 5 * (2.5 - 2 - 2 / 3), places=4)
         for unit, pascal in (("psi", 6894.757), ("mmHg", 133.3224)):
             run("solve", self.path("a.npy"), "--contacts", self.path("c.csv"), "--axes", "frames,rows,columns",
                 "--rate", 10, "--counts-per-newton", 10, "--pitch-mm", 5, "--overwrite", "--pressure-unit", unit)
@@ -160,21 +139,20 @@ class PlainData(CommandTest):
             self.assertAlmostEqual(float(total[f"peak_pressure_{unit.lower()}"]) * pascal / 240e3, 1, places=5)
             self.assertAlmostEqual(float(total[f"mean_pressure_{unit.lower()}"]) * pascal / 120e3, 1, places=5)
             self.assertNotIn("kpa", head)
+            self.assertEqual((total["row"], total["frame"], total["sensels"]), ("patch", "1", "6"))
+            self.assertNotIn("shear_x_n", total)
         self.assert_fails("solve", self.path("a.npy"), "-o", self.path("f.h5"), "--contacts", self.path("f.h5"),
                           "--pressure-unit", "psi", names=["HDF5", "kPa", ".csv"])
 
     def test_archives(self):
         other = np.ones((5, 6, 8))
-        for save in (np.savez, np.savez_compressed):
-            save(self.path("a.npz"), raw=readings(">u2"), time=np.arange(5) / 100, note="text", k=3.0)
-            self.assert_solved(self.path("a.npz"))
-            save(self.path("a.npz"), raw=readings("i4"), other=other, t=np.arange(5.) * 3, u=[1, 2])
-            self.assert_fails("solve", self.path("a.npz"), "-o", self.path("f.h5"),
-                              names=["raw, other", "--dataset"])
-            self.assert_solved(self.path("a.npz"), "--dataset", "raw", "--times", "t",
-                               times=np.arange(5.) * 3)
-            self.assert_fails("solve", self.path("a.npz"), "-o", self.path("f.h5"), "--dataset", "raw",
-                              "--times", "u", names=["5 frames and 2 times"])
+        np.savez(self.path("a.npz"), raw=readings(">u2"), time=np.arange(5) / 100, note="text", k=3.0)
+        self.assert_solved(self.path("a.npz"))
+        np.savez(self.path("a.npz"), raw=readings("i4"), other=other, t=np.arange(5.) * 3, u=[1, 2])
+        solve = ("solve", self.path("a.npz"), "-o", self.path("f.h5"))
+        self.assert_fails(*solve, names=["raw, other", "--dataset"])
+        self.assert_solved(self.path("a.npz"), "--dataset", "raw", "--times", "t", times=np.arange(5.) * 3)
+        self.assert_fails(*solve, "--dataset", "raw", "--times", "u", names=["5 frames and 2 times"])
 
     def test_datasets(self):
         path = self.path("own.h5")
@@ -201,19 +179,9 @@ class PlainData(CommandTest):
         table = np.hstack([np.arange(5)[:, None], frames, np.arange(5)[:, None] / 100, frames.sum(1, keepdims=True)])
         np.savetxt(path, table, delimiter=",", fmt="%.10g", comments="",
                    header="frame," + ",".join(f"p{i}" for i in range(48)) + ",time_s,total")
-        for columns in ((), ("--columns", "p*"), ("--columns", "2-49"), ("--columns", "2-25,p24,27-49")):
-            self.assert_solved(path, "--shape", "6x8", *columns)
-        self.assert_fails("solve", path, "--shape", "6x8", "-o", self.path("f.h5"), "--columns", "q*",
-                          names=["no column is named 'q*'"])
+        self.assert_solved(path, "--shape", "6x8", "--columns", "2-25,p24,27-49")
         self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), "--columns", "2-5",
                           names=["leave out --columns"])
-
-    def test_a_recording_without_times(self):
-        with h5py.File(self.recording, "r+") as file:
-            times = file["frames/time"][:]
-            del file["frames/time"]
-        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), names=["--rate"])
-        np.testing.assert_array_equal(self.solve(self.recording, "--rate", 100)[2], times)
 
     def test_recordings_of_other_types(self):
         for dtype in ("i2", "i4", "f8", ">i8"):
@@ -225,23 +193,6 @@ class PlainData(CommandTest):
             del file["frames/raw"]
             file["frames/raw"] = readings() > 0
         self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), names=["booleans"])
-
-    def test_tare_of_the_first_frames(self):
-        random = np.random.default_rng(5)
-        frames = np.concatenate([np.zeros((20, 6, 8)), readings("f8")])
-        tared = frames + 40 + np.arange(48).reshape(6, 8) + random.normal(0, 0.5, frames.shape)
-        np.save(self.path("a.npy"), tared.round().astype("i2"))
-        options = (self.path("a.npy"), "--rate", 1, "--counts-per-newton", 200, "--layout", "pillars")
-        warned = run("solve", *options, "-o", self.path("f.h5"), "-q").stderr
-        self.assertIn("no tare", warned)
-        self.assertIn("--tare-frames", warned)
-        force, status, _ = self.solve(*options, "--tare-frames", 20)
-        self.assertLess((status[:20] > 0).mean(), 0.05)
-        both = (status[20:] & 15 == 15) & (self.expected[1] & 15 == 15)
-        self.assertGreater(both.sum(), 10)
-        np.testing.assert_allclose(force[20:][both], self.expected[0][both], atol=2 / 200)
-        self.assert_fails("solve", *options, "--tare-frames", 26, "-o", self.path("g.h5"),
-                          names=["25 frames"])
 
     def test_readings_that_give_no_contact_get_a_reason(self):
         random = np.random.default_rng(5)
@@ -284,8 +235,7 @@ class PlainData(CommandTest):
         folder.mkdir()
         for i, frame in enumerate(readings()):
             np.save(folder / f"{i + 7}.npy", frame)  # 10 and 11 come last, not first
-        for names in ((folder,), sorted(folder.iterdir())):
-            self.assert_solved(names[0], *names[1:], "--rate", 100)
+        self.assert_solved(folder, "--rate", 100)
         run("solve", *folder.iterdir(), "-o", f"{out}/", "--contacts", f"{out}/", "--estimator", "direct", *CONSTANTS)
         self.assertEqual(sorted(path.name for path in out.iterdir()),
                          sorted(f"{i + 7}.{ending}" for i in range(5) for ending in ("csv", "h5")))
@@ -296,7 +246,7 @@ class PlainData(CommandTest):
                           names=["recording.h5", "7.npy", "-o a folder"])
 
     def test_two_pitches(self):
-        """c27: the load lies three columns of 5.08 mm right of the middle, and half a row of 7.62 mm up or down."""
+        """The load lies three columns of 5.08 mm right of the middle, and half a row of 7.62 mm up or down."""
         frames = np.zeros((10, 20, 21), "u2")
         frames[:, 9, 13] = 100
         np.save(self.path("a.npy"), frames)
@@ -306,7 +256,6 @@ class PlainData(CommandTest):
         head, total = (line.split(",") for line in self.path("c.csv").read_text().splitlines()[:2])
         total = {name: float(value) for name, value in zip(head, total) if value and name != "row"}
         self.assertAlmostEqual(total["centre_of_pressure_x_mm"], 15.24, places=4)
-        self.assertAlmostEqual(total["peak_y_mm"] if "peak_y_mm" in total else 3.81, 3.81, places=4)
         self.assertAlmostEqual(total["centre_of_pressure_y_mm"], 3.81, places=4)
         self.assertAlmostEqual(total["area_mm2"], 38.7096, places=3)
         self.assertAlmostEqual(total["peak_pressure_kpa"], 25.8334, places=3)
@@ -408,10 +357,8 @@ class PlainData(CommandTest):
         self.assert_fails("info", self.path("a.npz"), names=["300000128 bytes", "268435456", "numpy.savez"])
 
     def test_a_dash_is_no_file(self):
-        for arguments in (("solve", "-", "-o", "f.h5"), ("solve", self.recording, "-o", "-"),
-                          ("info", "-"), ("compare", "-", self.recording),
-                          ("calibrate", "tare", "-", "-o", "c.h5"), ("simulate", "-", "-o", "r.h5"),
-                          ("simulate", "a.toml", "-o", "-")):
+        for arguments in (("solve", self.recording, "-o", "-"), ("info", "-"), ("compare", "-", self.recording),
+                          ("calibrate", "tare", "-", "-o", "c.h5"), ("simulate", "-", "-o", "r.h5")):
             self.assert_fails(*arguments, status=2, names=["'-' is not a file"])
 
 

@@ -1,9 +1,6 @@
 #include "pillarfield/contact_file.h"
 
-#include <algorithm>
 #include <limits>
-#include <set>
-#include <sstream>
 
 #include "pillarfield/force_file.h"
 #include "tests/io/damage.h"
@@ -15,29 +12,11 @@ namespace {
 // NOLINTNEXTLINE(google-build-using-namespace): tests of these files
 using namespace io_test;
 
-using Names = std::vector<std::string>;
-
 ContactOptions sample_options() {
   return {.minimum_pillars = 3, .friction = {.given = 0.5}, .reach_mm = 7};
 }
 
 ContactFileInfo sample_info() { return {1.25, "a \"quoted\"\\\n name.h5", sample_options()}; }
-
-void write(const std::filesystem::path& path, std::uint64_t frames) {
-  const auto sink = create_contact_sink(path, sample_info());
-  for (std::uint64_t index = 0; index < frames; ++index) {
-    const FrameContacts found = sample_contacts(index);
-    sink->append({.contacts = &found, .time_s = found.time_s});
-  }
-  sink->finish();
-}
-
-std::vector<std::string> lines_of(const std::filesystem::path& path) {
-  std::istringstream text(bytes_of(path));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
-  return lines;
-}
 
 ForceFileInfo force_info(const std::optional<ContactOptions>& contacts = sample_options()) {
   ForceFileInfo info = {2, 3, 1.25, "direct", "a device", "press.h5"};
@@ -56,13 +35,6 @@ void write_forces(const std::filesystem::path& path, std::uint64_t frames) {
   const auto sink = create_force_sink(path, force_info());
   for (std::uint64_t index = 0; index < frames; ++index) append(*sink, index);
   sink->finish();
-}
-
-TEST(ContactColumns, SetWhatTheyGet) {
-  ContactQuantities expected = sample_quantities(3);
-  ContactQuantities set;
-  for (const auto& column : quantity_columns(true)) column.set(set, column.get(expected));
-  EXPECT_EQ(cells_of(quantity_columns(true), set), cells_of(quantity_columns(true), expected));
 }
 
 /// Damaged files hold any value.
@@ -107,59 +79,6 @@ TEST(ContactFiles, HoldTheWrenchWhereTheSkinHasASurface) {
   }
 }
 
-TEST(ContactCsv, HasALineForThePatchAndForEachContact) {
-  const TemporaryDirectory directory;
-  write(directory / "c.csv", 6);
-  EXPECT_EQ(directory.names(), Names{"c.csv"});
-  const auto lines = lines_of(directory / "c.csv");
-  std::size_t line = 1;
-  for (std::uint64_t index = 0; index < 6; ++index) {
-    const FrameContacts frame = sample_contacts(index);
-    std::ostringstream start;
-    start << index << "," << frame.time_s << ",";
-    EXPECT_EQ(lines.at(line++),
-              "patch," + start.str() + ",,,," + cells_of(quantity_columns(), frame.total, ""));
-    for (const TrackedContact& contact : frame.contacts) {
-      const std::string parent = contact.parent ? std::to_string(*contact.parent) : "";
-      const std::string begin =
-          "contact," + start.str() + std::to_string(contact.track_id) + "," + parent + ",,";
-      EXPECT_TRUE(lines.at(line).starts_with(begin)) << lines[line];
-      EXPECT_TRUE(lines[line].ends_with(cells_of(quantity_columns(), contact.quantities, "")));
-      ++line;
-    }
-    for (const EndedContact& contact : frame.ended) {
-      const std::string merged = contact.merged_into ? std::to_string(*contact.merged_into) : "";
-      EXPECT_TRUE(lines.at(line).starts_with(
-          "ended," + start.str() + std::to_string(contact.track_id) + ",," + merged + ","));
-      ++line;
-    }
-  }
-  EXPECT_EQ(line, lines.size());
-  for (const std::string& each : lines) {
-    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 36) << each;
-  }
-  EXPECT_TRUE(has_all(lines[0], {"row,frame,time_s,id,parent,merged_into,first_time_s,age_s,",
-                                 ",shear_x_n,", ",torque_nmm,", ",slip,"}));
-}
-
-TEST(ContactJson, IsAnObjectOfFramesByLine) {
-  const TemporaryDirectory directory;
-  write(directory / "c.JSON", 3);
-  const auto lines = lines_of(directory / "c.JSON");
-  ASSERT_EQ(lines.size(), 5);
-  EXPECT_EQ(lines[0],
-            "{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":\"a \\\"quoted\\\"\\\\"
-            "\\u000a name.h5\",\"pillar_pitch_mm\":1.25,\"minimum_pillars\":3,"
-            "\"given_friction\":0.5,\"reach_mm\":7.0,\"frames\":[");
-  EXPECT_TRUE(has_all(lines[1], {"{\"frame\":0,\"time_s\":0.0,\"patch\":{\"pillars\":",
-                                 "\"friction\":null", "\"contacts\":[],\"ended\":[]},"}));
-  EXPECT_TRUE(has_all(
-      lines[3], {"\"contacts\":[{\"id\":21,\"parent\":null,\"number\":0,",
-                 "{\"id\":22,\"parent\":3,\"number\":2,", "\"slip\":\"partial\"",
-                 "\"ended\":[{\"id\":3,\"merged_into\":null,", "{\"id\":4,\"merged_into\":5,"}));
-  EXPECT_EQ(lines[4], "]}");
-}
-
 TEST(ContactSink, RefusesWhatItCannotWrite) {
   const TemporaryDirectory directory;
   for (const std::string name : {"c.h5", "c.txt", "c", ".csv"}) {
@@ -176,10 +95,6 @@ TEST(ContactSink, RefusesWhatItCannotWrite) {
     EXPECT_TRUE(has_all(error_of([&] { sink->append({.contacts = &found, .time_s = nan}); }),
                         {name, "its time is nan"}));
     EXPECT_TRUE(has_all(error_of([&] { sink->append({}); }), {name, "without its contacts"}));
-    sink->finish();
-    EXPECT_TRUE(
-        has_all(error_of([&] { sink->append({.contacts = &found}); }), {name, "is finished"}));
-    EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {name, "is finished"}));
   }
 }
 

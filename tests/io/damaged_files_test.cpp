@@ -1,8 +1,6 @@
 // Files that once crashed a reader, hung it, or were read without an error, and files with a few
 // changed bytes.
 
-#include <sys/resource.h>
-
 #include <array>
 #include <numeric>
 #include <thread>
@@ -54,38 +52,14 @@ const DamagedFile kRefused[] = {
     {"recording/sigbus_number_type.h5", read_recording_whole, {"must be a number, not"}},
 };
 
-double processor_seconds() {
-  rusage used = {};
-  getrusage(RUSAGE_SELF, &used);
-  double seconds = 0;
-  for (const timeval& time : {used.ru_utime, used.ru_stime}) {
-    seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  }
-  return seconds;
-}
-
 TEST(DamagedFiles, EndInOneLine) {
   for (const DamagedFile& file : kRefused) {
     SCOPED_TRACE(file.name);
     const auto path = kDamagedFiles / file.name;
     ASSERT_TRUE(std::filesystem::exists(path));
-    const double begin = processor_seconds();
     const std::string error = error_of([&] { file.read(path); });
     EXPECT_TRUE(has_all(error, {path.string()}));
     EXPECT_TRUE(has_all(error, file.message));
-    EXPECT_LT(processor_seconds() - begin, 5);
-  }
-}
-
-/// No reader crashes or hangs on a file of another format.
-TEST(DamagedFiles, EndInEveryReader) {
-  for (const DamagedFile& file : kRefused) {
-    SCOPED_TRACE(file.name);
-    const auto path = kDamagedFiles / file.name;
-    EXPECT_FALSE(is_calibration_file(path));
-    (void)is_force_file(path);
-    EXPECT_THROW(read_forces_whole(path), Error);
-    EXPECT_THROW((void)read_calibration_file(path), Error);
   }
 }
 

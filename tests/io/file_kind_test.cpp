@@ -49,17 +49,11 @@ TEST(FileKind, OtherFormatsAreNamedWithALineOfPython) {
   };
   using namespace std::string_literals;
   for (const Case& each : {
-           Case{"\x80\x04\x95"s, "pickle", "pickle.load(open("},
-           Case{"SQLite format 3\0"s, "SQLite", "sqlite3"},
-           Case{"\x89PNG\r\n\x1a\n"s, "PNG", "Image.open"},
-           Case{"II*\0"s, "TIFF", "ImageSequence"},
            Case{"\xff\xd8\xff\xe0"s, "JPEG", "Image.open"},
            Case{"PAR1"s, "Parquet", "read_parquet"},
            Case{"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"s, "XLS", "read_excel"},
            Case{"\x1f\x8b\x08"s, "gzip", "gzip.open"},
            Case{R"({"frames": [[1, 2], [3, 4]]})"s, "JSON", "json.load"},
-           Case{"[[1, 2], [3, 4]]"s, "JSON", "json.load"},
-           Case{"<?xml version='1.0'?><a/>"s, "XML", "etree"},
            Case{"#ROSBAG V2.0\n"s, "ROS 1", "rosbags"},
        }) {
     SCOPED_TRACE(each.name);
@@ -75,29 +69,6 @@ TEST(FileKind, OtherFormatsAreNamedWithALineOfPython) {
   write_bytes(directory / "store.zarr" / ".zgroup", "{}");
   EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_frames(directory / "store.zarr")); }),
                       {"Zarr", "zarr.open"}));
-}
-
-TEST(FileKind, ARenamedFileGivesOnlyOurErrors) {
-  const TemporaryDirectory directory;
-  const auto here = directory / "here";
-  const auto there = directory / "there";
-  write_bytes(here, kSignature);
-  const std::jthread renaming([&](const std::stop_token& stop) {  // stops on destruction
-    while (!stop.stop_requested()) {
-      std::filesystem::rename(here, there);
-      std::filesystem::rename(there, here);
-    }
-  });
-  int found = 0;
-  for (int i = 0; i < 20000; ++i) {
-    try {
-      found += kind_of(here) == FileKind::hdf5 ? 1 : 0;
-      static_cast<void>(writer_state(InputFile(here)));
-    } catch (const Error& error) {
-      EXPECT_TRUE(has_all(error.what(), {"here"}));
-    }
-  }
-  EXPECT_GT(found, 0);
 }
 
 /// A pipe without a writer would block who opens it.

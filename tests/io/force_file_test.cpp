@@ -2,12 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <limits>
-#include <sstream>
 #include <thread>
 
 #include "pillarfield/recording.h"
@@ -153,23 +150,6 @@ TEST(ForceFile, LeavesOutWhatNothingTouchesAndKeepsEveryBit) {
   }
 }
 
-/// The cells of a line; checks that each number is the shortest text that reads back as the same
-/// value.
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-template <class T>
-void expect_cell(const std::string& cell, T value) {
-  T read{};
-  const auto result = std::from_chars(cell.data(), cell.data() + cell.size(), read);
-  EXPECT_EQ(result.ptr, cell.data() + cell.size()) << cell;
-  EXPECT_EQ(read, value) << cell;
-}
-
 /// Chunks of 16 frames are stored whole: a file of one frame would take 16 times its values.
 TEST(ForceFile, OfFewFramesIsSmallWhereTheirNumberIsKnown) {
   const TemporaryDirectory directory;
@@ -187,58 +167,6 @@ TEST(ForceFile, OfFewFramesIsSmallWhereTheirNumberIsKnown) {
   }
 }
 
-TEST(ForceCsv, HasALineForEachPillarThatIsNotIdle) {
-  for (const bool angles : {false, true}) {
-    const TemporaryDirectory directory;
-    write(directory / "f.csv", info_of(3, 5, angles), 4);
-    std::istringstream text(bytes_of(directory / "f.csv"));
-    std::string line;
-    std::getline(text, line);
-    EXPECT_EQ(line, std::string("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status") +
-                        (angles ? ",magnitude_n,theta_rad,phi_rad" : ""));
-    for (std::uint64_t index = 0; index < 4; ++index) {
-      const Field field(index, 3, 5);
-      for (std::size_t pillar = 0; pillar < 15; ++pillar) {
-        if (field.forces.status[pillar] == 0) continue;
-        ASSERT_TRUE(std::getline(text, line));
-        const auto cells = cells_of(line);
-        ASSERT_EQ(cells.size(), angles ? 11u : 8u) << line;
-        expect_cell(cells[0], index);
-        expect_cell(cells[1], static_cast<double>(index) / 3);
-        expect_cell(cells[2], pillar / 5);
-        expect_cell(cells[3], pillar % 5);
-        expect_cell(cells[4], field.forces.shear_x[pillar]);
-        expect_cell(cells[5], field.forces.shear_y[pillar]);
-        expect_cell(cells[6], field.forces.normal[pillar]);
-        expect_cell(cells[7], int{field.forces.status[pillar]});
-        if (!angles) continue;
-        expect_cell(cells[8], field.magnitude[pillar]);
-        expect_cell(cells[9], field.theta[pillar]);
-        expect_cell(cells[10], field.phi[pillar]);
-      }
-    }
-    EXPECT_FALSE(std::getline(text, line));
-  }
-}
-
-TEST(ForceNpy, IsAHeaderOfWholeSixtyFoursAndTheRecords) {
-  const TemporaryDirectory directory;
-  write(directory / "f.npy", info_of(2, 3), 12);
-  const std::string bytes = bytes_of(directory / "f.npy");
-  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
-  const std::size_t header =
-      10u + static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
-  EXPECT_EQ(header % 64, 0u);
-  EXPECT_EQ(bytes[header - 1], '\n');
-  EXPECT_TRUE(has_all(bytes.substr(0, header), {"(12, 2, 3)", "('status', '|u1')"}));
-  ASSERT_EQ(bytes.size(), header + std::size_t{12} * 6 * 13);
-  const Field last(11, 2, 3);
-  float normal = 0;
-  std::memcpy(&normal, &bytes[header + std::size_t{11 * 6 + 5} * 13 + 8], sizeof normal);
-  EXPECT_EQ(normal, last.forces.normal[5]);
-  EXPECT_EQ(static_cast<std::uint8_t>(bytes.back()), last.forces.status[5]);
-}
-
 TEST(ForceSink, RefusesWhatItCannotWrite) {
   const TemporaryDirectory directory;
   const auto refused = [&](const std::filesystem::path& path, const ForceFileInfo& info) {
@@ -251,10 +179,6 @@ TEST(ForceSink, RefusesWhatItCannotWrite) {
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(0, 3)), {"0 x 3"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(2, 32768)), {"2 x 32768"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", no_pitch), {"element_pitch_mm is nan"}));
-  for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
-    const auto path = directory / "none" / name;
-    EXPECT_TRUE(has_all(refused(path, info_of(2, 3)), {name, "No such file"}));
-  }
   EXPECT_EQ(directory.names(), Names{});
 }
 
@@ -283,13 +207,10 @@ TEST(ForceFileReader, RefusesOtherFiles) {
   skin.rows = skin.cols = 2;
   RecordingWriter(directory / "r.h5", skin, SenselType::u8, {}, {}).finish();
   write(directory / "f.h5", info_of(2, 3), 3);
-  write_bytes(directory / "text.h5", "not an HDF5 file");
   const auto refused = [&](const std::string& name) {
     return error_of([&] { const ForceFileReader reader(directory / name); });
   };
   EXPECT_TRUE(has_all(refused("r.h5"), {"r.h5", "pillarfield-recording", "solve it first"}));
-  EXPECT_TRUE(has_all(refused("text.h5"), {"text.h5", "not an HDF5 file"}));
-  EXPECT_TRUE(has_all(refused("none.h5"), {"none.h5", "No such file"}));
   EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(directory / "f.h5"); }),
                       {"f.h5", "pillarfield-forces", "recording that they were solved from"}));
 }

@@ -205,46 +205,6 @@ TEST(OutputFile, APartThatTakesItsNameBeforeTheLockIsLeftAlone) {
   EXPECT_EQ(bytes_of(directory / "a.csv"), "next");
 }
 
-/// Eight processes start at once, repeatedly; all lines of a file come from one of them.
-TEST(OutputFile, HasOneOfManyConcurrentWriters) {
-  const TemporaryDirectory directory;
-  for (int round = 0; round < 10; ++round) {
-    int start[2];
-    ASSERT_EQ(pipe(start), 0);
-    std::vector<pid_t> children;
-    for (int writer = 0; writer < 8; ++writer) {
-      children.push_back(fork());
-      if (children.back() != 0) continue;
-      close(start[1]);
-      char byte = 0;
-      static_cast<void>(!read(start[0], &byte, 1));
-      try {
-        OutputFile file(directory / "a.csv", OutputKind::forces, Replace::anything);
-        for (int line = 0; line < 200; ++line) file.write(std::to_string(writer) + "\n");
-        file.commit();
-      } catch (const Error& error) {
-        _exit(std::string(error.what()).find("being written") == std::string::npos ? 2 : 1);
-      }
-      _exit(0);
-    }
-    close(start[0]);
-    close(start[1]);
-    int finished = 0;
-    for (const pid_t child : children) {
-      int status = 0;
-      waitpid(child, &status, 0);
-      ASSERT_TRUE(WIFEXITED(status));
-      EXPECT_NE(WEXITSTATUS(status), 2);
-      if (WEXITSTATUS(status) == 0) ++finished;
-    }
-    EXPECT_GE(finished, 1);
-    const std::string text = bytes_of(directory / "a.csv");
-    ASSERT_EQ(text.size(), 400u);
-    for (std::size_t at = 0; at < text.size(); at += 2) ASSERT_EQ(text[at], text[0]);
-    EXPECT_EQ(directory.names(), Names{"a.csv"});
-  }
-}
-
 TEST(OutputFile, APartThatIsALinkIsRefused) {
   const TemporaryDirectory directory;
   write_bytes(directory / "victim", "precious");
@@ -422,22 +382,6 @@ TEST(CheckOutputs, UnwritablePathsAreRefused) {
   EXPECT_TRUE(has_all(refused("-"), {"standard output"}));
   EXPECT_TRUE(has_all(refused(""), {"empty"}));
   EXPECT_EQ(directory.names(), Names{});
-}
-
-/// An HDF5 reader opens and closes a part that is being written, without effect on the writer.
-TEST(OutputFile, ItsLockDoesNotStopReaders) {
-  const TemporaryDirectory directory;
-  RecordingWriter writer = begin_recording(directory / "r.h5");
-  const FrameBuffer frame(SenselType::u8, 4, 4);
-  for (int round = 1; round <= 3; ++round) {
-    writer.append(frame.view(), round);
-    writer.flush();
-    EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), static_cast<std::uint64_t>(round));
-    EXPECT_TRUE(has_all(error_of([&] { begin_recording(directory / "r.h5"); }),
-                        {"is being written by another process"}));
-  }
-  writer.finish();
-  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 3u);
 }
 
 }  // namespace

@@ -226,21 +226,6 @@ TEST(RecordingRoundTrip, KeepsAFrameLargerThanAnyCache) {
   expect_round_trip(skin_of(1581, 1581), SenselType::f32, {}, false, 2);
 }
 
-TEST(RecordingRoundTrip, KeepsNotANumberAndInfinity) {
-  const TemporaryDirectory directory;
-  const Skin skin = skin_of(2, 2);
-  FrameBuffer frame(SenselType::f32, 2, 2);
-  const auto readings = frame.readings<float>();
-  readings[0] = std::numeric_limits<float>::quiet_NaN();
-  readings[1] = -std::numeric_limits<float>::infinity();
-  RecordingWriter writer(directory / "r.h5", skin, SenselType::f32, {}, {});
-  writer.append(frame.view(), 0);
-  writer.finish();
-  FrameBuffer read(SenselType::f32, 2, 2);
-  open_frames(directory / "r.h5")->read(0, read);
-  EXPECT_TRUE(std::ranges::equal(read.bytes(), frame.bytes()));
-}
-
 TEST(RecordingRoundTrip, TakesRowsOfALargerFrame) {
   const TemporaryDirectory directory;
   FrameBuffer whole(SenselType::u16, 9, 13);
@@ -257,61 +242,6 @@ TEST(RecordingRoundTrip, TakesRowsOfALargerFrame) {
     for (std::size_t col = 0; col < 4; ++col) {
       EXPECT_EQ(read.readings<std::uint16_t>()[row * 4 + col], readings[(5 + row) * 13 + 9 + col]);
     }
-  }
-}
-
-TEST(RecordingRoundTrip, WarnsOfRowsAndColumnsWithoutPillars) {
-  const TemporaryDirectory directory;
-  RecordingWriter writer(directory / "r.h5", skin_of(5, 7), SenselType::u8, {}, {});
-  writer.append(FrameBuffer(SenselType::u8, 5, 7).view(), 0);
-  writer.finish();
-  const auto warnings = open_frames(directory / "r.h5")->warnings();
-  ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_TRUE(has_all(warnings[0], {"5", "row"}));
-  EXPECT_TRUE(has_all(warnings[1], {"7", "column"}));
-}
-
-TEST(RecordingWriter, WritesOnAfterItWasMoved) {
-  const TemporaryDirectory directory;
-  RecordingWriter first(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
-  first.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
-  RecordingWriter second(std::move(first));
-  second.append(FrameBuffer(SenselType::u8, 2, 2).view(), 1);
-  second.finish();
-  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 2u);
-}
-
-/// A touch of one pillar that moves, at the edges of tiles and in a corner of the skin.
-TEST(RecordingRoundTrip, LeavesOutTilesOfTheTruthThatNothingTouches) {
-  constexpr std::uint32_t kPillars = 200;  // pillars each way
-  constexpr std::uint64_t kTouches = 40;
-  const TemporaryDirectory directory;
-  const FrameBuffer frame(SenselType::u8, 2 * kPillars, 2 * kPillars);
-  const auto truth_of = [](std::uint64_t index) {
-    constexpr std::size_t kPlace = kPillars;
-    constexpr std::size_t kPlaces[] = {0, 31, 32, 33 * kPlace, kPlace * kPlace - 1};
-    ForceField truth(kPillars, kPillars);
-    if (index % 6 < 5) truth.normal[kPlaces[index % 6]] = static_cast<float>(index + 1);
-    if (index == 17) truth.shear_x[kPlaces[3]] = -2;
-    return truth;
-  };
-  RecordingWriter writer(directory / "r.h5", skin_of(2 * kPillars, 2 * kPillars), SenselType::u8,
-                         {}, {.truth = true});
-  for (std::uint64_t index = 0; index < kTouches; ++index) {
-    const ForceField truth = truth_of(index);
-    writer.append(frame.view(), static_cast<double>(index), &truth);
-  }
-  writer.finish();
-  const std::size_t readings = kTouches * frame.bytes().size();
-  const std::size_t dense_truth = kTouches * 3 * kPillars * kPillars * sizeof(float);
-  EXPECT_LT(std::filesystem::file_size(directory / "r.h5"), readings + dense_truth / 5);
-  const auto source = open_frames(directory / "r.h5");
-  for (std::uint64_t index = kTouches; index-- > 0;) {
-    ForceField truth;
-    source->read_truth(index, truth);
-    EXPECT_EQ(truth.shear_x, truth_of(index).shear_x) << index;
-    EXPECT_EQ(truth.shear_y, truth_of(index).shear_y) << index;
-    EXPECT_EQ(truth.normal, truth_of(index).normal) << index;
   }
 }
 
@@ -351,18 +281,6 @@ TEST(RecordingWriter, RefusesValuesOutOfRange) {
   EXPECT_TRUE(has_all(refused(skin_of(2, 4), calibration, {}), {"'gain' has 4 values", "2 x 4"}));
   EXPECT_TRUE(has_all(refused(skin_of(2, 2), {}, {.flush_every = 0}), {"flush_every"}));
   EXPECT_EQ(directory.names(), Names{});
-}
-
-TEST(RecordingWriter, RefusesPlacesThatCannotBeWritten) {
-  const TemporaryDirectory directory;
-  const auto refused = [&](const std::filesystem::path& path) {
-    return error_of([&] { RecordingWriter(path, skin_of(2, 2), SenselType::u8, {}, {}); });
-  };
-  std::filesystem::create_directory(directory / "folder");
-  EXPECT_TRUE(has_all(refused(directory / "none" / "r.h5"), {"none/r.h5", "No such file"}));
-  EXPECT_TRUE(has_all(refused(directory / "folder"), {"folder", "not a regular file"}));
-  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "not a regular file"}));
-  EXPECT_EQ(directory.names(), Names{"folder"});
 }
 
 TEST(Recording, RefusesAbsentFramesAndUnfitBuffers) {

@@ -65,8 +65,6 @@ class Files(unittest.TestCase):
         np.testing.assert_array_equal(forces.normal, pf.solve(recording).normal[3:7])
         with self.assertRaisesRegex(pf.Error, "give frames within 0:"):
             pf.solve_to_file(recording, output, first=3, end=1000)
-        with self.assertRaisesRegex(TypeError, "no argument"):
-            pf.solve_to_file(recording, output, estimater="paper")
 
     def test_recording(self):
         recording, frames = pf.open(WORK / "press.h5"), self.simulation.frames

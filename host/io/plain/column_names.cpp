@@ -200,15 +200,7 @@ std::optional<FrameSize> stated_size(const std::vector<ColumnFamily>& kinds) {
   std::size_t rows = kinds.size();
   std::size_t cols = kinds[0].columns.size();
   if (kinds.size() > 1 && !are_rows(kinds)) return std::nullopt;
-  if (kinds.size() == 1 && kinds[0].numbers[0].size() == 1) {  // Numbers that begin again.
-    const auto& numbers = kinds[0].numbers;
-    const auto again = std::find(numbers.begin() + 1, numbers.end(), numbers.front());
-    cols = static_cast<std::size_t>(again - numbers.begin());
-    rows = numbers.size() / cols;
-    for (std::size_t i = cols; i < numbers.size(); ++i) {
-      if (numbers[i] != numbers[i - cols] || rows * cols != numbers.size()) return std::nullopt;
-    }
-  } else if (kinds.size() == 1) {
+  if (kinds.size() == 1) {
     if (kinds[0].numbers[0].size() != 2) return std::nullopt;
     const auto values = [&](std::size_t at) { return values_at(kinds[0], at); };
     rows = values(0).size();

@@ -1,18 +1,20 @@
 // Frames of NumPy: .npy files and .npz archives.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <minizip/unzip.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/input_file.h"
 #include "base/npy.h"
 #include "io/frame_source.h"
-#include "io/plain/array_names.h"
 #include "io/plain/source.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
@@ -76,8 +78,7 @@ class NpzArchive {
  public:
   explicit NpzArchive(const std::filesystem::path& path)
       : file_(path),
-        zip_(unzOpen64(fmt::format("/proc/self/fd/{}", file_.descriptor()).c_str()), unzClose),
-        names_(path) {
+        zip_(unzOpen64(fmt::format("/proc/self/fd/{}", file_.descriptor()).c_str()), unzClose) {
     if (!zip_) fail_archive("has no directory of its members");
     std::size_t members = 0;
     int result = unzGoToFirstFile(zip_.get());
@@ -91,7 +92,36 @@ class NpzArchive {
     if (result != UNZ_END_OF_LIST_OF_FILE) fail_archive("its directory is damaged");
   }
 
-  [[nodiscard]] const ArrayNames& names() const { return names_; }
+  /// The named array, or the only one of three dimensions or more, or of two if none has three.
+  /// Throws Error, naming the arrays, if there is no such array.
+  [[nodiscard]] std::size_t array_of_frames(const std::string& name) const {
+    if (!name.empty()) return require(name);
+    for (const bool is_deep : {true, false}) {
+      std::vector<std::string> names;
+      std::size_t found = 0;
+      for (std::size_t index = 0; index < arrays_.size(); ++index) {
+        const std::size_t dimensions = arrays_[index].header.shape.size();
+        if (is_deep ? dimensions < 3 : dimensions != 2) continue;
+        found = index;
+        names.push_back(arrays_[index].name);
+      }
+      if (names.size() == 1) return found;
+      if (names.empty()) continue;
+      throw Error(file_.path().string(), fmt::format("holds several arrays: {}", list_of(names)),
+                  "choose the readings with --dataset NAME");
+    }
+    std::vector<std::string> reasons;
+    for (const auto& [refused, why] : refused_) reasons.push_back(why);
+    throw Error(
+        file_.path().string(),
+        fmt::format("holds no array of frames{}{}", reasons.empty() ? "" : ": ", list_of(reasons)),
+        "save an array of the shape (frames, rows, columns)");
+  }
+
+  /// The named array, or `time` if the name is empty; unset if there is no `time`.
+  [[nodiscard]] std::optional<std::size_t> array_of_times(const std::string& name) const {
+    return name.empty() ? find("time") : require(name);
+  }
   /// Throws Error if it is not an archive of NumPy.
   void require_arrays() const {
     if (!has_npy_) refuse_foreign_archive(file_.path(), is_workbook_);
@@ -120,6 +150,32 @@ class NpzArchive {
   }
 
  private:
+  /// "a, b, c"; of many names the first ones.
+  static std::string list_of(std::vector<std::string> names) {
+    constexpr std::size_t kMostNames = 20;
+    const bool is_long = names.size() > kMostNames;
+    if (is_long) names.resize(kMostNames);
+    return fmt::format("{}{}", fmt::join(names, ", "), is_long ? ", ..." : "");
+  }
+
+  [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const {
+    const auto found = std::ranges::find(arrays_, name, &NpzArray::name);
+    if (found == arrays_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - arrays_.begin());
+  }
+
+  [[nodiscard]] std::size_t require(const std::string& name) const {
+    if (const auto found = find(name)) return *found;
+    const std::string path = file_.path().string();
+    if (const auto found = refused_.find(name); found != refused_.end())
+      throw Error(path, found->second);
+    std::vector<std::string> names;
+    for (const NpzArray& array : arrays_) names.push_back(array.name);
+    throw Error(
+        path, fmt::format("has no array '{:.60}'", name),
+        names.empty() ? "it has no array of numbers" : fmt::format("it has {}", list_of(names)));
+  }
+
   [[noreturn]] void fail_archive(const char* failure) const {
     throw Error(file_.path().string(), failure, kDamagedArchive);
   }
@@ -155,10 +211,9 @@ class NpzArchive {
     has_npy_ = true;
     try {
       array.header = header_of_readings(head, array.name);
-      names_.add(array.name, array.header.shape.size());
       arrays_.push_back(std::move(array));
     } catch (const Error& error) {
-      names_.refuse(array.name, error.what());
+      refused_.emplace(array.name, error.what());
     }
   }
 
@@ -251,7 +306,7 @@ class NpzArchive {
   std::vector<NpzArray> arrays_;
   bool has_npy_ = false;
   bool is_workbook_ = false;
-  ArrayNames names_;
+  std::map<std::string, std::string> refused_;  // name, and why
 };
 
 std::unique_ptr<FileSource> open_npy(const std::filesystem::path& path,
@@ -267,10 +322,9 @@ std::unique_ptr<FileSource> open_npz(const std::filesystem::path& path,
                                      const ReadOptions& options) {
   const NpzArchive archive(path);
   archive.require_arrays();
-  std::unique_ptr<NumberArray> readings =
-      archive.open(archive.names().array_of_frames(options.dataset));
+  std::unique_ptr<NumberArray> readings = archive.open(archive.array_of_frames(options.dataset));
   std::vector<double> times_s;
-  const auto times = archive.names().array_of_times(options.times);
+  const auto times = archive.array_of_times(options.times);
   if (times) times_s = read_numbers(*archive.open(*times));
   return array_source(path, "NumPy archive", std::move(readings), std::move(times_s), options);
 }

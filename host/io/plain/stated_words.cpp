@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <iterator>
@@ -18,9 +19,16 @@ namespace pillarfield {
 namespace {
 
 bool is_unit(std::string_view text) {
-  return unit_size(Dimension::length, text) || unit_size(Dimension::area, text) ||
-         unit_size(Dimension::pressure, text) || unit_size(Dimension::force, text) ||
-         unit_size(Dimension::time, text) || lower_case(text) == "hz";
+  using enum Dimension;
+  return lower_case(text) == "hz" ||
+         std::ranges::any_of(std::array{length, area, pressure, force, time},
+                             [&](Dimension each) { return unit_size(each, text).has_value(); });
+}
+
+CellUnit cell_unit(std::string name, int rank) {
+  const auto mpa = unit_size(Dimension::pressure, name);
+  const auto newtons = unit_size(Dimension::force, name);
+  return {std::move(name), mpa, newtons, rank};
 }
 
 bool has_word(const std::vector<std::string>& words, std::initializer_list<std::string_view> some) {
@@ -214,15 +222,15 @@ std::vector<Statement> statements_in(std::string_view line, std::uint64_t number
   bool follows_number = false;
   for (const std::string& token : tokens_of(line)) {
     const auto clock_s = parse_time(token);
-    double value = 0;
-    const bool is_number = clock_s || (read_cell(token, ' ', value) && std::isfinite(value));
+    const auto value = number_of(token);
+    const bool is_number = clock_s || value;
     if (is_number) {
       if (!open.words.empty() && is_unit(open.words.back())) {
         open.unit = open.words.back();
         open.words.pop_back();
       }
       const std::size_t decimals = token.size() - std::min(token.find_first_of(".,"), token.size());
-      open.value = clock_s.value_or(value);
+      open.value = clock_s ? *clock_s : *value;
       open.is_clock = clock_s.has_value();
       open.rounding = 0.5 * std::pow(10.0, decimals > 1 ? 1 - static_cast<double>(decimals) : 0);
       open.line = number;
@@ -271,23 +279,22 @@ void StatedWords::add_unit(std::string_view line) {
       tokens, [](const std::string& token) { return number_of(token).has_value(); });
   bool is_known = false;
   for (const std::string& token : tokens) {
-    const auto mpa = unit_size(Dimension::pressure, token);
-    const auto newtons = unit_size(Dimension::force, token);
+    CellUnit named = cell_unit(token, 0);
     is_known = is_known || (token != "in" && is_unit(token));
-    if (mpa) {
+    if (named.mpa) {
       // Some units are words of other meanings, too.
       const bool is_plain = token == "bar" || token == "Bar" || token == "Pa" || token == "atm";
       const bool is_meant = is_of_cells || has_word(words, {"pressure", "pressures"});
-      const int rank = is_sure ? 3 : is_meant ? 2 : has_number || is_plain ? 0 : 1;
-      if (rank > 0) add_unit({token, mpa, std::nullopt, rank});
-    } else if (newtons && (is_sure || (is_of_cells && !has_number))) {
+      named.rank = is_sure ? 3 : is_meant ? 2 : has_number || is_plain ? 0 : 1;
+    } else if (named.newtons && (is_sure || (is_of_cells && !has_number))) {
       const bool is_of_sums = has_word(words, {"force", "load", "weight", "total"}) && !is_of_cells;
-      add_unit({token, std::nullopt, newtons, is_of_sums ? 1 : 3});
+      named.rank = is_of_sums ? 1 : 3;
     } else if (is_sure && has_word({lower_case(token)}, {"raw", "count", "counts", "adc", "lsb",
                                                          "digits", "digit", "bits", "none"})) {
-      add_unit({"counts", std::nullopt, std::nullopt, 3});
+      named = {"counts", std::nullopt, std::nullopt, 3};
       is_known = true;
     }
+    if (named.rank > 0) add_unit(std::move(named));
   }
   const std::string lower = lower_case(line);
   const std::size_t end = lower.find_first_not_of("nits", lower.find("unit") + 1);
@@ -302,12 +309,11 @@ void StatedWords::add_heading(std::string name) {
   std::ranges::replace(name, '_', ' ');
   const std::vector<std::string> words = words_in(name);
   for (const std::string& token : tokens_of(name)) {
-    const auto mpa = unit_size(Dimension::pressure, token);
-    const auto newtons = unit_size(Dimension::force, token);
-    const bool is_meant = is_marked || token.size() > 2 || has_word(words, {"pressure", "press"});
-    if (mpa && is_meant) add_unit({token, mpa, std::nullopt, 2});
-    if (newtons && (is_marked || has_word(words, {"force", "load"})))
-      add_unit({token, std::nullopt, newtons, 2});
+    CellUnit named = cell_unit(token, 2);
+    const bool is_meant =
+        is_marked || (named.mpa ? token.size() > 2 || has_word(words, {"pressure", "press"})
+                                : has_word(words, {"force", "load"}));
+    if (is_meant && (named.mpa || named.newtons)) add_unit(std::move(named));
   }
 }
 
@@ -402,10 +408,9 @@ std::optional<Pitch> StatedWords::pitch() const {
 
 CellUnit unit_of_readings(std::string name) {
   std::erase(name, ' ');
-  const auto mpa = unit_size(Dimension::pressure, name);
-  const auto newtons = unit_size(Dimension::force, name);
-  if (mpa || newtons || name == "counts") return {name, mpa, newtons, 4};
-  throw Error("--readings", fmt::format("'{:.30}' is no unit of pressure or force", name),
+  CellUnit unit = cell_unit(std::move(name), 4);
+  if (unit.mpa || unit.newtons || unit.name == "counts") return unit;
+  throw Error("--readings", fmt::format("'{:.30}' is no unit of pressure or force", unit.name),
               "give one such as kPa, psi, mmHg, N/cm2 or N, or counts");
 }
 

@@ -28,9 +28,6 @@ using NameWords = std::set<std::string, std::less<>>;
 /// NameWords of names of times.
 const NameWords kTimeWords = {"time",  "timestamp", "timestamps", "datetime", "stamp",
                               "epoch", "elapsed",   "clock",      "ts",       "unixtime"};
-/// Units that are names of times, too.
-const NameWords kTimeUnitWords = {"sec",    "secs", "seconds", "ms", "msec",
-                                  "millis", "us",   "micros",  "ns"};
 /// Names of columns that are no readings unless a number follows.
 const NameWords kNoReadings = {
     "index", "idx",     "id",      "frame",   "sample",   "seq",     "sequence", "counter",
@@ -55,10 +52,10 @@ bool has_any(const std::vector<std::string>& words, const NameWords& among) {
 std::optional<double> time_unit_of(std::string_view name) {
   const auto words = words_in(name);
   if (words.empty() || has_digit(name) || has_any(words, kNoReadings)) return std::nullopt;
+  const auto unit_s = unit_size(Dimension::time, words.back());
   const bool is_time = has_any(words, kTimeWords) || words[0] == "t" ||
-                       (words.size() == 1 && kTimeUnitWords.contains(words[0]));
-  if (!is_time) return std::nullopt;
-  return unit_size(Dimension::time, words.back()).value_or(0);
+                       (words.size() == 1 && words[0].size() > 1 && unit_s);
+  return is_time ? std::optional(unit_s.value_or(0)) : std::nullopt;
 }
 
 bool is_no_reading(std::string_view name) {
@@ -69,18 +66,8 @@ bool is_no_reading(std::string_view name) {
                  kNoReadings);
 }
 
-bool is_leading_name(std::string_view name) { return names_time(name) || is_no_reading(name); }
-
 bool is_whole(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kDigits) == std::string_view::npos;
-}
-
-/// True if cells are 0, 1, 2, ..., as pandas names columns.
-bool count_columns(std::span<const std::string> cells) {
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (cells[i] != std::to_string(i)) return false;
-  }
-  return cells.size() > 1;
 }
 
 /// Ways on that take one kind of columns each.
@@ -223,17 +210,24 @@ bool has_digit(std::string_view name) {
   return name.find_first_of(kDigits) != std::string_view::npos;
 }
 
+bool count_columns(std::span<const std::string> cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] != std::to_string(i)) return false;
+  }
+  return cells.size() > 1;
+}
+
 bool names_time(std::string_view name) { return time_unit_of(name).has_value(); }
 
 bool is_header(std::span<const std::string> cells, char separator) {
-  const bool has_number = std::ranges::any_of(cells, [&](const std::string& cell) {
-    double value = 0;
-    return (!cell.empty() && read_cell(cell, separator, value)) || parse_time(cell);
-  });
-  if (!has_number) return true;
+  const auto has_value = [&](const std::string& cell) {
+    return !cell.empty() && is_value(cell, separator);
+  };
+  if (std::ranges::none_of(cells, has_value)) return true;
   if (cells.size() < 2) return false;
-  if (!cells[0].empty()) return is_leading_name(cells[0]);
-  return is_leading_name(cells[1]) || count_columns(cells.subspan(1));
+  const std::string& name = cells[cells[0].empty() ? 1 : 0];
+  return names_time(name) || is_no_reading(name) ||
+         (cells[0].empty() && count_columns(cells.subspan(1)));
 }
 
 namespace {
@@ -273,10 +267,6 @@ TableColumns sorted_columns(std::span<const std::string> header, std::span<const
   }
   return found;
 }
-
-}  // namespace
-
-namespace {
 
 /// "L_*', 'R_*", in the order of the rows.
 std::string rows_of(const std::vector<ColumnFamily>& kinds) {

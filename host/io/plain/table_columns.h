@@ -48,6 +48,9 @@ struct LongColumns {
 
 [[nodiscard]] bool has_digit(std::string_view name);
 
+/// True if cells are 0, 1, 2, ..., as programs name columns without a name.
+[[nodiscard]] bool count_columns(std::span<const std::string> cells);
+
 /// True if a column has the name of a time.
 [[nodiscard]] bool names_time(std::string_view name);
 

@@ -24,16 +24,6 @@
 namespace pillarfield {
 namespace {
 
-/// True if cells count 0, 1, 2, ... as the names that programs give to columns without one.
-bool are_column_numbers(const std::vector<std::string>& cells) {
-  if (cells.size() < 3) return false;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    double number = 0;
-    if (!read_cell(cells[i], ',', number) || number != static_cast<double>(i)) return false;
-  }
-  return true;
-}
-
 class TableParser {
  public:
   TableParser(const std::filesystem::path& path, const ReadOptions& options,
@@ -168,20 +158,16 @@ class TableParser {
       return;
     }
     drop_empty_end(cells_, line_cells_);
-    double value = 0;
-    const bool has_number = std::ranges::any_of(cells_, [&](const std::string& cell) {
-      return read_cell(cell, separator_, value) || parse_time(cell);
-    });
-    if (cells_.size() != line_cells_ || !has_number) return leave_out(line);
+    const auto is_read = [&](const std::string& cell) { return is_value(cell, separator_); };
+    if (cells_.size() != line_cells_ || std::ranges::none_of(cells_, is_read))
+      return leave_out(line);
     if (lines_->takes(cells_)) append();
   }
 
   /// Leaves out a line of words or one that is cut.
   void leave_out(std::string_view line) {
-    double value = 0;
-    const bool has_word = std::ranges::any_of(cells_, [&](const std::string& cell) {
-      return !read_cell(cell, separator_, value) && !parse_time(cell);
-    });
+    const bool has_word = !std::ranges::all_of(
+        cells_, [&](const std::string& cell) { return is_value(cell, separator_); });
     if (has_word) add_words(line);
     if (left_out_++ == 0)
       first_left_out_ = fmt::format("'{:.30}' in line {}", without_blanks(line), reader_.number());
@@ -194,9 +180,7 @@ class TableParser {
 
   /// True if a line of words or of another table follows, as after the frames of an export.
   [[nodiscard]] bool ends_table() const {
-    double value = 0;
-    return cells_.size() < line_cells_ ||
-           !(read_cell(cells_[0], separator_, value) || parse_time(cells_[0]));
+    return cells_.size() < line_cells_ || !is_value(cells_[0], separator_);
   }
 
   /// Drops empty cells behind the first line of numbers: one may follow the last separator, unless
@@ -227,16 +211,16 @@ class TableParser {
     }
     const bool is_title = header_.size() == 1 || separator_of(header_text_) == ' ' ||
                           2 * header_.size() < cells_.size();
-    if (!header_.empty() && header_.size() != cells_.size() && is_title) {
+    if (!header_.empty() && header_.size() != cells_.size()) {
+      if (!is_title) {
+        throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
+                    fmt::format("the line of names before it has {}", header_.size()));
+      }
       add_words(std::exchange(header_text_, {}));
       header_.clear();
     }
-    if (!header_.empty() && header_.size() != cells_.size()) {
-      throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
-                  fmt::format("the line of names before it has {}", header_.size()));
-    }
     line_cells_ = cells_.size();
-    if (header_.empty() && are_column_numbers(cells_)) {
+    if (header_.empty() && cells_.size() > 2 && count_columns(cells_)) {
       table_.notes.emplace_back(
           "The first line counts 0, 1, 2, ... and is read as readings. If it names columns, save "
           "the table without a header.");

@@ -28,10 +28,8 @@ bool resembles_numbers(std::string_view line) {
   std::vector<std::string> cells;
   const char separator = separator_of(line);
   split_cells(line, separator, cells);
-  double value = 0;
-  return line.find_first_of("0123456789") != std::string_view::npos &&
-         std::ranges::all_of(cells, [&](const std::string& cell) {
-           return read_cell(cell, separator, value) || parse_time(cell);
+  return has_digit(line) && std::ranges::all_of(cells, [&](const std::string& cell) {
+           return is_value(cell, separator);
          });
 }
 

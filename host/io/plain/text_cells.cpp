@@ -127,6 +127,11 @@ bool read_cell(std::string_view cell, char separator, double& value) {
   return std::ranges::find(kMissingWords, lower_case(cell)) != kMissingWords.end();
 }
 
+bool is_value(std::string_view cell, char separator) {
+  double value = 0;
+  return read_cell(cell, separator, value) || parse_time(cell);
+}
+
 std::optional<double> parse_iso_time(std::string_view text) {
   std::vector<int> numbers;
   if (!take(text, "0000-00-00", numbers) || text.empty() || (text[0] != 'T' && text[0] != ' '))

@@ -25,6 +25,9 @@ void drop_empty_end(std::vector<std::string>& cells, std::size_t least = 0);
 /// Unless it separates cells, a comma is a decimal mark.
 [[nodiscard]] bool read_cell(std::string_view cell, char separator, double& value);
 
+/// True if a cell is a number, a time or missing.
+[[nodiscard]] bool is_value(std::string_view cell, char separator);
+
 /// A date and time of ISO 8601, "2024-05-01 12:00:00.015", in seconds since 1970, UTC. The blank
 /// may be a T, and Z or an offset such as +02:00 may follow; without them it is taken as UTC.
 [[nodiscard]] std::optional<double> parse_iso_time(std::string_view text);
