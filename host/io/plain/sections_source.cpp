@@ -189,7 +189,9 @@ class SectionParser {
 
   /// Joins two blocks that words other than those between frames cut from one.
   void join_blocks() {
-    const auto [usual_one, count] = usual_block();
+    const std::pair usual_block_and_count = usual_block();
+    const CellBlock* const usual_one = usual_block_and_count.first;
+    const std::size_t count = usual_block_and_count.second;
     const std::string usual = usual_one == nullptr ? "" : usual_one->size();
     std::map<std::string, std::size_t> kinds;  // of lines before whole frames
     for (const CellBlock& block : blocks) {
