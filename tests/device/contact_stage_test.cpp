@@ -102,21 +102,10 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
   }
 }
 
-struct Path {
-  const char* name;
-  Memory memory;
-};
-
-class EveryPath : public testing::TestWithParam<Path> {
+class EveryPath : public OnDevice<Memory> {
  protected:
-  void SetUp() override {
-    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
-      GTEST_SKIP() << "this device does not share the host's memory";
-    }
-  }
-
   [[nodiscard]] static Processor processor(const SolverPlan& plan) {
-    return {test_device(), plan, {.memory = GetParam().memory}};
+    return {test_device(), plan, {.memory = GetParam()}};
   }
 
   /// Solves all frames of the scene, and expects the bits of the C++ loop.
@@ -254,34 +243,15 @@ TEST_P(EveryPath, AnglesAreThoseOfTheForces) {
   EXPECT_GT(resolved, 500U);
 }
 
-constexpr Path kPaths[] = {{"shared", Memory::shared}, {"staged", Memory::staged}};
-INSTANTIATE_TEST_SUITE_P(Ways, EveryPath, testing::ValuesIn(kPaths),
-                         [](const auto& path) { return std::string(path.param.name); });
-
-TEST(ContactStage, OtherEstimatorsHaveNoContacts) {
-  const SolverPlan plan = bare_plan(20, 20, SenselType::u8);
-  Processor solver(test_device(), plan);
-  const FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  solver.submit(raw.view());
-  (void)solver.receive();
-  EXPECT_EQ(solver.contacts().labels, nullptr);
-}
+INSTANTIATE_TEST_SUITE_P(Ways, EveryPath, testing::Values(Memory::shared, Memory::staged),
+                         [](const auto& memory) {
+                           return memory.param == Memory::shared ? "shared" : "staged";
+                         });
 
 TEST(ContactStage, IsNamedAmongTheStages) {
   SolverPlan plan = bare_plan(20, 20, SenselType::u8);
   plan.estimator = Estimator::contact;
   EXPECT_EQ(kernel_stages(plan).back(), "estimate_contacts");
-}
-
-TEST(ContactStage, RefusesFrictionOutOfRange) {
-  SolverPlan plan = bare_plan(20, 20, SenselType::u8);
-  plan.estimator = Estimator::contact;
-  plan.friction.given = -1;
-  EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.friction = {.spread = 0};
-  EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.friction = {.bound = 0.05};
-  EXPECT_THROW(Processor(test_device(), plan), Error);
 }
 
 }  // namespace

@@ -41,14 +41,8 @@ void expect_within(std::span<const std::byte> pages, std::span<const Value> plan
   EXPECT_LE(bytes.data() + bytes.size(), pages.data() + pages.size());
 }
 
-class PinnedFrames : public testing::TestWithParam<Memory> {
+class PinnedFrames : public OnDevice<Memory> {
  protected:
-  void SetUp() override {
-    if (GetParam() == Memory::shared && !test_device().info().shares_memory) {
-      GTEST_SKIP() << "this device does not share the host's memory";
-    }
-  }
-
   [[nodiscard]] static Processor processor(const SolverPlan& plan, int slots) {
     return {test_device(), plan, {.memory = GetParam(), .frames_in_flight = slots}};
   }

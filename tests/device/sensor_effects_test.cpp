@@ -21,16 +21,7 @@
 namespace pillarfield {
 namespace {
 
-struct Path {
-  SenselType type;
-  int lanes;
-  Memory memory;
-};
-
-std::string name_of_path(const testing::TestParamInfo<Path>& path) {
-  return std::string(name_of(path.param.type)) + "_lanes" + std::to_string(path.param.lanes) +
-         (path.param.memory == Memory::shared ? "_shared" : "_staged");
-}
+using Path = DevicePath;
 
 constexpr int kFrames = 12;
 constexpr int kInFlight = 3;  ///< frames that may overlap on the device
@@ -108,14 +99,8 @@ class Frames {
   double noise_;
 };
 
-class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
+class SensorEffectsOnDevice : public OnDevice<Path> {
  protected:
-  void SetUp() override {
-    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
-      GTEST_SKIP() << "this device does not share the host's memory";
-    }
-  }
-
   static SolverPlan plan_with(const SensorEffects& effects, bool planes) {
     const SenselType type = GetParam().type;
     SolverPlan plan = planes ? full_plan(kRows, kCols, type, 7) : bare_plan(kRows, kCols, type);
