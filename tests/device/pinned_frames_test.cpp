@@ -16,22 +16,14 @@
 #include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
+#include "same_bits.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {
 namespace {
 
-template <class Value>
-bool same_bytes(std::span<const Value> left, std::span<const Value> right) {
-  return std::ranges::equal(std::as_bytes(left), std::as_bytes(right));
-}
-
 void expect_solved(const ForceFieldView& forces, const SolverPlan& plan, const RandomFrame& frame) {
-  const ForceField expected = solve_on_host(plan, frame.view());
-  EXPECT_TRUE(same_bytes<float>(forces.shear_x, expected.shear_x));
-  EXPECT_TRUE(same_bytes<float>(forces.shear_y, expected.shear_y));
-  EXPECT_TRUE(same_bytes<float>(forces.normal, expected.normal));
-  EXPECT_TRUE(same_bytes<std::uint8_t>(forces.status, expected.status));
+  expect_same_bits(forces, solve_on_host(plan, frame.view()).view());
 }
 
 template <class Value>
@@ -207,7 +199,7 @@ TEST_P(PinnedFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
       const std::optional<Shown> shown = std::exchange(waiting, std::nullopt);
       lock.unlock();
       if (!shown) continue;
-      if (!same_bytes<float>(shown->forces.normal, expected[shown->frame].normal)) ++wrong;
+      if (!std::ranges::equal(shown->forces.normal, expected[shown->frame].normal)) ++wrong;
     }
   });
   for (std::size_t i = 0; i < 2000; ++i) {
