@@ -163,26 +163,5 @@ TYPED_TEST(PaperSolve, OppositeSenselsAloneAreSolvedDirectly) {
   EXPECT_EQ(nothing.normal, 0);
 }
 
-TYPED_TEST(PaperSolve, IsFiniteForAllFiniteReadings) {
-  using Real = RealOf<TypeParam>;
-  Random random(64);
-  const std::array<Real, 8> odd = {0,
-                                   std::numeric_limits<Real>::denorm_min(),
-                                   std::numeric_limits<Real>::min(),
-                                   static_cast<Real>(1e-30),
-                                   1,
-                                   static_cast<Real>(1 + 1e-6),
-                                   static_cast<Real>(1e30),
-                                   static_cast<Real>(1e33)};
-  for (int i = 0; i < 100'000; ++i) {
-    FourReadings<TypeParam> readings;
-    for (auto& reading : readings) reading = odd[random.below(odd.size())];
-    const auto force = TestFixture::paper(readings);
-    ASSERT_TRUE(std::isfinite(force.shear_x) && std::isfinite(force.shear_y) &&
-                std::isfinite(force.normal))
-        << readings[0] << ' ' << readings[1] << ' ' << readings[2] << ' ' << readings[3];
-  }
-}
-
 }  // namespace
 }  // namespace pillarfield
