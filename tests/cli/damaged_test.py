@@ -140,24 +140,13 @@ def link_chain(path):
         file["frames/raw"] = h5py.SoftLink("/soft")
 
 
-def external_group(path):
-    """A group of frames that is a link to another recording."""
-    with h5py.File(path.with_name("other.h5"), "w") as other:
-        other["raw"], other["time"] = numpy.zeros((2, 4, 4), "u1"), numpy.arange(2.0)
-    with h5py.File(path, "w") as file:
-        file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
-        file["frames"] = h5py.ExternalLink("other.h5", "/")
-
-
 MADE = {
     "sparse_frame": sparse_frame,
     "gzip_bomb": gzip_bomb,
     "gzip_planes": gzip_planes,
     "frames_2e40": lambda path: frames_without_chunks(path, 1 << 40),
-    "frames_2e62": lambda path: frames_without_chunks(path, (1 << 62) - 1),
     "one_chunk": one_chunk,
     "link_chain": link_chain,
-    "external_group": external_group,
 }
 
 
