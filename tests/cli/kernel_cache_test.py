@@ -55,7 +55,7 @@ class KernelCache(CommandTest):
         result = self.solve(POCL_CACHE_DIR=open_to_all)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"^pillarfield: POCL_CACHE_DIR: others can write .*\n$")
-        self.assertEqual(list(open_to_all.iterdir()), [])
+        self.assertEqual(list(open_to_all.rglob("*.so")), [])
 
     def test_info_names_the_directory(self):
         home = self.directory("home")
