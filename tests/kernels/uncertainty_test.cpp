@@ -367,5 +367,41 @@ TYPED_TEST(DirectionIntervals, AndDeviationsOfSaturatedPillarsHoldTheTruth) {
   EXPECT_GT(open, 1000);
 }
 
+TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
+  using Real = RealOf<TypeParam>;
+  const std::array<Real, 6> odd = {std::numeric_limits<Real>::denorm_min(),
+                                   static_cast<Real>(1e-30),
+                                   1,
+                                   100,
+                                   static_cast<Real>(1e30),
+                                   static_cast<Real>(1e33)};
+  Random random(74);
+  for (const States& states : all_states()) {
+    for (int i = 0; i < 50; ++i) {
+      FourReadings<TypeParam> readings;
+      for (auto& reading : readings) reading = odd[random.below(odd.size())];
+      const auto pillar = pillar_in<TypeParam>(states, readings);
+      const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
+      const auto open = open_components(pillar, solved.diagonals, solved.sum);
+      const auto interval =
+          open_interval(direction_interval(pillar, solved.diagonals, solved.sum,
+                                           direction_of(solved.force), solved.scale, {1, 1, true}),
+                        open);
+      const Real most = static_cast<Real>(1e6);
+      const auto deviations = open_deviations(
+          force_deviations(pillar, solved.diagonals, solved.sum, {most, most, most, most},
+                           static_cast<Real>(kSegmentPoint), solved.scale),
+          open, solved.scale);
+      for (const Real value : {interval.theta_low, interval.theta_high, interval.phi_low,
+                               interval.phi_high, interval.magnitude_low, interval.magnitude_high,
+                               deviations.shear_x, deviations.shear_y, deviations.normal}) {
+        ASSERT_TRUE(std::isfinite(value) || (has_saturated(states) && value > 0))
+            << name_of(states);
+      }
+      ASSERT_LE(interval.theta_low, interval.theta_high + 1e-6F) << name_of(states);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pillarfield
