@@ -27,24 +27,6 @@ class Contacts(CommandTest):
         with open(self.csv, newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
-    def test_saturated_sensels_count(self):
-        """The sums of contacts are those of the field."""
-        frames = np.zeros((3, 16, 16), "u1")
-        frames[:, 4:9, 4:9], frames[:, 5:8, 3] = 255, 120
-        np.save(self.folder / "full.npy", frames)
-        for layout in ("sensels", "pillars"):
-            with self.subTest(layout=layout):
-                run("solve", self.folder / "full.npy", "--layout", layout, "--rate", 100, "--pitch-mm", 5,
-                    "--counts-per-newton", 10, "--full-scale", 255, "--threshold", 5, "-o", self.forces,
-                    "--contacts", self.csv, "--overwrite", "-q")
-                with h5py.File(self.forces) as file:
-                    normal = file["force/normal"][:]
-                rows = self.rows()
-                total = sum(float(row["normal_n"]) for row in rows if row["row"] == "patch")
-                self.assertAlmostEqual(total / normal.sum(), 1, 6)
-                each = sum(float(row["normal_n"]) for row in rows if row["row"] == "contact")
-                self.assertAlmostEqual(each / normal.sum(), 1, 6)
-
     def test_tables_go_into_files_of_their_own_or_the_force_file(self):
         solved = self.solve("--contacts", self.csv)
         self.assertEqual((solved["contacts"], solved["contacts_at_once"]), (3, 3))

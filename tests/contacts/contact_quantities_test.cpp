@@ -36,7 +36,7 @@ ContactQuantities only_contact(const ForceField& field, const ContactOptions& op
 TEST(ContactQuantities, OfAFewPillarsAreThoseByHand) {
   ForceField field(4, 6);  // x of columns: -3.125 ... 3.125 mm, y of rows: 1.875 ... -1.875 mm
   load(field, 0, 3, 0.5F, 0, 1);
-  load(field, 0, 4, 0, 0.25F, 3);
+  load(field, 0, 4, 0, 0.25F, 3, status::kUsable | status::kSaturated);  // It counts.
   load(field, 1, 5, 0, -0.5F, 4, status::kUsable | status::kAmbiguous);
   const ContactQuantities contact = only_contact(field);
   EXPECT_EQ(contact.pillars, 3);

@@ -16,7 +16,7 @@
 #include "pillarfield/status.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"
-#include "same_bits.h"
+#include "tests/device/host_reference.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {
@@ -77,15 +77,6 @@ SolverPlan plan_of(const Simulator& simulator) {
   return plan;
 }
 
-void expect_same_field(const ForceFieldView& actual, const ForceFieldView& expected) {
-  expect_same_bits(actual, expected);
-  for (std::size_t index = 0; index < kUncertaintyPlanes; ++index) {
-    const auto plane = static_cast<Uncertainty>(index);
-    if (expected.uncertainty[plane].empty()) continue;
-    expect_same_bits(actual.uncertainty[plane], expected.uncertainty[plane], name_of(plane));
-  }
-}
-
 std::size_t count_of(std::span<const std::uint8_t> status, std::uint8_t bit) {
   std::size_t count = 0;
   for (const std::uint8_t byte : status) count += (byte & bit) != 0 ? 1U : 0U;
@@ -102,119 +93,92 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
   }
 }
 
-struct Path {
-  const char* name;
-  Memory memory;
-};
-
-class EveryPath : public testing::TestWithParam<Path> {
+class EveryPath : public OnDevice<Memory> {
  protected:
-  void SetUp() override {
-    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
-      GTEST_SKIP() << "this device does not share the host's memory";
-    }
-  }
-
   [[nodiscard]] static Processor processor(const SolverPlan& plan) {
-    return {test_device(), plan, {.memory = GetParam().memory}};
+    return {test_device(), plan, {.memory = GetParam()}};
   }
 
-  /// Solves all frames of the scene, and expects the bits of the C++ loop.
-  static void expect_host_bits(const SolverPlan& plan) {
-    const Simulator simulator(parse_scene(kScene, "scene"));
-    Processor solver = processor(plan);
-    FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-    ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-    for (std::uint64_t index = 0; index < simulator.scene().frames; ++index) {
-      simulator.render(index, raw, truth);
+  /// Solves the frames of the scene, and calls `visit(forces, readings)` for each.
+  template <class Visit>
+  void solve_all(Processor& solver, Visit visit) const {
+    FrameBuffer raw(plan_.sensel_type, plan_.skin.rows, plan_.skin.cols);
+    ForceField truth(plan_.skin);
+    for (std::uint64_t index = 0; index < simulator_.scene().frames; ++index) {
+      simulator_.render(index, raw, truth);
       solver.submit(raw.view());
-      const ForceField expected = solve_on_host(plan, raw.view());
-      ASSERT_GT(count_of(expected.status, status::kAmbiguous), 100U);
-      expect_same_field(solver.receive(), expected.view());
+      visit(solver.receive(), raw.view());
     }
   }
-};
 
-TEST_P(EveryPath, HasTheBitsOfTheHost) {
-  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
-  plan.friction.memory = false;
-  expect_host_bits(plan);
-}
+  void expect_host_bits() const {
+    Processor solver = processor(plan_);
+    solve_all(solver, [&](const ForceFieldView& forces, const FrameView& raw) {
+      const ForceField expected = solve_on_host(plan_, raw);
+      ASSERT_GT(count_of(expected.status, status::kAmbiguous), 100U);
+      expect_same_planes(forces, expected.view());
+    });
+  }
+
+  const Simulator simulator_{parse_scene(kScene, "scene")};
+  SolverPlan plan_ = plan_of(simulator_);
+};
 
 TEST_P(EveryPath, EverySourceOfFrictionHasTheBitsOfTheHost) {
-  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
-  plan.friction = {.median = 2, .spread = 0.2, .bound = 2.5, .memory = false};
-  plan.segment_point = 0.5;
-  expect_host_bits(plan);
-  plan.friction.given = 1.7;
-  expect_host_bits(plan);
+  plan_.friction.memory = false;
+  expect_host_bits();
+  plan_.friction = {.median = 2, .spread = 0.2, .bound = 2.5, .memory = false};
+  plan_.segment_point = 0.5;
+  expect_host_bits();
+  plan_.friction.given = 1.7;
+  expect_host_bits();
 }
 
 TEST_P(EveryPath, FrictionIsCarriedFromFrameToFrame) {
-  const Simulator simulator(parse_scene(kScene, "scene"));
-  SolverPlan plan = plan_of(simulator);
-  SolverPlan direct = plan;
+  SolverPlan direct = plan_;
   direct.estimator = Estimator::direct;
-  Processor solver = processor(plan);
-  ContactEstimator estimator(plan);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  Processor solver = processor(plan_);
+  ContactEstimator estimator(plan_);
   bool any_differs = false;
-  for (std::uint64_t index = 0; index < simulator.scene().frames; ++index) {
-    simulator.render(index, raw, truth);
-    solver.submit(raw.view());
-    ForceField expected = solve_on_host(direct, raw.view());
+  solve_all(solver, [&](const ForceFieldView& forces, const FrameView& raw) {
+    ForceField expected = solve_on_host(direct, raw);
     estimator.resolve(expected);
-    const ForceFieldView forces = solver.receive();
     expect_same_bits(forces, expected.view());
-    any_differs |= solve_on_host(plan, raw.view()).normal != expected.normal;
-  }
+    any_differs |= solve_on_host(plan_, raw).normal != expected.normal;
+  });
   EXPECT_TRUE(any_differs);  // from frames solved without history
 }
 
 TEST_P(EveryPath, ReturnsTheContactsOfTheFrame) {
-  const Simulator simulator(parse_scene(kScene, "scene"));
-  const SolverPlan plan = plan_of(simulator);
-  Processor solver = processor(plan);
+  Processor solver = processor(plan_);
   EXPECT_EQ(solver.contacts().labels, nullptr);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  for (std::uint64_t index = 0; index < 2; ++index) {
-    simulator.render(index, raw, truth);
-    solver.submit(raw.view());
-    const ForceFieldView forces = solver.receive();
+  solve_all(solver, [&](const ForceFieldView& forces, const FrameView&) {
     ContactLabels found;
     found.find(forces.status, forces.rows, forces.cols);
     ASSERT_NE(solver.contacts().labels, nullptr);
     EXPECT_GT(found.contacts(), 2U);
     expect_same_runs(solver.contacts().labels->runs(), found.runs());
     EXPECT_EQ(solver.contacts().friction.size(), found.contacts());
-  }
+  });
 }
 
 TEST_P(EveryPath, ATrackerFindsTheContactsOfADirectSolveBesideIdleBlocks) {
-  const Simulator simulator(parse_scene(kScene, "scene"));
-  SolverPlan plan = plan_of(simulator);
-  plan.estimator = Estimator::direct;
-  Processor solver = processor(plan);
+  plan_.estimator = Estimator::direct;
+  Processor solver = processor(plan_);
   EXPECT_EQ(solver.contacts().idle, nullptr);
-  ContactTracker tracker(plan.skin.element_pitch_mm());
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  for (std::uint64_t index = 0; index < simulator.scene().frames; ++index) {
-    simulator.render(index, raw, truth);
-    solver.submit(raw.view());
-    const ForceFieldView forces = solver.receive();
+  ContactTracker tracker(plan_.skin.element_pitch_mm());
+  double time_s = 0;
+  solve_all(solver, [&](const ForceFieldView& forces, const FrameView&) {
     ContactLabels found;
     found.find(forces.status, forces.rows, forces.cols);
     ASSERT_EQ(solver.contacts().labels, nullptr);
     ASSERT_NE(solver.contacts().idle, nullptr);
-    tracker.update(forces, static_cast<double>(index), solver.contacts());
+    tracker.update(forces, time_s++, solver.contacts());
     EXPECT_GT(found.contacts(), 2U);
-    const ForceField larger(plan.skin.pillar_rows() + 1, plan.skin.pillar_cols());
+    const ForceField larger(forces.rows + 1, forces.cols);
     EXPECT_THROW(ContactTracker(1).update(larger.view(), 0, solver.contacts()), Error);
     expect_same_runs(tracker.labels().runs(), found.runs());
-  }
+  });
 }
 
 TEST_P(EveryPath, RandomFramesHaveTheBitsOfTheHost) {
@@ -226,62 +190,38 @@ TEST_P(EveryPath, RandomFramesHaveTheBitsOfTheHost) {
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const RandomFrame frame(plan, 3, seed);
       solver.submit(frame.view());
-      expect_same_field(solver.receive(), solve_on_host(plan, frame.view()).view());
+      expect_same_planes(solver.receive(), solve_on_host(plan, frame.view()).view());
     }
   }
 }
 
 TEST_P(EveryPath, AnglesAreThoseOfTheForces) {
-  const Simulator simulator(parse_scene(kScene, "scene"));
-  SolverPlan plan = plan_of(simulator);
-  plan.angles = true;
-  Processor solver = processor(plan);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  simulator.render(0, raw, truth);
-  solver.submit(raw.view());
-  const ForceFieldView forces = solver.receive();
+  plan_.angles = true;
+  Processor solver = processor(plan_);
   std::size_t resolved = 0;
-  for (std::size_t i = 0; i < forces.normal.size(); ++i) {
-    if ((forces.status[i] & status::kFromNeighbours) == 0) continue;
-    ++resolved;
-    const double shear = std::hypot(forces.shear_x[i], forces.shear_y[i]);
-    ASSERT_NEAR(forces.theta[i], std::atan2(shear, forces.normal[i]), 1e-6);
-    ASSERT_NEAR(forces.magnitude[i], std::hypot(shear, forces.normal[i]), 1e-6);
-    ASSERT_LE(forces.uncertainty[Uncertainty::theta_low][i], forces.theta[i] + 1e-6F);
-    ASSERT_GE(forces.uncertainty[Uncertainty::theta_high][i], forces.theta[i] - 1e-6F);
-  }
+  solve_all(solver, [&](const ForceFieldView& forces, const FrameView&) {
+    for (std::size_t i = 0; i < forces.normal.size(); ++i) {
+      if ((forces.status[i] & status::kFromNeighbours) == 0) continue;
+      ++resolved;
+      const double shear = std::hypot(forces.shear_x[i], forces.shear_y[i]);
+      ASSERT_NEAR(forces.theta[i], std::atan2(shear, forces.normal[i]), 1e-6);
+      ASSERT_NEAR(forces.magnitude[i], std::hypot(shear, forces.normal[i]), 1e-6);
+      ASSERT_LE(forces.uncertainty[Uncertainty::theta_low][i], forces.theta[i] + 1e-6F);
+      ASSERT_GE(forces.uncertainty[Uncertainty::theta_high][i], forces.theta[i] - 1e-6F);
+    }
+  });
   EXPECT_GT(resolved, 500U);
 }
 
-constexpr Path kPaths[] = {{"shared", Memory::shared}, {"staged", Memory::staged}};
-INSTANTIATE_TEST_SUITE_P(Ways, EveryPath, testing::ValuesIn(kPaths),
-                         [](const auto& path) { return std::string(path.param.name); });
-
-TEST(ContactStage, OtherEstimatorsHaveNoContacts) {
-  const SolverPlan plan = bare_plan(20, 20, SenselType::u8);
-  Processor solver(test_device(), plan);
-  const FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  solver.submit(raw.view());
-  (void)solver.receive();
-  EXPECT_EQ(solver.contacts().labels, nullptr);
-}
+INSTANTIATE_TEST_SUITE_P(Ways, EveryPath, testing::Values(Memory::shared, Memory::staged),
+                         [](const auto& memory) {
+                           return memory.param == Memory::shared ? "shared" : "staged";
+                         });
 
 TEST(ContactStage, IsNamedAmongTheStages) {
   SolverPlan plan = bare_plan(20, 20, SenselType::u8);
   plan.estimator = Estimator::contact;
   EXPECT_EQ(kernel_stages(plan).back(), "estimate_contacts");
-}
-
-TEST(ContactStage, RefusesFrictionOutOfRange) {
-  SolverPlan plan = bare_plan(20, 20, SenselType::u8);
-  plan.estimator = Estimator::contact;
-  plan.friction.given = -1;
-  EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.friction = {.spread = 0};
-  EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.friction = {.bound = 0.05};
-  EXPECT_THROW(Processor(test_device(), plan), Error);
 }
 
 }  // namespace

@@ -76,14 +76,8 @@ SolverPlan bent_plan(const Path& path) {
   return plan;
 }
 
-class SenselsOnDevice : public testing::TestWithParam<Path> {
+class SenselsOnDevice : public OnDevice<Path> {
  protected:
-  void SetUp() override {
-    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
-      GTEST_SKIP() << "this device does not share the host's memory";
-    }
-  }
-
   static void expect_host_bits(const SolverPlan& plan) {
     const Path& path = GetParam();
     Processor processor(test_device(), plan, {.memory = path.memory},

@@ -21,16 +21,7 @@
 namespace pillarfield {
 namespace {
 
-struct Path {
-  SenselType type;
-  int lanes;
-  Memory memory;
-};
-
-std::string name_of_path(const testing::TestParamInfo<Path>& path) {
-  return std::string(name_of(path.param.type)) + "_lanes" + std::to_string(path.param.lanes) +
-         (path.param.memory == Memory::shared ? "_shared" : "_staged");
-}
+using Path = DevicePath;
 
 constexpr int kFrames = 12;
 constexpr int kInFlight = 3;  ///< frames that may overlap on the device
@@ -108,14 +99,8 @@ class Frames {
   double noise_;
 };
 
-class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
+class SensorEffectsOnDevice : public OnDevice<Path> {
  protected:
-  void SetUp() override {
-    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
-      GTEST_SKIP() << "this device does not share the host's memory";
-    }
-  }
-
   static SolverPlan plan_with(const SensorEffects& effects, bool planes) {
     const SenselType type = GetParam().type;
     SolverPlan plan = planes ? full_plan(kRows, kCols, type, 7) : bare_plan(kRows, kCols, type);
@@ -151,41 +136,89 @@ class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
   }
 };
 
-TEST_P(SensorEffectsOnDevice, CurveHasTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.curve = some_curve(GetParam().type);
-  expect_host_bits(plan_with(effects, false), true);
+/// Patterns of a bent skin.
+void add_patterns(SolverPlan& plan, double spread) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> value(0, static_cast<float>(spread));
+  for (auto* plane :
+       {&plan.calibration.bend_x, &plan.calibration.bend_y, &plan.calibration.bend_xy}) {
+    plane->resize(plan.skin.sensels());
+    for (float& each : *plane) each = value(random);
+  }
 }
 
-TEST_P(SensorEffectsOnDevice, LeakHasTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.sensel_leak = {0.08, 0.03};
-  expect_host_bits(plan_with(effects, false), true);
-  expect_host_bits(plan_with(effects, true), true);
+/// An effect with what stands beside it.
+struct EffectCase {
+  const char* name;
+  void (*set)(SolverPlan& plan, double unit);
+  bool planes = false;
+  double noise = 4;  ///< 12.99: just below the threshold
+  bool skip_idle = true;
+};
+
+WireCrosstalk some_wires(double per_count, TareOrigin tares = TareOrigin::conductance) {
+  return {16, 24, per_count, per_count, per_count, tares};
 }
 
-TEST_P(SensorEffectsOnDevice, MemoryHasTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.memory = some_memory();
-  expect_host_bits(plan_with(effects, false), true);
-  expect_host_bits(plan_with(effects, false), false);
-}
+/// Tares that are an offset leave the wires' bound of idle tiles; a bent skin and a followed
+/// baseline change activation thresholds before the wires are found.
+constexpr EffectCase kEffects[] = {
+    {"curve", [](auto& p, double) { p.calibration.effects.curve = some_curve(p.sensel_type); }},
+    {"leak",
+     [](auto& p, double) {
+       p.calibration.effects.sensel_leak = {0.08, 0.03};
+     }},
+    {"leak",
+     [](auto& p, double) {
+       p.calibration.effects.sensel_leak = {0.08, 0.03};
+     },
+     true},
+    {"memory", [](auto& p, double) { p.calibration.effects.memory = some_memory(); }},
+    {"memory", [](auto& p, double) { p.calibration.effects.memory = some_memory(); }, false, 4,
+     false},
+    {"wires",
+     [](auto& p, double unit) {
+       p.calibration.effects.wires = {16, 24, 1e-5 / unit, 2e-5 / unit, 1.5e-5 / unit};
+     },
+     true},
+    {"a tile of more columns than work-items",
+     [](auto& p, double unit) {
+       p.calibration.effects.wires = {16, 96, 1e-5 / unit, 2e-5 / unit, 1.5e-5 / unit};
+     },
+     true},
+    {"wires before an offset",
+     [](auto& p, double unit) {
+       p.calibration.effects.wires = some_wires(3e-5 / unit, TareOrigin::offset);
+     },
+     true, 12.99},
+    {"wires of a bent skin",
+     [](auto& p, double) {
+       p.calibration.effects.wires = some_wires(3e-5, TareOrigin::offset);
+       add_patterns(p, 50);
+     },
+     true, 12.99},
+    {"wires below a followed baseline",
+     [](auto& p, double) {
+       p.calibration.effects.wires = some_wires(3e-5);
+       p.baseline_rate = 0.05;
+     },
+     true, 12.99},
+    {"bending", [](auto& p, double unit) { add_patterns(p, 50 * unit); }, true},
+    {"arm", [](auto& p, double) { p.calibration.effects.arm_mm = 0.3; }},
+    {"leak between pillars",
+     [](auto& p, double) {
+       p.calibration.effects.arm_mm = 0.3;
+       p.calibration.effects.pillar_leak = {0.03, 0.01};
+     }},
+};
 
-TEST_P(SensorEffectsOnDevice, WiresHaveTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.wires = all_effects(GetParam().type).wires;
-  expect_host_bits(plan_with(effects, true), true);
-  effects.wires->tile_cols = 96;  // more than the work-items of a tile
-  expect_host_bits(plan_with(effects, true), true);
-}
-
-/// The wires act on what sensels read above tares that are an offset, as does the bound of idle
-/// tiles.
-TEST_P(SensorEffectsOnDevice, WiresBeforeAnOffsetHaveTheBitsOfTheHost) {
-  SensorEffects effects;
-  const double per_count = GetParam().type == SenselType::u16 ? 3e-5 / 16 : 3e-5;
-  effects.wires = {16, 24, per_count, per_count, per_count, TareOrigin::offset};
-  expect_host_bits(plan_with(effects, true), true, 12.99);
+TEST_P(SensorEffectsOnDevice, EachHasTheBitsOfTheHost) {
+  for (const EffectCase& each : kEffects) {
+    SCOPED_TRACE(each.name);
+    SolverPlan plan = plan_with({}, each.planes);
+    each.set(plan, GetParam().type == SenselType::u16 ? 16 : 1);
+    expect_host_bits(plan, each.skip_idle, each.noise);
+  }
 }
 
 /// Readings just below the threshold that the gain of their wires lifts above it, and rows that are
@@ -243,14 +276,6 @@ TEST(SensorEffects, AnInfiniteReadingBehindWiresMakesNoOtherIdle) {
   }
 }
 
-TEST_P(SensorEffectsOnDevice, CorrectionsOfForcesHaveTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.arm_mm = 0.3;
-  expect_host_bits(plan_with(effects, false), true);
-  effects.pillar_leak = {0.03, 0.01};
-  expect_host_bits(plan_with(effects, false), true);
-}
-
 /// A contact that jumps along rows of up to 38 blocks: runs of idle blocks, skipped together, begin
 /// and end anywhere.
 TEST_P(SensorEffectsOnDevice, RunsOfIdleBlocksKeepTheBitsOfTheHost) {
@@ -284,40 +309,6 @@ TEST_P(SensorEffectsOnDevice, RunsOfIdleBlocksKeepTheBitsOfTheHost) {
     processor.submit(buffer.view());
     expect_same_bits(processor.receive(), solve_on_host(plan, buffer.view()).view());
   }
-}
-
-/// Patterns of a bent skin.
-void add_patterns(SolverPlan& plan, double spread) {
-  std::mt19937 random(3);
-  std::normal_distribution<float> value(0, static_cast<float>(spread));
-  for (auto* plane :
-       {&plan.calibration.bend_x, &plan.calibration.bend_y, &plan.calibration.bend_xy}) {
-    plane->resize(plan.skin.sensels());
-    for (float& each : *plane) each = value(random);
-  }
-}
-
-TEST_P(SensorEffectsOnDevice, BendingHasTheBitsOfTheHost) {
-  SolverPlan plan = plan_with({}, true);
-  add_patterns(plan, GetParam().type == SenselType::u16 ? 16 * 50 : 50);
-  expect_host_bits(plan, true);
-}
-
-/// Activation thresholds that each frame changes, before its wires are found.
-TEST_P(SensorEffectsOnDevice, WiresOfABentSkinHaveTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.wires = {16, 24, 3e-5, 3e-5, 3e-5, TareOrigin::offset};
-  SolverPlan plan = plan_with(effects, true);
-  add_patterns(plan, 50);
-  expect_host_bits(plan, true, 12.99);
-}
-
-TEST_P(SensorEffectsOnDevice, WiresBelowAFollowedBaselineHaveTheBitsOfTheHost) {
-  SensorEffects effects;
-  effects.wires = {16, 24, 3e-5, 3e-5, 3e-5};
-  SolverPlan plan = plan_with(effects, true);
-  plan.baseline_rate = 0.05;
-  expect_host_bits(plan, true, 12.99);
 }
 
 /// Every path is compiled once, with everything.

@@ -40,10 +40,6 @@ class PaperSolve : public testing::Test {
     return distance / std::hypot(of(expected.shear_x), of(expected.shear_y), of(expected.normal));
   }
 
-  static FourReadings<Precision> turned(const FourReadings<Precision>& readings) {
-    return {readings[3], readings[0], readings[1], readings[2]};
-  }
-
   static constexpr double kEpsilon = std::numeric_limits<RealOf<Precision>>::epsilon();
 };
 TYPED_TEST_SUITE(PaperSolve, Precisions, PrecisionNames);
@@ -107,35 +103,6 @@ TYPED_TEST(PaperSolve, RegionFourIsFlatAlongTheDiagonal) {
   }
 }
 
-TYPED_TEST(PaperSolve, AQuarterTurnTurnsTheForce) {
-  Random random(63);
-  for (int i = 0; i < 20'000; ++i) {
-    FourReadings<TypeParam> readings{};
-    for (auto& reading : readings) {
-      if (random.below(3) != 0) reading = static_cast<RealOf<TypeParam>>(random.uniform(1, 100));
-    }
-    const auto force = TestFixture::paper(readings);
-    const auto after = TestFixture::paper(TestFixture::turned(readings));
-    const ForceOf<TypeParam> expected = {-force.shear_y, force.shear_x, force.normal};
-    if (force.normal == 0 && force.shear_x == 0) continue;
-    // Region 1 chooses its diagonal by comparing cosines, which may tie.
-    EXPECT_LT(TestFixture::error(after, expected), 256 * TestFixture::kEpsilon);
-  }
-}
-
-TYPED_TEST(PaperSolve, IsRightWhereEquationFiveIsZeroByZero) {
-  for (const double theta : {0.0, 1e-6, 0.3, 0.7}) {
-    for (int eighth = 0; eighth < 8; ++eighth) {
-      const double phi = kPi / 4 * eighth;
-      const double_precision::Force force = {-std::sin(theta) * std::cos(phi),
-                                             -std::sin(theta) * std::sin(phi), std::cos(theta)};
-      const auto readings = rounded_readings<TypeParam>(force, kCountsPerNewton);
-      EXPECT_LT(TestFixture::error(TestFixture::paper(readings), force), 16 * TestFixture::kEpsilon)
-          << "theta " << theta << ", phi " << phi;
-    }
-  }
-}
-
 TYPED_TEST(PaperSolve, MissingIsUnusableAndSaturatedUsable) {
   const FourReadings<TypeParam> readings = {30, 20, 25, 35};
   for (std::size_t n = 0; n < 4; ++n) {
@@ -161,27 +128,6 @@ TYPED_TEST(PaperSolve, OppositeSenselsAloneAreSolvedDirectly) {
   EXPECT_EQ(nothing.shear_x, 0);
   EXPECT_EQ(nothing.shear_y, 0);
   EXPECT_EQ(nothing.normal, 0);
-}
-
-TYPED_TEST(PaperSolve, IsFiniteForAllFiniteReadings) {
-  using Real = RealOf<TypeParam>;
-  Random random(64);
-  const std::array<Real, 8> odd = {0,
-                                   std::numeric_limits<Real>::denorm_min(),
-                                   std::numeric_limits<Real>::min(),
-                                   static_cast<Real>(1e-30),
-                                   1,
-                                   static_cast<Real>(1 + 1e-6),
-                                   static_cast<Real>(1e30),
-                                   static_cast<Real>(1e33)};
-  for (int i = 0; i < 100'000; ++i) {
-    FourReadings<TypeParam> readings;
-    for (auto& reading : readings) reading = odd[random.below(odd.size())];
-    const auto force = TestFixture::paper(readings);
-    ASSERT_TRUE(std::isfinite(force.shear_x) && std::isfinite(force.shear_y) &&
-                std::isfinite(force.normal))
-        << readings[0] << ' ' << readings[1] << ' ' << readings[2] << ' ' << readings[3];
-  }
 }
 
 }  // namespace

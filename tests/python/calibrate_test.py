@@ -57,16 +57,6 @@ class Steps(unittest.TestCase):
         with self.assertRaises(pf.Error):
             pf.calibrate.tare(self.unloaded[:3])
 
-    def test_shear(self):
-        loads = np.zeros((32, 40))
-        loads[10:20, 10:20:2], loads[10:20, 11:20:2] = 200, 400  # left and right sensels of 25 pillars
-        frames = (loads + RANDOM.normal(0, 1, (40, 32, 40))).astype(np.float32)
-        before = pf.Calibration(32, 40, tare=0 * loads, noise=1 + 0 * loads, counts_per_newton=250)
-        pulled_n = np.sqrt(2) * (2 * 400 - 2 * 200) / (4 * 250) * 25
-        skin = pf.Skin(32, 40, layout="pillars", threshold_counts=6)
-        step = pf.calibrate.shear([(frames, (pulled_n / 1.3, 0.0))], before, skin=skin)
-        self.assertAlmostEqual(step.facts["shear_coefficient_x"], 1.3, delta=0.05)
-
     def test_paths_and_wrong_arguments(self):
         path = WORK / "unloaded.h5"
         pf.save_recording(path, self.unloaded, overwrite=True)
@@ -122,27 +112,6 @@ class Sensels(unittest.TestCase):
         self.assertAlmostEqual(float(forces.normal.sum((1, 2)).mean()), 24, delta=0.3)
         loaded.save(WORK / "pad.h5", overwrite=True)
         self.assertFalse(pf.solve(self.pressed(normal), calibration=WORK / "pad.h5").has_pillars)
-
-    def test_faults_are_masked(self):
-        rows, cols = np.mgrid[0:15, 0:33]
-        turn = np.arange(0, 30, 0.015)
-        places = zip(turn / 2, 16 + 16.5 * np.sin(turn * 2.1))
-        load = np.array([np.exp(-((rows - row)**2 + (cols - col)**2) / 3) for row, col in places])
-        load[:, :, 20] = load[:, 4, 7] = load[:, 11, 30] = 0
-        frames = np.round(self.tare + 150 * load * self.gain + RANDOM.normal(0, 0.6, load.shape))
-        frames[:, 8, 12] = np.round(self.tare[8, 12] + 40)
-        step = pf.calibrate.faults([frames[:900], frames[900:]], self.tared, skin=self.skin)
-        faulty = np.zeros((15, 33), bool)
-        faulty[:, 20] = faulty[4, 7] = faulty[11, 30] = faulty[8, 12] = True
-        np.testing.assert_array_equal(step.calibration.mask == 0, faulty)
-        self.assertEqual([(each.row, each.col) for each in step.facts["findings"] if each.fault == "stuck"], [(8, 12)])
-        again = pf.calibrate.faults([frames], step.calibration, skin=self.skin)
-        self.assertEqual(again.facts["findings"], [])
-        np.testing.assert_array_equal(again.calibration.mask, step.calibration.mask)
-        status = pf.solve(frames[:3], calibration=step.calibration, skin=self.skin).status
-        np.testing.assert_array_equal((status & pf.Status.INCONSISTENT) != 0, np.broadcast_to(faulty, status.shape))
-        with self.assertRaisesRegex(pf.Error, "no sensel moved"):
-            pf.calibrate.faults([noisy(self.tare)], self.tared, skin=self.skin)
 
     def test_steps_of_pillars_are_refused(self):
         still = noisy(self.tare)

@@ -1,4 +1,4 @@
-// Leak between pillars, off-centre pressure and shear coefficient.
+// Moments of off-centre pressure under pillars.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,55 +49,6 @@ ClosedFormContact pressed(ContactShape shape, double radius_mm, double x_mm, dou
   contact.reference_load_n = 5;
   contact.path = {{0, x_mm, y_mm, 5}};
   return contact;
-}
-
-TEST(ShearCoefficientOfAScene, IsThatOfTheReadingsAndTheirStatus) {
-  Scene scene = bare_scene(31, 24);
-  scene.load = DirectionSweep{24, 31, 90, {0.3}};
-  scene.sensor.effects.shear_coefficient = {0.7, 1.6};
-  const EffectFrame frame(scene);
-  const Scene plain = [&] {
-    Scene s = scene;
-    s.sensor = {};
-    return s;
-  }();
-  EXPECT_EQ(EffectFrame(plain).truth.shear_x, frame.truth.shear_x);
-  for (std::uint32_t row = 0; row < 31; ++row) {
-    for (std::uint32_t col = 0; col < 24; ++col) {
-      const std::size_t i = row * 24 + col;
-      const double normal = frame.truth.normal[i];
-      const double x = 0.7 * frame.truth.shear_x[i] / std::numbers::sqrt2;
-      const double y = 1.6 * frame.truth.shear_y[i] / std::numbers::sqrt2;
-      const double v[] = {normal + x + y, normal - x + y, normal - x - y, normal + x - y};
-      for (int n = 1; n <= 4; ++n) {
-        EXPECT_NEAR(frame.v(row, col, n), std::max(0.0, 100 * v[n - 1]), 1e-4);
-        EXPECT_EQ((frame.truth.status[i] >> (n - 1) & 1) != 0, frame.v(row, col, n) > 0);
-      }
-    }
-  }
-}
-
-TEST(PillarLeakOfAScene, GivesTheNeighboursTheirFractions) {
-  Scene scene = bare_scene(5, 5);
-  // The contact lies within the middle pillar.
-  ClosedFormContact tip = pressed(ContactShape::sphere, 0.4, 0.1, -0.1);
-  tip.motion = ContactMotion::slide;
-  tip.friction = 0.5;
-  scene.load = std::vector{tip};
-  scene.sensor.effects.pillar_leak = {0.04, 0.015};
-  const EffectFrame frame(scene);
-  const double fractions[] = {1, 0.04, 0.015};
-  for (std::uint32_t row = 0; row < 5; ++row) {
-    for (std::uint32_t col = 0; col < 5; ++col) {
-      const int down = std::abs(int(row) - 2);
-      const int right = std::abs(int(col) - 2);
-      const double fraction = std::max(down, right) > 1 ? 0 : fractions[down + right];
-      for (int n = 1; n <= 4; ++n) {
-        EXPECT_NEAR(frame.v(row, col, n), fraction * frame.v(2, 2, n), 1e-4) << row << " " << col;
-      }
-      EXPECT_NEAR(frame.truth.normal[row * 5 + col], fraction == 1 ? 5 : 0, 1e-6);
-    }
-  }
 }
 
 PressureMoments moments_under(const ClosedFormContact& contact, std::uint32_t pillars,

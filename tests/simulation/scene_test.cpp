@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -11,6 +12,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "pillarfield/error.h"
 #include "pillarfield/simulator.h"
@@ -38,6 +40,7 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// Keys of no table of numbers.
 TEST(Scene, EveryKeyReachesItsPlace) {
   const Scene scene = parse_scene(R"(
 title = "All keys"
@@ -52,12 +55,11 @@ power_law_reference_counts = 90
 pillar_leak_edge = 0.01
 pillar_leak_corner = 0.003
 pillar_arm_mm = 0.224
-shear_coefficient = 0.9
+shear_coefficient = [0.8, 1.2]
 leak_inside = 0.05
 leak_across = 0.02
 hysteresis = 0.06
 hysteresis_range_counts = 150
-creep_per_decade = 0.04
 wires = { tile = [32, 16], row_ohm = 50, column_ohm = 40, sensel_ohm = 9000, tares = "offset" }
 [surface]
 bend_spread_counts_mm = 100
@@ -77,10 +79,8 @@ memory = false
 shape = "cylinder"
 motion = "roll"
 contact_radius_mm = 3
-reference_load_n = 8
 length_mm = 9
 friction = 0.5
-direction_deg = -30
 tangential_ratio = 0.4
 path = [{time_s = 0, position_mm = [1, 2], load_n = 3}, {time_s = 2.5, position_mm = [-4, 5.5], load_n = 6}]
 [[contact]]
@@ -93,73 +93,50 @@ position_mm = [7, -8]
 load_n = 0.5
 )",
                                   "all.toml");
+  using std::tuple;
   EXPECT_EQ(scene.title, "All keys");
-  EXPECT_EQ(scene.skin.rows, 60U);
-  EXPECT_EQ(scene.skin.cols, 80U);
-  EXPECT_EQ(scene.skin.sensel_pitch_mm, 0.5);
-  EXPECT_EQ(scene.skin.full_scale_counts, 1000);
-  EXPECT_EQ(scene.sensor.adc_bits, 10);
-  ASSERT_TRUE(scene.skin.power_law);
-  EXPECT_EQ(scene.skin.power_law->exponent, 1.25);
+  EXPECT_EQ(tuple(scene.skin.rows, scene.skin.cols, scene.skin.sensel_pitch_mm.col_mm,
+                  scene.skin.full_scale_counts, scene.sensor.adc_bits),
+            tuple(60, 80, 0.5, 1000, 10));
+  EXPECT_EQ(scene.skin.power_law.value().exponent, 1.25);
   EXPECT_EQ(scene.skin.power_law->reference_counts, 90);
-  EXPECT_EQ(scene.sensor.effects.shear_coefficient->y, 0.9);
   EXPECT_EQ(scene.sensor.hysteresis_range_counts, 150);
   const SensorEffects effects = Simulator(scene).calibration().effects;
-  EXPECT_EQ(effects.pillar_leak->edge, 0.01);
-  EXPECT_EQ(effects.pillar_leak->corner, 0.003);
-  EXPECT_EQ(effects.arm_mm, 0.224);
-  EXPECT_EQ(effects.shear_coefficient->x, 0.9);
-  EXPECT_EQ(effects.sensel_leak->inside, 0.05);
-  EXPECT_EQ(effects.sensel_leak->across, 0.02);
-  EXPECT_FALSE(effects.memory);
-  EXPECT_EQ(effects.wires->tile_rows, 32U);
-  EXPECT_EQ(effects.wires->tile_cols, 16U);
-  EXPECT_EQ(effects.wires->row_per_count, 50 * (1 / 9e6));
-  EXPECT_EQ(effects.wires->column_per_count, 40 * (1 / 9e6));
-  EXPECT_EQ(effects.wires->idle_per_count, 50 * (1 / 9e6));
-  EXPECT_EQ(effects.wires->tares, TareOrigin::offset);
-  ASSERT_TRUE(scene.bending);
-  EXPECT_EQ(scene.bending->spread_counts_mm, 100);
+  EXPECT_EQ(tuple(effects.pillar_leak->edge, effects.pillar_leak->corner, effects.arm_mm,
+                  effects.shear_coefficient->x, effects.shear_coefficient->y,
+                  effects.sensel_leak->inside, effects.sensel_leak->across, effects.memory),
+            tuple(0.01, 0.003, 0.224, 0.8, 1.2, 0.05, 0.02, std::nullopt));
+  const WireCrosstalk wires = effects.wires.value();
+  EXPECT_EQ(tuple(wires.tile_rows, wires.tile_cols, wires.row_per_count, wires.column_per_count,
+                  wires.idle_per_count, wires.tares),
+            tuple(32, 16, 50 * (1 / 9e6), 40 * (1 / 9e6), 50 * (1 / 9e6), TareOrigin::offset));
+  EXPECT_EQ(scene.bending.value().spread_counts_mm, 100);
   EXPECT_EQ(scene.bending->path.at(1).xy, -0.03);
-  EXPECT_EQ(parse_scene("[skin]\npillars = [2, 2]\n[sensor]\nresponse_curve = [[9, 8], [20, 30]]\n"
-                        "shear_coefficient = [0.8, 1.2]",
-                        "s")
-                .sensor.effects.curve.loads,
-            (std::vector<double>{8, 30}));
-  EXPECT_EQ(scene.rate_hz, 250);
-  EXPECT_EQ(scene.frames, 12U);
-  EXPECT_EQ(scene.seed, 99U);
-  EXPECT_EQ(scene.recording, 3U);
-  EXPECT_EQ(scene.solver.estimator, Estimator::direct);
-  EXPECT_EQ(scene.solver.angles, true);
-  EXPECT_EQ(scene.solver.uncertainty, true);
-  EXPECT_EQ(scene.solver.unrelated_frames, true);
-  EXPECT_EQ(scene.solver.friction_prior, (std::vector{0.8, 0.3}));
+  const Scene other = parse_scene(
+      "[skin]\npillars = [2, 2]\n[sensor]\nresponse_curve = [[9, 8], [20, 30]]\n"
+      "shear_coefficient = 0.9",
+      "s");
+  EXPECT_EQ(other.sensor.effects.curve.loads, (std::vector<double>{8, 30}));
+  EXPECT_EQ(other.sensor.effects.shear_coefficient->y, 0.9);
+  EXPECT_EQ(tuple(scene.rate_hz, scene.frames, scene.seed, scene.recording),
+            tuple(250, 12U, 99U, 3U));
+  EXPECT_EQ(tuple(scene.solver.estimator, scene.solver.angles, scene.solver.uncertainty,
+                  scene.solver.unrelated_frames, scene.solver.friction_prior),
+            tuple(Estimator::direct, true, true, true, std::vector{0.8, 0.3}));
   const auto& contacts = std::get<std::vector<ClosedFormContact>>(scene.load);
-  ASSERT_EQ(contacts.size(), 2U);
-  const ClosedFormContact& roller = contacts[0];
-  EXPECT_EQ(roller.shape, ContactShape::cylinder);
-  EXPECT_EQ(roller.motion, ContactMotion::roll);
-  EXPECT_EQ(roller.contact_radius_mm, 3);
-  EXPECT_EQ(roller.reference_load_n, 8);
-  EXPECT_EQ(roller.length_mm, 9);
-  EXPECT_EQ(roller.friction, 0.5);
-  EXPECT_EQ(roller.direction_deg, -30);
-  EXPECT_EQ(roller.tangential_ratio, 0.4);
-  ASSERT_EQ(roller.path.size(), 2U);
-  EXPECT_EQ(roller.path[1].time_s, 2.5);
-  EXPECT_EQ(roller.path[1].x_mm, -4);
-  EXPECT_EQ(roller.path[1].y_mm, 5.5);
-  EXPECT_EQ(roller.path[1].load_n, 6);
-  const ClosedFormContact& punch = contacts[1];
-  EXPECT_TRUE(punch.clockwise);
-  ASSERT_EQ(punch.path.size(), 1U);
-  EXPECT_EQ(punch.path[0].y_mm, -8);
-  EXPECT_EQ(punch.path[0].load_n, 0.5);
+  const ContactKey last = contacts.at(0).path.at(1);
+  EXPECT_EQ(
+      tuple(contacts[0].shape, contacts[0].motion, last.time_s, last.x_mm, last.y_mm, last.load_n),
+      tuple(ContactShape::cylinder, ContactMotion::roll, 2.5, -4, 5.5, 6));
+  const ContactKey only = contacts.at(1).path.at(0);
+  EXPECT_EQ(tuple(contacts[1].clockwise, only.y_mm, only.load_n), tuple(true, -8, 0.5));
 }
 
-/// A number in a range.
-double within(const Range& range) { return range.low + std::min(range.high - range.low, 1.0) / 4; }
+/// A number in a range, the smaller the later its row.
+double within(const Range& range, std::size_t row = 0) {
+  const auto place = static_cast<double>(row + 1);
+  return range.low + std::min(range.high - range.low, 1.0) / (2 * place * place);
+}
 
 TEST(Scene, EveryNumberOfATableReachesItsPlace) {
   const auto scene_with = [](const char* section, std::string_view key, const Range& range) {
@@ -180,6 +157,49 @@ TEST(Scene, EveryNumberOfATableReachesItsPlace) {
     set_solver(plan, scene);
     const std::optional<double> value = setting.number.get(plan);
     EXPECT_EQ(value.value_or(within(setting.range)), within(setting.range)) << setting.name;
+  }
+}
+
+/// A part of a scene that has all numbers of its table that apply to it, each another one.
+template <class Part, std::size_t rows>
+std::string with_numbers(std::string text, const Part& part,
+                         const std::array<PartQuantity<Part>, rows>& table) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto& [quantity, required, applies] = table[row];
+    if (applies(part)) text += fmt::format("{} = {}\n", quantity.key, within(quantity.range, row));
+  }
+  return "skin.pillars = [20, 20]\n" + text + "position_mm = [0, 0]\nload_n = 1\n";
+}
+
+template <class Part, std::size_t rows>
+void expect_numbers(const Part& part, const std::array<PartQuantity<Part>, rows>& table) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto& [quantity, required, applies] = table[row];
+    if (!applies(part)) continue;
+    EXPECT_EQ(part.*quantity.member, within(quantity.range, row)) << quantity.key;
+  }
+}
+
+TEST(Scene, EveryNumberOfAPartReachesItsPlace) {
+  ClosedFormContact roller;  // All numbers apply to it.
+  roller.shape = ContactShape::cylinder;
+  roller.motion = ContactMotion::roll;
+  const Scene rolled =
+      parse_scene(with_numbers("[[contact]]\nshape = \"cylinder\"\nmotion = \"roll\"\n", roller,
+                               kContactQuantities),
+                  "s.toml");
+  expect_numbers(std::get<std::vector<ClosedFormContact>>(rolled.load).at(0), kContactQuantities);
+  for (const auto& [shape, head] :
+       {std::pair{IndenterShape::cylinder, "shape = \"cylinder\"\n"},
+        {IndenterShape::height_map,
+         "shape = \"height_map\"\nheight_map = \"a.npy\"\nheight_map_size_mm = [9, 8]\n"}}) {
+    Indenter indenter;
+    indenter.shape = shape;
+    const Scene pressed = parse_scene(
+        with_numbers("[[indenter]]\n" + std::string(head), indenter, kIndenterQuantities),
+        "s.toml");
+    EXPECT_EQ(pressed.indenters.at(0).shape, shape);
+    expect_numbers(pressed.indenters[0], kIndenterQuantities);
   }
 }
 

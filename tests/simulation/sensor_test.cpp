@@ -189,23 +189,5 @@ TEST(Sensor, WithoutAConverterOnlyAFullScaleClips) {
   EXPECT_EQ(std::ranges::max(reading_of(50, scene).readings<float>()), 10);
 }
 
-/// calibration.h: V = (raw − t)·gain + z where (raw − t)·gain is above the threshold.
-TEST(Sensor, TheCalibrationUndoesTheSensor) {
-  SensorModel model;
-  model.dead_zone_counts = 1.5;
-  model.gain_spread = 0.25;
-  model.tare_counts = 4;
-  model.tare_spread_counts = 1;
-  const Scene scene = scene_with(model);
-  const Sensor sensor(scene);
-  const Calibration& calibration = sensor.calibration();
-  const FrameBuffer raw = reading_of(77, scene);
-  for (std::size_t i = 0; i < scene.skin.sensels(); ++i) {
-    const float v = (raw.readings<float>()[i] - calibration.tare[i]) * calibration.gain[i] +
-                    calibration.dead_zone[i];
-    EXPECT_NEAR(v, 77, 1e-4);
-  }
-}
-
 }  // namespace
 }  // namespace pillarfield

@@ -61,16 +61,6 @@ Rendered render(const Simulator& simulator, std::uint64_t index) {
   return frame;
 }
 
-TEST(Simulator, TheSameSeedMakesTheSameFrames) {
-  const Simulator one(noisy_scene(4));
-  const Simulator two(noisy_scene(4));
-  EXPECT_EQ(one.calibration().gain, two.calibration().gain);
-  EXPECT_EQ(one.calibration().mask, two.calibration().mask);
-  for (std::uint64_t index = 0; index < 10; ++index) {
-    EXPECT_EQ(render(one, index), render(two, index));
-  }
-}
-
 TEST(Simulator, AnotherSeedMakesAnotherSensorAndOtherNoiseOfTheSameTruth) {
   const Simulator one(noisy_scene(4));
   const Simulator two(noisy_scene(5));

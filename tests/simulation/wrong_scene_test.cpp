@@ -37,9 +37,6 @@ void expect_message(const std::string& text, const std::string& message) {
 
 TEST(WrongScene, SkinSensorTimeAndSolver) {
   const std::vector<WrongScene> table = {
-      {"sise = 3",
-       "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, skin, "
-       "direction_sweep, contact, indenter, sensor, surface, time, solver"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",
        "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: leak_inside, "
@@ -50,8 +47,6 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "power_law_exponent, power_law_reference_counts"},
       {"[sensor]\nnoise_counts = -1",
        "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
-      {"[sensor]\nnoise_counts = \"low\"",
-       "s.toml:3: key 'noise_counts' in [sensor] is \"low\"; allowed: a number in [0, 1000000]"},
       {"[sensor]\npower_law_exponent = 1.2",
        "s.toml:2: key 'power_law_reference_counts' in [sensor] is missing; allowed: a number in "
        "[0.001, 1000000]"},
@@ -73,9 +68,6 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml: the skin covers more than a whole cylinder of radius 3 mm; give a radius of at "
        "least "
        "3.02 mm"},
-      {"[surface]\nshape = \"plane\"\nradius_mm = 3",
-       "s.toml:4: key 'radius_mm' in [surface] is unknown here; allowed: shape, "
-       "bend_spread_counts_mm"},
       {"[surface]\nshape = \"height_map\"\nheight_map = \"a.bmp\"",
        "s.toml:4: key 'height_map' in [surface] is \"a.bmp\"; allowed: the path of a .npy file, "
        "from the scene's folder"},
@@ -85,8 +77,6 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[skin]\nthreshold_counts = 9\n[sensor]\nadc_bits = 3",
        "s.toml:5: key 'adc_bits' in [sensor] gives a full scale of 7; allowed: more than "
        "threshold_counts, 9"},
-      {"[time]\nrate_hz = 0",
-       "s.toml:3: key 'rate_hz' in [time] is 0; allowed: a number in [1e-06, 1000000]"},
       {"[solver]\nestimator = \"magic\"",
        R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "contact")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
@@ -111,8 +101,10 @@ TEST(WrongScene, SizeOfTheSkin) {
        "s.toml: key 'size_mm' in [skin] is missing; allowed: size_mm = [x, y] or pillars = "
        "[rows, columns]"},
       {"[skin]\nsize_mm = [5]",
-       "s.toml:2: key 'size_mm' in [skin] is a list of 1; allowed: a list "
-       "of 2, each a number in (0, 100000000]"},
+       "s.toml:2: key 'size_mm' in [skin] is a list of 1; allowed: a list of 2, each a number in "
+       "(0, 100000000]"},
+      {"[skin]\npillars = [3, 3]\nsize_mm = [9, 9]",
+       "s.toml:2: key 'pillars' in [skin] comes with size_mm; allowed: one of the two"},
       {"[skin]\nsize_mm = [\n5,\n-5]",
        "s.toml:4: key 'size_mm' in [skin] has an element that is "
        "-5; allowed: a list of 2, each a number in (0, 100000000]"},
@@ -122,9 +114,6 @@ TEST(WrongScene, SizeOfTheSkin) {
       {"[skin]\npillars = [32767, 32767]",
        "s.toml:2: key 'pillars' in [skin] means 32767 x 32767 "
        "pillars; allowed: 1 to 32767 each way, 25000000 in all"},
-      {"[skin]\npillars = [3, 3]\nsize_mm = [9, 9]",
-       "s.toml:2: key 'pillars' in [skin] comes with "
-       "size_mm; allowed: one of the two"},
       {"[skin]\nsize_mm = [9, 9]\n[direction_sweep]",
        "s.toml:2: key 'size_mm' in [skin] comes with [direction_sweep]; "
        "allowed: no size: the sweep sets it"},
@@ -149,10 +138,6 @@ TEST(WrongScene, KeysThatDoNotGoTogether) {
       {"friction = 0.5",
        "s.toml:8: key 'friction' in [[contact]] does not apply to shape = "
        "\"sphere\", motion = \"press\"; allowed: no such key"},
-      {"clockwise = true",
-       "s.toml:8: key 'clockwise' in [[contact]] is unknown here; allowed: "
-       "shape, motion, contact_radius_mm, reference_load_n, path, position_mm, "
-       "load_n"},
       {"path = [{time_s = 0, position_mm = [0, 0], load_n = 1}]",
        "s.toml:6: key 'position_mm' in [[contact]] comes with path; allowed: one of the two"},
       {"[direction_sweep]",
@@ -171,14 +156,6 @@ TEST(WrongScene, Contacts) {
       {"[[contact]]\nshape = \"cylinder\"\nmotion = \"spin\"",
        "s.toml:4: key 'motion' in [[contact]] does not go with the shape: shape = \"cylinder\", "
        "motion = \"spin\"; allowed: \"press\", \"slide\", \"roll\""},
-      {"[[contact]]\nshape = \"flat_punch\"\nmotion = \"press\"\ncontact_radius_mm = "
-       "2\nreference_load_n = 1",
-       "s.toml:6: key 'reference_load_n' in [[contact]] does not apply to shape = \"flat_punch\", "
-       "motion = \"press\"; allowed: no such key"},
-      {"[[contact]]\nshape = \"sphere\"\nmotion = \"partial_slip\"\ncontact_radius_mm = "
-       "2\nfriction "
-       "= 1\ntangential_ratio = 1",
-       "s.toml:7: key 'tangential_ratio' in [[contact]] is 1; allowed: a number in (0, 1)"},
       {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\nload_n = 1",
        "s.toml:2: key 'position_mm' in [[contact]] is missing; allowed: a list of 2, [x, y] in "
        "millimetres"},

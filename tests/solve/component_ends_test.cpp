@@ -116,21 +116,6 @@ TEST(ComponentEnds, FollowTheCoefficientAndOffCentrePressure) {
   }
 }
 
-/// The segment does not depend on the segment point.
-TEST(ComponentEnds, OfADirectForceDoNotDependOnItsPoint) {
-  std::array<float, kComponentEnds> first{};
-  for (const double point : {0.25, 0.5, 0.875, 1.0}) {
-    SolverPlan plan;
-    plan.segment_point = point;
-    const ForceField field = solved({60, 45, 0, 0}, plan);
-    const auto ends = component_ends(field.view(), 0, point);
-    if (point == 0.25) first = ends;
-    for (std::size_t i = 0; i < kComponentEnds; ++i) {
-      EXPECT_NEAR(ends[i], first[i], 0.02) << i << " at " << point;
-    }
-  }
-}
-
 /// Two adjacent sensels at full scale: what the other two determine is finite, the rest is open.
 TEST(ComponentEnds, OfASaturatedPillarAreOpen) {
   SolverPlan plan;

@@ -14,7 +14,8 @@ constexpr FrameShape kShape = {SenselType::u16, 20, 12};
 
 using Sequences = std::vector<std::uint64_t>;
 
-void run_plan(unsigned seed, PacketOrder order) {
+/// Runs a plan; returns the counts that it must have.
+StreamHealth run_plan(unsigned seed, PacketOrder order) {
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   const auto parts = static_cast<std::uint32_t>(1 + random() % 5);
@@ -40,33 +41,22 @@ void run_plan(unsigned seed, PacketOrder order) {
   run.assembler.give_up();
   while (run.assembler.pop(run.frame)) check(run.frame);
   expect_counts(run.health(), expected.health);
+  return expected.health;
 }
 
 TEST(FrameAssembler, CountsEveryDamageOfAPlan) {
   for (const PacketOrder order : {PacketOrder::not_kept, PacketOrder::kept}) {
+    StreamHealth all;
     for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
-      run_plan(seed, order);
+      const StreamHealth health = run_plan(seed, order);
+      for (const auto count :
+           {&StreamHealth::lost, &StreamHealth::incomplete, &StreamHealth::late,
+            &StreamHealth::duplicates, &StreamHealth::reordered, &StreamHealth::invalid}) {
+        all.*count += health.*count;
+      }
     }
-  }
-}
-
-TEST(FrameAssembler, PlansHoldEveryKindOfDamage) {
-  StreamHealth all;
-  for (unsigned seed = 0; seed < 50; ++seed) {
-    std::mt19937 random(seed);
-    std::vector<std::vector<SentPacket>> frames;
-    for (std::uint64_t i = 0; i < 60; ++i) frames.push_back(row_packets(kShape, i, 3));
-    const StreamHealth health = expect(damage(frames, random, true), 2).health;
-    all.lost += health.lost;
-    all.incomplete += health.incomplete;
-    all.late += health.late;
-    all.duplicates += health.duplicates;
-    all.reordered += health.reordered;
-    all.invalid += health.invalid;
-  }
-  for (const std::uint64_t count :
-       {all.lost, all.incomplete, all.late, all.duplicates, all.reordered, all.invalid}) {
-    EXPECT_GT(count, 20);
+    EXPECT_GT(std::min({all.lost, all.incomplete, all.duplicates, all.invalid}), 20);
+    if (order == PacketOrder::not_kept) EXPECT_GT(std::min(all.late, all.reordered), 20);
   }
 }
 
@@ -80,19 +70,6 @@ TEST(FrameAssembler, DeliversAWholeFrameAtOnce) {
     EXPECT_EQ(run.readings[0], readings_of(shape, 5));
     EXPECT_EQ(run.readings[1], readings_of(shape, 6));
   }
-}
-
-TEST(FrameAssembler, RefusesAWrongChecksum) {
-  AssemblerRun run(kShape);
-  run.add(frame_packet(kShape, 0));
-  SentPacket packet = checked(frame_packet(kShape, 1));
-  packet.readings[11] ^= 4;
-  run.add(packet);
-  packet = checked(frame_packet(kShape, 1));
-  packet.header.time_ns ^= 1;
-  run.add(packet);
-  EXPECT_EQ(run.health().invalid, 2);
-  EXPECT_EQ(run.sequences, (Sequences{0}));
 }
 
 TEST(FrameAssembler, GivesUpAfterTwoIntervalsWithoutAPacket) {

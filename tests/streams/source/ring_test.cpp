@@ -325,60 +325,74 @@ PillarfieldRing ring_of_frames() {
 
 TEST(HostileRing, LyingSizesAreRefused) {
   std::mt19937_64 random(1);
+  using Lie = void (*)(PillarfieldRing & ring, std::uint64_t any);
+  const Lie lies[] = {
+      [](auto& ring, auto any) { ring.slots = static_cast<std::uint32_t>(5 + any % 100); },
+      [](auto& ring, auto any) { ring.slot_bytes = 64 * (22 + any % 1000); },
+      [](auto& ring, auto any) { ring.slot_bytes = any % 1328; },
+      [](auto& ring, auto any) { ring.rows = static_cast<std::uint32_t>(any | 64); },
+      [](auto& ring, auto any) { ring.cols = static_cast<std::uint32_t>(any | 64); },
+      [](auto& ring, auto) { ring.slots = 0; }};
   for (int round = 0; round < 200; ++round) {
     const Name name;
     Segment segment(name, 64 + 4 * 1344);
     PillarfieldRing ring = ring_of_frames();
-    switch (random() % 6) {
-      case 0:
-        ring.slots = static_cast<std::uint32_t>(5 + random() % 100);
-        break;
-      case 1:
-        ring.slot_bytes = 64 * (22 + random() % 1000);
-        break;
-      case 2:
-        ring.slot_bytes = random() % 1328;
-        break;
-      case 3:
-        ring.rows = static_cast<std::uint32_t>(random() | 64);
-        break;
-      case 4:
-        ring.cols = static_cast<std::uint32_t>(random() | 64);
-        break;
-      default:
-        ring.slots = 0;
-        break;
-    }
+    lies[round % 6](ring, random());
     segment.put(0, ring);
     EXPECT_NE(refusal_of(name.source()).find("not a ring of frames"), std::string::npos);
   }
 }
 
-TEST(HostileRing, RandomContentsNeverDeliverAFrameNorHang) {
-  const Name name;
-  Segment segment(name, 64 + 4 * 1344);
-  PillarfieldRing ring = ring_of_frames();
-  ring.published = 1;
-  PillarfieldFrameSlot slot = {};
-  slot.lock = 2;
-  slot.packet = frame_packet(kShape, 0).header;
-  segment.put(64, slot);
-  segment.put(0, ring);
-  const auto stream = open_live_source(name.source(), {});
-  StreamedFrame frame(stream->sensel_type(), stream->skin());
-  EXPECT_EQ(stream->next(frame, 10ms), Arrival::arrived);
+/// A ring whose reader has its first frame, and which then turns hostile.
+class TurnedRing : public testing::Test {
+ protected:
+  TurnedRing() {
+    ring_.published = 1;
+    slot_.lock = 2;
+    slot_.packet = frame_packet(kShape, 0).header;
+    segment_.put(64, slot_);
+    segment_.put(0, ring_);
+    stream_ = open_live_source(name_.source(), {});
+    frame_.emplace(stream_->sensel_type(), stream_->skin());
+    EXPECT_EQ(stream_->next(*frame_, 10ms), Arrival::arrived);
+  }
+
+  Name name_;
+  Segment segment_{name_, 64 + 4 * 1344};
+  PillarfieldRing ring_ = ring_of_frames();
+  PillarfieldFrameSlot slot_ = {};
+  std::unique_ptr<FrameStream> stream_;
+  std::optional<StreamedFrame> frame_;
+};
+
+TEST_F(TurnedRing, RandomContentsNeverDeliverAFrameNorHang) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 2000; ++round) {
-    ring.published = random() % 3 == 0 ? random() : random() % 20;
-    ring.signal = static_cast<std::uint32_t>(random());
-    segment.put(0, ring);
+    ring_.published = random() % 3 == 0 ? random() : random() % 20;
+    ring_.signal = static_cast<std::uint32_t>(random());
+    segment_.put(0, ring_);
     for (std::uint64_t i = 0; i < 4; ++i) {
-      slot.lock = random() % 2 == 0 ? random() : 2 * (random() % 20);
-      slot.packet.sequence = random();
-      slot.packet.bytes = static_cast<std::uint32_t>(random());
-      segment.put(64 + i * 1344, slot);
+      slot_.lock = random() % 2 == 0 ? random() : 2 * (random() % 20);
+      slot_.packet.sequence = random();
+      slot_.packet.bytes = static_cast<std::uint32_t>(random());
+      segment_.put(64 + i * 1344, slot_);
     }
-    EXPECT_EQ(stream->next(frame, 0ns), Arrival::timed_out);
+    EXPECT_EQ(stream_->next(*frame_, 0ns), Arrival::timed_out);
+  }
+}
+
+TEST_F(TurnedRing, AJumpOfItsCountIsNoOverrun) {
+  segment_.put(offsetof(PillarfieldRing, published), std::uint64_t{1} << 63);
+  EXPECT_EQ(stream_->next(*frame_, 0ns), Arrival::timed_out);
+  EXPECT_LE(stream_->health().overrun, 1);
+}
+
+TEST_F(TurnedRing, MayShrinkAtAnyMoment) {
+  for (const std::uint64_t bytes : {3000U, 1000U, 70U, 30U, 0U}) {
+    ring_.published += 2;
+    segment_.put(0, ring_);
+    segment_.resize(bytes);
+    EXPECT_EQ(stream_->next(*frame_, 120ms), Arrival::timed_out);
   }
 }
 
@@ -409,40 +423,6 @@ TEST(HostileRing, APipeIsRefused) {
   const Name name;
   ASSERT_EQ(mkfifo(("/dev/shm/" + name.text()).c_str(), 0600), 0);
   EXPECT_NE(refusal_of(name.source()).find("no shared memory"), std::string::npos);
-}
-
-TEST(HostileRing, AJumpOfItsCountIsNoOverrun) {
-  const Name name;
-  RingWriter writer(name.text(), kLayout, 4);
-  publish(writer, frame_packet(kShape, 0));
-  const auto stream = open_live_source(name.source(), {});
-  StreamedFrame frame(stream->sensel_type(), stream->skin());
-  EXPECT_EQ(stream->next(frame, 10ms), Arrival::arrived);
-  Segment segment(name, 64 + 4 * 1344);
-  segment.put(offsetof(PillarfieldRing, published), std::uint64_t{1} << 63);
-  EXPECT_EQ(stream->next(frame, 0ns), Arrival::timed_out);
-  EXPECT_LE(stream->health().overrun, 1);
-}
-
-TEST(HostileRing, MayShrinkAtAnyMoment) {
-  const Name name;
-  Segment segment(name, 64 + 4 * 1344);
-  PillarfieldRing ring = ring_of_frames();
-  ring.published = 1;
-  PillarfieldFrameSlot slot = {};
-  slot.lock = 2;
-  slot.packet = frame_packet(kShape, 0).header;
-  segment.put(64, slot);
-  segment.put(0, ring);
-  const auto stream = open_live_source(name.source(), {});
-  StreamedFrame frame(stream->sensel_type(), stream->skin());
-  EXPECT_EQ(stream->next(frame, 10ms), Arrival::arrived);
-  for (const std::uint64_t bytes : {3000U, 1000U, 70U, 30U, 0U}) {
-    ring.published += 2;
-    segment.put(0, ring);
-    segment.resize(bytes);
-    EXPECT_EQ(stream->next(frame, 120ms), Arrival::timed_out);
-  }
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ inline SentPacket checked(SentPacket packet) {
 inline SentPacket damaged(SentPacket packet, std::mt19937& random) {
   PillarfieldPacket& header = packet.header;
   packet.intact = false;
-  switch (random() % 11) {
+  switch (random() % 12) {
     case 0:
       header.magic ^= 1U << random() % 32;
       break;
@@ -117,7 +117,13 @@ inline SentPacket damaged(SentPacket packet, std::mt19937& random) {
     case 8:
       header.patch = 1;
       break;
-    case 9:
+    case 9:  // only CHECKED
+      if ((header.content & PILLARFIELD_CHECKED) != 0) {
+        packet.readings[random() % packet.readings.size()] ^= 1;
+        break;
+      }
+      [[fallthrough]];
+    case 10:
       packet.readings.resize(packet.readings.size() - 1 - random() % 20);
       break;
     default:
