@@ -78,7 +78,6 @@ class Application {
   void serve();
   void serve_open();
   void show_start_page();
-  void keep_boxes();
 
   // Drawing.
   bool fit_to_window();
@@ -179,7 +178,6 @@ void Application::show(LoadedSource loaded) {
   next.look.settings = loaded.settings;
   if (source_was_shown_) next.look.settings.theme = state_.look.settings.theme;
   next.look.view_is_fitted = asks_for_whole_skin(options_);
-  next.marks.boxes = user_.boxes.on(source.skin);
   next.window.show_panels = state_.window.show_panels;
   next.window.folds_curves = state_.window.folds_curves;
   state_ = std::move(next);
@@ -246,14 +244,13 @@ void Application::take_input() {
   if (!drops.empty()) pending_.open = drops.front();
 }
 
-/// False while input waits: for a source, in which only Q acts, its picture, or until the name of a
-/// new box has the keyboard.
+/// False while input waits: for a source, in which only Q acts, or its picture.
 bool Application::takes_input() {
   if (feed_.loading() != nullptr || (shows_source() && !state_.source.field)) {
     pending_.quit |= gui_input_.has_pressed(GLFW_KEY_Q);
     return false;
   }
-  return !shows_source() || (drawn_settings_ && !state_.marks.names_box);
+  return !shows_source() || drawn_settings_.has_value();
 }
 
 void Application::route_to_start_page(const InputEvent& event) {
@@ -267,7 +264,6 @@ void Application::route_to_start_page(const InputEvent& event) {
 /// Performs the pending actions, those on a picture once there is one; an Error becomes a notice.
 void Application::serve() {
   serve_open();
-  keep_boxes();
   if (std::exchange(pending_.start, false)) show_start_page();
   if (!state_.source.field || !shows_source() || !drawn_settings_) return;
   const PendingActions asked = std::exchange(pending_, {});
@@ -302,15 +298,6 @@ void Application::show_start_page() {
   at_start_ = true;
   choices_.recent = user_.recent();
   state_.window.notice.clear();
-}
-
-/// Remembers the named boxes once they have changed.
-void Application::keep_boxes() {
-  if (state_.source.player == nullptr) return;
-  const Skin& skin = state_.source.player->info().skin;
-  if (user_.boxes.on(skin) == state_.marks.boxes) return;
-  user_.boxes.set(skin, state_.marks.boxes);
-  user_.save();
 }
 
 bool Application::fit_to_window() {

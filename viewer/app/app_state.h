@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "viewer/app/named_boxes.h"
 #include "viewer/app/panels/plot.h"
 #include "viewer/app/source/loaded_source.h"
 #include "viewer/source/selection.h"
@@ -34,6 +34,13 @@ struct Pin {
   int number = 0;  ///< 1..kMostPins, see number_pins(); 0: not yet numbered
 };
 
+/// Sums of a rectangle in one frame.
+struct CachedSums {
+  std::uint64_t frame = 0;
+  PillarRect rect;
+  SelectionSums sums;
+};
+
 /// A dragged rectangle.
 struct Selection {
   PillarRect rect;
@@ -58,8 +65,6 @@ struct Marks {
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
   std::optional<Selection> selection;
-  std::vector<NamedBox> boxes;  ///< at most NamedBoxes::kMost
-  bool names_box = false;       ///< the name of the last box takes the keyboard next
 };
 
 /// The window around the picture.

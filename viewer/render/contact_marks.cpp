@@ -101,10 +101,6 @@ Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot, 
           std::round(std::clamp(corner.y - height, plot.y, bottom)), width, height};
 }
 
-bool covers_any(const Viewport& box, const std::vector<Viewport>& others) {
-  return std::ranges::any_of(others, [&](const Viewport& other) { return overlap(box, other); });
-}
-
 std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks, const Viewport& plot,
                                   double scale) {
   std::vector<Viewport> labels;
@@ -114,7 +110,8 @@ std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks, const V
       const Viewport box = box_about(mark.outline);
       const double top = std::min(box.y, mark.centre.y - 6 * scale);  // Above its hill.
       label = label_box(mark.words, {box.x, top - 3 * scale}, plot, scale);
-      if (covers_any(label, labels)) label.width = 0;
+      const auto covers = [&](const Viewport& other) { return overlap(label, other); };
+      if (std::ranges::any_of(labels, covers)) label.width = 0;
     }
     labels.push_back(label);
   }

@@ -41,8 +41,6 @@ struct ContactMark {
 /// mark before.
 [[nodiscard]] std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks,
                                                 const Viewport& plot, double scale);
-/// True if the box covers a part of one of the others.
-[[nodiscard]] bool covers_any(const Viewport& box, const std::vector<Viewport>& others);
 /// Draws a label on a dark ground.
 void draw_label(ImDrawList& list, const Viewport& box, const std::string& words, unsigned colour,
                 double scale);

@@ -56,9 +56,6 @@ TEST_F(Panels, EachWidgetActs) {
     press({"Write", name});
     EXPECT_TRUE(fake.pending.*request) << name;
   }
-  select_pillars(fake.state, {1, 8, 2, 9});
-  press({"Selection", "Keep as a named box"});
-  EXPECT_EQ(fake.state.marks.boxes.size(), 1U);
 }
 
 TEST_F(Panels, AHeadingFoldsItsPanel) {
@@ -145,7 +142,6 @@ std::string words_of_panels(SkinLayout layout) {
   toggle_pin(fake.state, {3, 4});
   select_pillars(fake.state, {1, 8, 2, 9});
   fake.state.marks.hovered = PillarIndex{5, 6};
-  fake.state.marks.boxes = {{"heel", {1, 8, 2, 9}, 1}};
   FakeGui gui;
   std::string words;
   for (int i = 0; i < 2; ++i) {  // Sizes are known in the second frame.

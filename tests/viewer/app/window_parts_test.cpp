@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "tests/viewer/app/fake_app_state.h"
+#include "tests/viewer/source/touched_field.h"
 #include "viewer/app/panels/plot.h"
 #include "viewer/app/source/source_feed.h"
 #include "viewer/app/window/gui.h"
 #include "viewer/app/window/redraws.h"
+#include "viewer/render/contact_marks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -164,6 +166,27 @@ TEST(Curve, BreaksWhereThereIsNoValue) {
     const auto [from, to] = std::minmax({x_of(i), x_of(i + 1), x_of(i + 2)});
     EXPECT_TRUE(to < 45 || from > 55);
   }
+}
+
+TEST(LabelBoxes, CoverNoLabelOfAHeavierContact) {
+  SourceInfo source;
+  source.skin.rows = 40;
+  source.skin.cols = 80;
+  source.skin.sensel_pitch_mm = 0.5;
+  RenderSettings settings;
+  settings.view = TopView{{0, 0}, 10};
+  const Viewport plot{30, 20, 400, 200};
+  const ShownContacts contacts = FieldContacts(1).contacts_of(
+      touched_field(0, 20, 40, {{{4, 8, 20, 22}, 3}, {{4, 8, 23, 25}, 2}, {{12, 16, 20, 22}, 1}}));
+  const auto marks = contact_marks(contacts, Ground(nullptr, source, settings, plot));
+  FakeGui gui;
+  gui.frame([&] {
+    const std::vector<Viewport> labels = label_boxes(marks, plot, 1);
+    ASSERT_EQ(labels.size(), 3U);
+    EXPECT_GT(labels[0].width, 0);
+    EXPECT_EQ(labels[1].width, 0) << "beside a heavier one";
+    EXPECT_GT(labels[2].width, 0);
+  });
 }
 
 /// Draws while due; returns the number of frames.

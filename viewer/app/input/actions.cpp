@@ -155,23 +155,6 @@ void clear_marks(AppState& state) {
   state.marks.selection.reset();
 }
 
-void keep_selection(AppState& state) {
-  if (!state.marks.selection) {
-    state.window.notice.fail("select a part first; drag over the field");
-    return;
-  }
-  if (state.marks.boxes.size() == NamedBoxes::kMost) {
-    state.window.notice.fail(fmt::format("{} boxes at most; remove one", NamedBoxes::kMost));
-    return;
-  }
-  int number = 1;
-  while (std::ranges::find(state.marks.boxes, number, &NamedBox::number) != state.marks.boxes.end())
-    ++number;
-  state.marks.boxes.push_back({fmt::format("box {}", number), state.marks.selection->rect, number});
-  state.marks.selection.reset();
-  state.marks.names_box = state.window.show_panels;
-}
-
 void change_speed(AppState& state, int steps) {
   const double speed = state.source.player->state().speed;
   constexpr double kTolerance = 1e-9;

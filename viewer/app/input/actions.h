@@ -38,10 +38,7 @@ void select_pillars(AppState& state, const PillarRect& rect);
 /// Selects the extent of a contact; moves the view if its centre of pressure is out of sight.
 void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
                   const PillarRect& extent);
-void clear_marks(AppState& state);  ///< named boxes stay
-
-/// Makes the selection a named box, whose name can be typed next.
-void keep_selection(AppState& state);
+void clear_marks(AppState& state);
 
 /// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);

@@ -6,7 +6,7 @@
 
 namespace pillarfield::viewer {
 
-/// Draws numbered pins, named boxes, the selection and the pillar under the cursor over the
+/// Draws numbered pins, the selection and the pillar under the cursor over the
 /// picture; files do not include them.
 void draw_marks(const AppState& state, const FieldPlace& place);
 

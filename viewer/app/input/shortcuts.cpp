@@ -175,8 +175,6 @@ constexpr std::array kShortcuts{
                command.state.window.show_panels = !command.state.window.show_panels;
              }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_O), "O", "keep the selection as a named box",
-             [](const Command& command) { keep_selection(command.state); }},
     Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and selection", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",

@@ -29,15 +29,12 @@ void pillar_panel(AppState& state);
 /// regions, of sensels the pressure.
 void selection_panel(AppState& state);
 
-/// The named boxes: force, shear and mean pressure of each; names can be edited, boxes removed.
-void boxes_panel(AppState& state);
-
 /// The contacts of the field on display, heaviest first, and their total. A click selects the
 /// extent of a contact.
 void contacts_panel(AppState& state, const FieldPlace& place);
 
-/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins,
-/// named boxes and selection. The wheel zooms, a drag pans, a click seeks.
+/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins
+/// and selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
@@ -88,9 +85,5 @@ void transport(const Command& command);
 /// Sums over the selection in the field on display; both must exist. Cached per frame and
 /// rectangle, since a square metre takes milliseconds.
 [[nodiscard]] const SelectionSums& selection_sums(AppState& state);
-
-/// The same over a rectangle, which `cached` is of; the field must exist.
-[[nodiscard]] const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
-                                           std::optional<CachedSums>& cached);
 
 }  // namespace pillarfield::viewer

@@ -99,26 +99,6 @@ std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width) {
   return widths;
 }
 
-Legend legend_of(std::span<const double> names, const LegendRoom& room) {
-  Legend legend;
-  Legend::Place next{room.title + room.gap, 0};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto fits = [&] {
-      const bool others_follow = next.line + 1 == room.most_lines && i + 1 < names.size();
-      return next.x + names[i] + (others_follow ? room.gap + room.rest : 0) <= room.width;
-    };
-    if (!fits() && next.line + 1 < room.most_lines) next = {0, next.line + 1};
-    legend.lines = next.line + 1;
-    if (!fits()) {
-      legend.rest = next;
-      break;
-    }
-    legend.names.push_back(next);
-    next.x += names[i] + room.gap;
-  }
-  return legend;
-}
-
 PlotTicks ticks_of(const PlotArea& area, const PanelStyle& style) {
   const int most_x = std::max(static_cast<int>(area.box.width / (64 * style.unit)), 2);
   const int most_y = std::max(static_cast<int>(area.box.height / (1.2 * style.line)), 3);

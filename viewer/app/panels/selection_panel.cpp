@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "viewer/app/input/actions.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
@@ -147,8 +146,6 @@ void selection_panel(AppState& state) {
   leave_gap(style, 2);
   draw_tables(style, sums, skin, state.look.settings.units);
   leave_gap(style, 4);
-  const bool keeps = ImGui::Button("Keep as a named box", ImVec2(-1, 0));
-  if (keeps) return keep_selection(state);
   const std::string touched = fmt::format("{} of {} in contact", sums.in_contact, sums.pillars);
   if (!skin.has_pillars()) {
     heading(style, touched);
@@ -163,18 +160,16 @@ void selection_panel(AppState& state) {
   faint_text(style, fault_words(sums).c_str());
 }
 
-const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
-                             std::optional<CachedSums>& cached) {
-  const std::uint64_t frame = state.source.field->index;
-  if (!cached || cached->frame != frame || cached->rect != rect) {
-    const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
-    cached = {frame, rect, sums_over(*state.source.field, rect, pitch_mm)};
-  }
-  return cached->sums;
-}
-
 const SelectionSums& selection_sums(AppState& state) {
-  return sums_of(state, state.marks.selection->rect, state.marks.selection->cached);
+  Selection& selection = *state.marks.selection;
+  const std::uint64_t frame = state.source.field->index;
+  if (!selection.cached || selection.cached->frame != frame ||
+      selection.cached->rect != selection.rect) {
+    const Pitch pitch_mm = state.source.player->info().skin.element_pitch_mm();
+    selection.cached = {frame, selection.rect,
+                        sums_over(*state.source.field, selection.rect, pitch_mm)};
+  }
+  return selection.cached->sums;
 }
 
 }  // namespace pillarfield::viewer

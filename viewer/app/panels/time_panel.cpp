@@ -86,38 +86,21 @@ void add_total(std::vector<Chart>& charts, const Points& points, const Colours& 
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
-/// A part of the skin with its name and the number of its colour.
-struct MarkedPart {
-  std::string name;
-  PillarRect rect;
-  int number;
-};
-
-/// Forces on marked parts of the skin.
-void add_parts(std::vector<Chart>& charts, const AppState& state, const Span& time,
-               const std::string& title, const std::vector<MarkedPart>& parts) {
-  if (parts.empty()) return;
-  Chart normal{title + ", normal", Dimension::force, {}};
-  Chart shear{title + ", |shear|", Dimension::force, {}};
-  for (const auto& [name, rect, number] : parts) {
-    const Points points = state.source.curves->of(rect, time.from, time.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(number, state.look.settings.theme));
+/// Forces on pins.
+void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time) {
+  if (state.marks.pins.empty()) return;
+  Chart normal{"Pins, normal", Dimension::force, {}};
+  Chart shear{"Pins, |shear|", Dimension::force, {}};
+  for (const Pin& pin : state.marks.pins) {
+    const Points points =
+        state.source.curves->of(rect_of(pin), time.from, time.to, kMostShownPoints);
+    const ImU32 colour = packed(pin_colour(pin.number, state.look.settings.theme));
+    const std::string name = std::to_string(pin.number);
     normal.curves.push_back({name, points, normal_of, colour});
     shear.curves.push_back({name, points, shear_of, colour});
   }
   charts.push_back(std::move(normal));
   if (state.source.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
-}
-
-void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
-  std::vector<MarkedPart> boxes;
-  for (const NamedBox& box : state.marks.boxes) boxes.push_back({box.name, box.rect, box.number});
-  std::vector<MarkedPart> pins;
-  for (const Pin& pin : state.marks.pins) {
-    pins.push_back({std::to_string(pin.number), rect_of(pin), pin.number});
-  }
-  add_parts(charts, state, time, "Boxes", boxes);
-  add_parts(charts, state, time, "Pins", pins);
 }
 
 void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
@@ -150,7 +133,7 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   std::vector<Chart> charts;
   add_total(charts, state.source.curves->total(time.from, time.to, kMostShownPoints), colours,
             pillars);
-  add_marks(charts, state, time);
+  add_pins(charts, state, time);
   add_selection(charts, state, time, colours, pillars);
   set_rounding(charts, state.source.player->info());
   for (Chart& chart : charts) chart.unit = state.look.settings.units.of(chart.dimension);
@@ -196,7 +179,6 @@ struct ChartFrame {
   double lasts_s = 0;
   double label_width = 0;
   std::vector<Span> gaps;  ///< of time without frames
-  int title_lines = 1;     ///< of titles and names
 };
 
 /// Stretches of time in which a sensor sent nothing, the last of them up to now.
@@ -260,42 +242,25 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
   }
 }
 
-std::string chart_title(const Chart& chart) {
-  return fmt::format("{}, {}", chart.title, chart.unit.name);
-}
-
-Legend chart_legend(const Chart& chart, double width, const PanelStyle& style) {
-  constexpr int kMostLines = 2;
-  std::vector<double> names;
-  for (const Curve& curve : chart.curves) names.push_back(width_of(curve.name));
-  return legend_of(names, {.title = width_of(chart_title(chart)) + 2 * style.unit,
-                           .width = width,
-                           .gap = 10 * style.unit,
-                           .rest = width_of("+ 99"),
-                           .most_lines = kMostLines});
-}
-
 /// Title, unit and the names of the curves in their colours.
 void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
                 const PanelStyle& style) {
-  draw_text(list, {outer.x, outer.y}, style.faint, chart_title(chart));
-  const Legend legend = chart_legend(chart, outer.width, style);
-  const auto place = [&](const Legend::Place& at) {
-    return Vec2{outer.x + at.x, outer.y + at.line * style.line};
-  };
-  for (std::size_t i = 0; i < legend.names.size(); ++i) {
-    draw_text(list, place(legend.names[i]), chart.curves[i].colour, chart.curves[i].name);
+  const std::string title = fmt::format("{}, {}", chart.title, chart.unit.name);
+  draw_text(list, {outer.x, outer.y}, style.faint, title);
+  double x = outer.x + width_of(title) + 12 * style.unit;
+  for (const Curve& curve : chart.curves) {
+    const double width = width_of(curve.name);
+    if (x + width > outer.x + outer.width) break;
+    draw_text(list, {x, outer.y}, curve.colour, curve.name);
+    x += width + 10 * style.unit;
   }
-  if (!legend.rest) return;
-  const std::size_t others = chart.curves.size() - legend.names.size();
-  draw_text(list, place(*legend.rest), style.faint, fmt::format("+ {}", others));
 }
 
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   // The axes begin half a line lower.
-  const double title = (frame.title_lines - 0.1) * style.line;
+  const double title = 0.9 * style.line;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
   const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
   draw_title(list, chart, outer, style);
@@ -329,7 +294,8 @@ double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
 
 /// Charts in rows that fill the height that is left, as many per row as fit; in a place that is
 /// high below each other.
-void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const PanelStyle& style) {
+void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
+                 const PanelStyle& style) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
@@ -337,12 +303,9 @@ void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const Panel
   const std::size_t beside = available.x > available.y ? std::min(fitting, charts.size()) : 1;
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
-  for (const Chart& chart : charts) {
-    frame.title_lines = std::max(frame.title_lines, chart_legend(chart, width, style).lines);
-  }
   const double height =
       std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 4 * style.unit,
-               kChartHeight * style.unit + (frame.title_lines - 1) * style.line);
+               kChartHeight * style.unit);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
     const ImVec2 corner = ImGui::GetCursorScreenPos();

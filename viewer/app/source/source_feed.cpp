@@ -206,7 +206,6 @@ void SourceFeed::attend_survey(bool selecting) {
   if (marks.selection && selecting) return;
   std::vector<PillarRect> rects;
   for (const Pin& pin : marks.pins) rects.push_back(rect_of(pin));
-  for (const NamedBox& box : marks.boxes) rects.push_back(box.rect);
   if (marks.selection) rects.push_back(marks.selection->rect);
   Survey* const survey = state_->source.survey.get();
   if (rects != measured_) {
