@@ -124,7 +124,7 @@ class Application {
 
 Application::Application(const Options& options)
     : options_(options),
-      choices_{user_.recent(), scenes_at_hand(), {}},
+      choices_{user_.recent(), scenes_at_hand()},
       window_("Pillarfield", options.width, options.height),
       instance_(Window::extensions(), options.validate),
       surface_(window_.make_surface(instance_)),
@@ -270,23 +270,12 @@ void Application::serve() {
   pending_.quit = asked.quit;
   if (!asked.anything()) return;
   writer_.serve(asked, place_, [this] { return pixels(); });
-  if (asked.truth) {
-    presenter_.clear();
-    drawn_settings_.reset();
-    try {
-      feed_.toggle_truth();
-    } catch (const Error& error) {
-      state_.window.notice.fail(error.what());
-    }
-  }
   redraws_.input(Window::now_s());
 }
 
 void Application::serve_open() {
   if (pending_.open.empty()) return;
   feed_.give_up();  // It may wait for a sensor for ever.
-  options_.beside.clear();
-  options_.truth = false;
   options_.first_frame = 0;
   at_start_ = false;
   chosen_s_ = Window::now_s();
@@ -304,29 +293,24 @@ bool Application::fit_to_window() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return false;
   arrange();
-  std::vector<Presenter::Place> places;
-  if (shows_source()) places.push_back(place_in_window(place_.area));
-  if (shows_source() && state_.source.beside != nullptr) {
-    places.push_back(place_in_window(second_half(screen_.field, state_.look.settings)));
-  }
-  const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
+  std::optional<Presenter::Place> place;
+  if (shows_source()) place = place_in_window(place_.area);
+  const bool fits = !presenter_.stale() && size == sized_for_ && place == presenter_.place() &&
                     scale() == presenter_.gui().scale();
   if (fits) return true;
   sized_for_ = size;
   drawn_settings_.reset();
-  return presenter_.resize(size, places, scale());
+  return presenter_.resize(size, place, scale());
 }
 
 /// Computes the layout for the current window.
 void Application::arrange() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return;
-  const bool alone = state_.source.beside == nullptr;
   state_.look.settings.scale = scale();
-  state_.look.settings.colour_bar = alone;
   const Viewport before = place_.area;
   screen_ = divide(size.width, size.height, scale(), sides_of(state_));
-  place_.area = alone ? screen_.field : first_half(screen_.field, state_.look.settings);
+  place_.area = screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
   if (moved && state_.look.view_is_fitted && state_.source.player != nullptr) {
     reset_view(state_, place_);
@@ -336,7 +320,7 @@ void Application::arrange() {
 void Application::draw() {
   if (shows_source()) return draw_source();
   draw_page();
-  static_cast<void>(presenter_.draw({}));
+  static_cast<void>(presenter_.draw(std::nullopt));
   redraws_.drawn(Window::now_s());
 }
 
@@ -348,19 +332,10 @@ void Application::draw_source() {
   begin_gui_frame();
   draw_gui(command(), screen_, device_.name());
   ImGui::Render();
-  const bool new_settings = drawn_settings_ != settings;
-  const bool new_picture = source.field && (feed_.has_field() || new_settings);
-  RenderSettings beside_settings = settings;
-  beside_settings.colour_bar = true;
-  std::vector<std::optional<Presenter::Picture>> pictures(presenter_.places().size());
-  if (new_picture) {
-    pictures[0].emplace(Presenter::Picture{*source.field, *place_.source, settings});
-  }
-  if (pictures.size() > 1 && source.beside_field && (feed_.has_beside() || new_settings)) {
-    pictures[1].emplace(
-        Presenter::Picture{*source.beside_field, source.beside->info(), beside_settings});
-  }
-  if (!presenter_.draw(pictures)) return;
+  const bool new_picture = source.field && (feed_.has_field() || drawn_settings_ != settings);
+  std::optional<Presenter::Picture> picture;
+  if (new_picture) picture.emplace(Presenter::Picture{*source.field, *place_.source, settings});
+  if (!presenter_.draw(picture)) return;
   // Not before there is something to see, for who waits for it.
   if (new_picture && !drawn_settings_) window_.set_title(place_.source->name + " – Pillarfield");
   measure(begin_s, new_picture);
@@ -378,7 +353,6 @@ void Application::draw_page() {
   if (const Loading* const loading = feed_.loading()) {
     loading_page(loading->options().source.filename().string(), loading->message(), all);
   } else {
-    choices_.pictures = presenter_.gui().pictures();
     const std::string chosen = start_page(choices_, all, state_.window.notice, scale());
     if (!chosen.empty()) pending_.open = chosen;
   }
@@ -417,14 +391,7 @@ void Application::watch_notice() {
   last_notice_.assign(notice);
 }
 
-/// All pictures, side by side.
-Pixels Application::pixels() const {
-  Pixels all = read_pixels(device_, presenter_.image(0));
-  for (std::size_t i = 1; i < presenter_.places().size(); ++i) {
-    all = side_by_side(all, read_pixels(device_, presenter_.image(i)));
-  }
-  return all;
-}
+Pixels Application::pixels() const { return read_pixels(device_, presenter_.image()); }
 
 void Application::print_statistics() const {
   const Player* const player = state_.source.player.get();

@@ -127,7 +127,7 @@ void draw_label(ImDrawList& list, const Viewport& box, const std::string& words,
 
 std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Ground& ground) {
   std::vector<ContactMark> marks;
-  const std::size_t count = std::min(contacts.above_noise, kMostContactsDrawn);
+  const std::size_t count = std::min(contacts.heaviest.size(), kMostContactsDrawn);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = contacts.heaviest[i];
     const TrackedContact& contact = contacts.found.contacts[place];
@@ -148,9 +148,9 @@ std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Grou
 }
 
 std::string contacts_left_out(const ShownContacts& contacts) {
-  if (contacts.above_noise <= kMostContactsDrawn) return {};
+  if (contacts.heaviest.size() <= kMostContactsDrawn) return {};
   return fmt::format("{} of {} contacts are drawn, the heaviest", kMostContactsDrawn,
-                     contacts.above_noise);
+                     contacts.heaviest.size());
 }
 
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const Ground& ground) {

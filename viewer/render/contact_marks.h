@@ -25,9 +25,9 @@ struct ContactMark {
   std::string words;               ///< "3  50.1 N": id and normal force
 };
 
-/// Marks of the kMostContactsDrawn heaviest contacts above the noise, heaviest first, without those
-/// out of sight or partly behind the eye. An arrow is at most 3 kContactArrowPixels long, and no
-/// longer than the diagonal of its contact or 16 pixels at scale 1.
+/// Marks of the kMostContactsDrawn heaviest contacts, heaviest first, without those out of sight or
+/// partly behind the eye. An arrow is at most 3 kContactArrowPixels long, and no longer than the
+/// diagonal of its contact or 16 pixels at scale 1.
 [[nodiscard]] std::vector<ContactMark> contact_marks(const ShownContacts& contacts,
                                                      const Ground& ground);
 

@@ -27,7 +27,7 @@ class FakeProducer final : public FieldProducer {
     info_.skin.rows = side * kRows;
     info_.skin.cols = side * kCols;
     info_.frames = kFrames;
-    info_.has_readings = info_.has_uncertainty = info_.has_truth = true;
+    info_.has_readings = info_.has_uncertainty = true;
     info_.has_angles = layout == SkinLayout::pillars;
     info_.contacts.layout = layout;
   }

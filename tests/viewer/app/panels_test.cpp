@@ -9,7 +9,6 @@
 #include "tests/io/sample_files.h"
 #include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/export/export.h"
-#include "viewer/app/source/start_pictures.h"
 #include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
@@ -31,7 +30,6 @@ struct Panels : testing::Test {
 
 TEST_F(Panels, EachWidgetActs) {
   RenderSettings& settings = fake.state.look.settings;
-  fake.state.source.open_truth = []() -> std::unique_ptr<FieldProducer> { return nullptr; };
   set_range(fake.state, {0, 100});
   press({"View", "Fit"});
   EXPECT_EQ(settings.range, (Range{0, 3}));
@@ -44,8 +42,6 @@ TEST_F(Panels, EachWidgetActs) {
     press({"View", name});
     EXPECT_NE(settings.*layer, before) << name;
   }
-  press({"View", "truth"});
-  EXPECT_TRUE(fake.pending.truth);
   press({"View", "light"});
   EXPECT_EQ(settings.theme, Theme::light);
   press({"View", "3-D"});
@@ -109,8 +105,8 @@ std::set<std::string> available(const SourceInfo& source) {
 TEST(QuantitiesOfSensels, AreThoseOfNormalForce) {
   SourceInfo source = FakeProducer(SkinLayout::sensels).info();
   EXPECT_EQ(available(source),
-            (std::set<std::string>{"difference", "normal", "pressure", "status", "uncertainty"}));
-  source.has_uncertainty = source.has_truth = false;
+            (std::set<std::string>{"normal", "pressure", "status", "uncertainty"}));
+  source.has_uncertainty = false;
   EXPECT_EQ(available(source), (std::set<std::string>{"normal", "pressure", "status"}));
   EXPECT_EQ(available(FakeProducer().info()).size(), static_cast<std::size_t>(kQuantities));
 }
@@ -170,16 +166,15 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
   }
 }
 
-TEST(StartPage, APictureAndARecentSourceAreChosenByTheirNames) {
-  StartChoices choices{{"old.h5"}, {"scenes/demo.toml", "scenes/wave.toml"}, {}};
-  choices.pictures.resize(embedded_pictures().size());
+TEST(StartPage, ASceneAndARecentSourceAreChosenByTheirNames) {
+  const StartChoices choices{{"old.h5"}, {"scenes/demo.toml", "scenes/wave.toml"}};
   FakeGui gui;
   std::string chosen;
   const auto draw = [&] {
     const std::string source = start_page(choices, {0, 0, 500, 1600}, "", 1);
     if (!source.empty()) chosen = source;
   };
-  gui.press({"demo"}, draw, "start");
+  gui.press({"Scenes, simulated as they are opened", "demo"}, draw, "start");
   EXPECT_EQ(chosen, "scenes/demo.toml");
   gui.press({"recent", "old.h5"}, draw, "start");
   EXPECT_EQ(chosen, "old.h5");

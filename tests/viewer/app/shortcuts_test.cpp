@@ -23,8 +23,8 @@ auto state_of(const FakeAppState& fake) {
   return std::tuple(state.look.settings, state.marks.pins.size(), state.marks.selection.has_value(),
                     state.window.show_help, state.window.show_panels, player.frame, player.playing,
                     player.loops, player.follows, player.speed, pending.quit, pending.picture,
-                    pending.video, pending.table, pending.stop, pending.record, pending.truth,
-                    pending.start, state.window.notice);
+                    pending.video, pending.table, pending.stop, pending.record, pending.start,
+                    state.window.notice);
 }
 
 /// A state that every shortcut changes.

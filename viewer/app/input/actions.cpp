@@ -25,12 +25,6 @@ View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
   return fit_top(place.skin(), layout.plot);
 }
 
-/// Adds what the quantity needs to the field on display.
-void complete_field(AppState& state) {
-  if (state.look.settings.quantity != Quantity::difference || !state.source.field) return;
-  if (state.source.open_truth) add_difference(*state.source.field, state.source.open_truth);
-}
-
 }  // namespace
 
 void show_quantity(AppState& state, Quantity quantity) {
@@ -94,7 +88,6 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit) {
 void show_contacts(AppState& state, bool shown) {
   state.look.settings.contacts = shown;
   state.source.player->set_contacts(shown);
-  if (state.source.beside != nullptr) state.source.beside->set_contacts(shown);
 }
 
 void reset_view(AppState& state, const FieldPlace& place) {
@@ -173,7 +166,6 @@ void change_speed(AppState& state, int steps) {
 
 void take_field(AppState& state, ShownField field) {
   state.source.field = std::move(field);
-  complete_field(state);
   if (state.look.fit_each_field) fit_range(state);
 }
 

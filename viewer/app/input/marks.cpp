@@ -79,13 +79,6 @@ class Marker {
 
 }  // namespace
 
-FieldPlace beside_place(const AppState& state, const FieldPlace& place) {
-  FieldPlace beside = place;
-  beside.area.x += place.area.width;
-  beside.source = &state.source.beside->info();
-  return beside;
-}
-
 void draw_marks(const AppState& state, const FieldPlace& place) {
   const Marker marker(state, place);
   marker.clip();

@@ -10,9 +10,6 @@ namespace pillarfield::viewer {
 /// picture; files do not include them.
 void draw_marks(const AppState& state, const FieldPlace& place);
 
-/// The place of the second source, at the right of the first.
-[[nodiscard]] FieldPlace beside_place(const AppState& state, const FieldPlace& place);
-
 /// Gives each unnumbered pin the least free number; a pin keeps its number and colour.
 void number_pins(Marks& marks);
 

@@ -151,7 +151,6 @@ constexpr std::array kShortcuts{
     shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
     shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
-    shows<Quantity::difference>(plain(GLFW_KEY_E), "E", "difference to the true forces"),
 
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows",
              toggle_of_pillars<&RenderSettings::arrows>, with_pillars},
@@ -168,8 +167,6 @@ constexpr std::array kShortcuts{
     Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
              [](const Command& command) { fit_range(command.state); }},
     Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
-    Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
-             ask<&PendingActions::truth>},
     Shortcut{Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
              [](const Command& command) {
                command.state.window.show_panels = !command.state.window.show_panels;

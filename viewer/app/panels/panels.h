@@ -8,7 +8,6 @@
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/render/gui_context.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
 
@@ -67,7 +66,6 @@ void status_row(const AppState& state, const std::string& gpu);
 struct StartChoices {
   std::vector<std::string> recent;
   std::vector<std::filesystem::path> scenes;
-  std::vector<TexturePlace> pictures;  ///< of embedded_pictures(), in the texture of the font
 };
 
 /// The page of a window without a source: pictures of scenes, a line for the name of a source,

@@ -120,40 +120,16 @@ void SourceFeed::begin(const Options& options) {
   if (options.first_frame != 0) source.player->seek(options.first_frame);
   // After seek(): contacts are tracked from the first shown frame on.
   source.player->set_contacts(state_->look.settings.contacts);
-  begin_beside();
   if (!options.paused) source.player->play();
-}
-
-void SourceFeed::begin_beside() {
-  Player* const beside = state_->source.beside.get();
-  if (beside == nullptr) return;
-  beside->set_contacts(state_->look.settings.contacts);
-  beside->on_new_field([this] { tell(); });
 }
 
 void SourceFeed::end() {
   ShownSource& source = state_->source;
   if (source.player != nullptr) source.player->on_new_field({});
-  if (source.beside != nullptr) source.beside->on_new_field({});
   if (source.survey != nullptr) source.survey->on_progress({});
-  held_.reset();
   source.field.reset();
-  source.beside_field.reset();
   source = {};
   measured_.clear();
-}
-
-void SourceFeed::toggle_truth() {
-  ShownSource& source = state_->source;
-  if (source.beside == nullptr) {
-    show_truth(source);
-    source.beside->seek(source.field->index);
-    return begin_beside();
-  }
-  source.beside->on_new_field({});
-  source.beside_field.reset();
-  source.beside.reset();
-  source.beside_is_truth = false;
 }
 
 bool SourceFeed::take_fields(bool selecting) {
@@ -162,35 +138,19 @@ bool SourceFeed::take_fields(bool selecting) {
   return take_field() || message;
 }
 
-/// True for a new field of either source.
 bool SourceFeed::take_field() {
-  ShownSource& source = state_->source;
-  bool failed = false;
-  if (!held_) {
-    taken_s_ = produced_s_;
-    try {
-      held_ = source.player->take();
-    } catch (const Error& error) {  // A sensor leaves its picture; a file ends the program.
-      if (source.player->live() == nullptr) throw;
-      state_->window.notice.fail(error.what());
-      failed = true;
-    }
-    if (held_ && source.beside != nullptr) source.beside->seek(held_->index);
+  taken_s_ = produced_s_;
+  try {
+    auto field = state_->source.player->take();
+    if (!field) return false;
+    viewer::take_field(*state_, *std::move(field));
+  } catch (const Error& error) {  // A sensor leaves its picture; a file ends the program.
+    if (state_->source.player->live() == nullptr) throw;
+    state_->window.notice.fail(error.what());
+    return true;
   }
-  const bool beside = take_beside();
-  if (!held_ || !source.is_in_step(held_->index)) return beside || failed;
-  viewer::take_field(*state_, *std::exchange(held_, std::nullopt));
   load_follower_.take_field(*state_);
   return field_is_new_ = true;
-}
-
-bool SourceFeed::take_beside() {
-  ShownSource& source = state_->source;
-  if (source.beside == nullptr) return false;
-  auto field = source.beside->take();
-  if (!field) return false;
-  source.beside_field = std::move(*field);
-  return beside_is_new_ = true;
 }
 
 std::optional<double> SourceFeed::latency_ms() const {

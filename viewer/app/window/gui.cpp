@@ -128,10 +128,10 @@ Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
   RenderSettings settings;
   settings.scale = scale;
   const Margins margins = margins_of(settings);
-  const double around = sides.pictures * (margins.left + margins.right) + margins.legend;
+  const double around = margins.left + margins.right + margins.legend;
   const double across = margins.top + margins.bottom;
-  return {field.width - around - sides.pictures * sides.aspect * (field.height - across),
-          field.height - across - (field.width - around) / (sides.pictures * sides.aspect)};
+  return {field.width - around - sides.aspect * (field.height - across),
+          field.height - across - (field.width - around) / sides.aspect};
 }
 
 }  // namespace
@@ -139,11 +139,8 @@ Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
 Sides sides_of(const AppState& state) {
   if (!state.window.show_panels || state.source.player == nullptr) return {};
   const SkinSize skin = skin_size(state.source.player->info());
-  Sides sides{.column = true,
-              .aspect = skin.width_mm / skin.height_mm,
-              .pictures = state.source.beside == nullptr ? 1 : 2};
-  if (!has_curves(state)) return sides;
-  sides.row = state.window.folds_curves ? kFoldedRow : kRow;
+  Sides sides{.column = true, .aspect = skin.width_mm / skin.height_mm};
+  if (has_curves(state)) sides.row = state.window.folds_curves ? kFoldedRow : kRow;
   return sides;
 }
 
@@ -195,7 +192,6 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   const Theme theme = state.look.settings.theme;
   const float padding = ImGui::GetStyle().WindowPadding.x;
   draw_marks(state, command.place);
-  if (state.source.beside != nullptr) draw_marks(state, beside_place(state, command.place));
   draw_silence(state, command.place.area);
   draw_status(state, screen.status, gpu);
   draw_column(command, screen.column);
