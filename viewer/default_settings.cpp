@@ -6,7 +6,7 @@
 #include "pillarfield/error.h"
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
-#include "viewer/source/selection.h"
+#include "viewer/source/curves.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -82,13 +82,10 @@ std::uint64_t most_loaded_frame(FieldProducer& producer) {
   const std::uint64_t frames = producer.info().frames;
   const std::uint64_t compared = std::min(frames, kMostCompared);
   std::uint64_t most_loaded = 0;
-  double most_n = 0;
+  float most_n = 0;
   for (std::uint64_t i = 0; i < compared; ++i) {
     const ShownField field = producer.produce((2 * i + 1) * frames / (2 * compared));
-    const ForceFieldView& forces = field.forces;
-    const double total_n =
-        sums_over(field, {0, forces.rows, 0, forces.cols}, producer.info().skin.element_pitch_mm())
-            .normal;
+    const float total_n = curve_point(field, producer.info().skin.element_pitch_mm()).normal;
     if (total_n > most_n) {
       most_n = total_n;
       most_loaded = field.index;

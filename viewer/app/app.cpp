@@ -202,7 +202,7 @@ void Application::close() {
 /// Progress of other threads, and new fields.
 void Application::take_news() {
   bool news = feed_.take_news();
-  if (shows_source()) news |= feed_.take_fields(controls_.is_dragging());
+  if (shows_source()) news |= feed_.take_fields();
   if (news) redraws_.field();
 }
 

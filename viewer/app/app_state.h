@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,19 +33,6 @@ struct Pin {
   int number = 0;  ///< 1..kMostPins, see number_pins(); 0: not yet numbered
 };
 
-/// Sums of a rectangle in one frame.
-struct CachedSums {
-  std::uint64_t frame = 0;
-  PillarRect rect;
-  SelectionSums sums;
-};
-
-/// A dragged rectangle.
-struct Selection {
-  PillarRect rect;
-  std::optional<CachedSums> cached = {};  ///< see selection_sums()
-};
-
 /// The look of the picture.
 struct ShownLook {
   RenderSettings settings;
@@ -64,7 +50,6 @@ struct Marks {
 
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
-  std::optional<Selection> selection;
 };
 
 /// The window around the picture.

@@ -77,22 +77,6 @@ TEST_F(Panels, PinsAreChosenByTheirNumbersAndRemoved) {
   EXPECT_EQ(fake.state.marks.pins.size(), 1U) << "a pin outside the field";
 }
 
-TEST_F(Panels, SumsOfTheSelectionFollowRectangleAndFrame) {
-  fake.state.marks.selection = Selection{{4, 20, 8, 30}};
-  const auto sum = [&](const PillarRect& rect) {
-    return sums_over(*fake.state.source.field, rect, fake.player().info().skin.element_pitch_mm())
-        .normal;
-  };
-  EXPECT_EQ(selection_sums(fake.state).normal, sum({4, 20, 8, 30}));
-  fake.state.marks.selection->rect.row_end = 14;
-  const double second = sum({4, 14, 8, 30});
-  EXPECT_EQ(selection_sums(fake.state).normal, second);
-  fake.state.source.field->forces.normal = fake.state.source.field->forces.shear_x;
-  EXPECT_EQ(selection_sums(fake.state).normal, second) << "cached for the frame";
-  ++fake.state.source.field->index;
-  EXPECT_LT(selection_sums(fake.state).normal, second);
-}
-
 std::set<std::string> available(const SourceInfo& source) {
   std::set<std::string> names;
   for (int i = 0; i < kQuantities; ++i) {
@@ -136,7 +120,6 @@ std::string words_of_panels(SkinLayout layout) {
       FieldContacts(source.skin.element_pitch_mm(), source.contacts)
           .contacts_of(*fake.state.source.field));
   toggle_pin(fake.state, {3, 4});
-  select_pillars(fake.state, {1, 8, 2, 9});
   fake.state.marks.hovered = PillarIndex{5, 6};
   FakeGui gui;
   std::string words;
@@ -157,7 +140,7 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
   const std::string words = words_of_panels(SkinLayout::sensels);
   const std::string others = words_of_panels(SkinLayout::pillars);
   for (const std::string word : {"illar", "hear", "egion", "gnitude", "ambig", "arity", "slip", "φ",
-                                 "θ", "moment", "arrows", "hatch", "sectors"}) {
+                                 "θ", "arrows", "hatch", "sectors"}) {
     EXPECT_EQ(words.find(word), std::string::npos) << word << " in " << words;
     EXPECT_NE(others.find(word), std::string::npos) << word;
   }
@@ -180,15 +163,13 @@ TEST(StartPage, ASceneAndARecentSourceAreChosenByTheirNames) {
   EXPECT_EQ(chosen, "old.h5");
 }
 
-TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
+TEST(ShowContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
   FakeAppState fake;
   const View whole = fake.state.look.settings.view;
-  const PillarRect extent{2, 4, 20, 24};
-  mark_contact(fake.state, fake.place, {3, 2}, extent);
-  EXPECT_EQ(fake.state.marks.selection.value().rect, extent);
+  show_contact(fake.state, fake.place, {3, 2});
   EXPECT_EQ(fake.state.look.settings.view, whole);
   fake.state.look.settings.view = TopView{{-10, -5}, 500};
-  mark_contact(fake.state, fake.place, {3, 2}, extent);
+  show_contact(fake.state, fake.place, {3, 2});
   EXPECT_EQ(std::get<TopView>(fake.state.look.settings.view).centre_mm, (Vec2{3, 2}));
   EXPECT_FALSE(fake.state.look.view_is_fitted);
 }

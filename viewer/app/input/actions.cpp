@@ -125,13 +125,7 @@ void toggle_pin(AppState& state, PillarIndex pillar) {
   number_pins(state.marks);
 }
 
-void select_pillars(AppState& state, const PillarRect& rect) {
-  state.marks.selection = Selection{rect};
-}
-
-void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
-                  const PillarRect& extent) {
-  select_pillars(state, extent);
+void show_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre) {
   const Vec2 point{centre.x_mm, centre.y_mm};
   const auto pixel = pixel_of(place, state.look.settings, point);
   if (pixel && contains(place.plot(state.look.settings), *pixel)) return;
@@ -141,11 +135,6 @@ void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& ce
     std::get<OrbitView>(state.look.settings.view).target_mm = point;
   }
   state.look.view_is_fitted = false;
-}
-
-void clear_marks(AppState& state) {
-  state.marks.pins.clear();
-  state.marks.selection.reset();
 }
 
 void change_speed(AppState& state, int steps) {

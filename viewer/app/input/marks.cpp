@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "viewer/app/panels/panel_style.h"
-#include "viewer/app/window/style.h"
 #include "viewer/render/ground.h"
 #include "viewer/render/imgui_point.h"
 
@@ -27,10 +26,10 @@ class Marker {
         list_(*ImGui::GetBackgroundDrawList()),
         unit_(static_cast<float>(state.look.settings.scale)) {}
 
-  void outline(const PillarRect& rect, ImU32 colour) const {
-    const auto points = ground_.outline(rect);
+  void outline(const PillarIndex& pillar) const {
+    const auto points = ground_.outline({pillar.row, pillar.row + 1, pillar.col, pillar.col + 1});
     draw_outline(list_, points, IM_COL32(0, 0, 0, 200), 3 * unit_);
-    draw_outline(list_, points, colour, 1.4f * unit_);
+    draw_outline(list_, points, IM_COL32(255, 255, 255, 230), 1.4f * unit_);
   }
 
   void pin(const Pin& pin, bool inspected) const {
@@ -82,10 +81,7 @@ class Marker {
 void draw_marks(const AppState& state, const FieldPlace& place) {
   const Marker marker(state, place);
   marker.clip();
-  if (state.marks.selection)
-    marker.outline(state.marks.selection->rect, palette_of(Theme::dark).accent);
-  if (state.marks.hovered)
-    marker.outline(rect_of(Pin{*state.marks.hovered}), IM_COL32(255, 255, 255, 230));
+  if (state.marks.hovered) marker.outline(*state.marks.hovered);
   for (std::size_t i = 0; i < state.marks.pins.size(); ++i) {
     marker.pin(state.marks.pins[i], i + 1 == state.marks.pins.size());
   }
@@ -119,10 +115,6 @@ void number_pins(Marks& marks) {
     while (is_taken(marks, number)) ++number;
     pin.number = number;
   }
-}
-
-PillarRect rect_of(const Pin& pin) {
-  return {pin.pillar.row, pin.pillar.row + 1, pin.pillar.col, pin.pillar.col + 1};
 }
 
 void inspect_pin(Marks& marks, std::size_t index) {

@@ -107,14 +107,14 @@ void take_tare(const Command& command) {
   }
 }
 
-/// Closes help, else stops writing, else clears the marks.
+/// Closes help, else stops writing, else clears the pins.
 void escape(const Command& command) {
   if (command.state.window.show_help) {
     command.state.window.show_help = false;
   } else if (command.state.window.writing) {
     command.pending.stop = true;
   } else {
-    clear_marks(command.state);
+    command.state.marks.pins.clear();
   }
 }
 
@@ -172,7 +172,7 @@ constexpr std::array kShortcuts{
                command.state.window.show_panels = !command.state.window.show_panels;
              }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and selection", escape},
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
              ask<&PendingActions::picture>},
@@ -198,7 +198,7 @@ constexpr std::array kShortcuts{
 constexpr std::array kMouseHelp{
     MouseHelp{"hover", "values under the cursor"},
     MouseHelp{"click", "pin or unpin a place"},
-    MouseHelp{"drag", "select a part; in 3-D turn the view"},
+    MouseHelp{"drag", "move the view; in 3-D turn it"},
     MouseHelp{"right drag, Shift+drag", "move the view"},
     MouseHelp{"wheel", "zoom about the cursor"},
     MouseHelp{"double click", "the whole skin"},

@@ -140,8 +140,7 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
   const SkinLayout layout = state.source.player->info().skin.layout;
   if (const auto clicked =
           contact_table(style, contacts, layout, state.look.settings.units.pressure)) {
-    mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
-                 contacts.extents[*clicked]);
+    show_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure);
   }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     faint_text(style, warning.c_str());

@@ -24,16 +24,12 @@ void hover_panel(const AppState& state);
 /// pins.
 void pillar_panel(AppState& state);
 
-/// The selection: total force, centre of pressure, area, peak, mean; of pillars the shares of the
-/// regions, of sensels the pressure.
-void selection_panel(AppState& state);
-
-/// The contacts of the field on display, heaviest first, and their total. A click selects the
-/// extent of a contact.
+/// The contacts of the field on display, heaviest first, and their total. A click brings a
+/// contact into sight.
 void contacts_panel(AppState& state, const FieldPlace& place);
 
-/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins
-/// and selection. The wheel zooms, a drag pans, a click seeks.
+/// Total force, torque and centre of pressure of the whole skin over time. The wheel zooms, a drag
+/// pans, a click seeks.
 void time_panel(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
@@ -79,9 +75,5 @@ void loading_page(const std::string& source, const std::string& message, const V
 /// Controls of the play head in one row: play, step, position, speed, loop, follow. Fills the
 /// current ImGui window.
 void transport(const Command& command);
-
-/// Sums over the selection in the field on display; both must exist. Cached per frame and
-/// rectangle, since a square metre takes milliseconds.
-[[nodiscard]] const SelectionSums& selection_sums(AppState& state);
 
 }  // namespace pillarfield::viewer

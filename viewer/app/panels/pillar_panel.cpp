@@ -147,7 +147,7 @@ void hover_panel(const AppState& state) {
   const PanelStyle style = panel_style(state.look.settings.scale);
   if (!state.source.field || !state.marks.hovered) {
     const char* const name = element_name(state.source.player->info().skin);
-    faint_text(style, fmt::format("A click pins a {}, a drag selects.", name).c_str());
+    faint_text(style, fmt::format("A click pins a {}.", name).c_str());
     return;
   }
   const PillarIndex pillar = *state.marks.hovered;

@@ -65,10 +65,6 @@ struct PlotArea {
 /// of each pixel column.
 [[nodiscard]] std::vector<Vec2> thinned(std::span<const Vec2> curve, const PlotArea& area);
 
-/// Whole pixel widths in proportion to the counts, with sum `width`; at least one pixel for each
-/// positive count if `width` allows. All 0 for zero counts.
-[[nodiscard]] std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width);
-
 /// Ticks of both axes of a plot.
 struct PlotTicks {
   std::vector<Tick> x;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
@@ -49,9 +48,6 @@ double shear_y_of(const CurvePoint& point) { return static_cast<double>(point.sh
 double torque_of(const CurvePoint& point) { return static_cast<double>(point.torque); }
 double centre_x_of(const CurvePoint& point) { return static_cast<double>(point.centre_x_mm); }
 double centre_y_of(const CurvePoint& point) { return static_cast<double>(point.centre_y_mm); }
-double shear_of(const CurvePoint& point) {
-  return std::hypot(shear_x_of(point), shear_y_of(point));
-}
 
 struct Colours {
   ImU32 x, y, normal;
@@ -86,31 +82,6 @@ void add_total(std::vector<Chart>& charts, const Points& points, const Colours& 
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
-/// Forces on pins.
-void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time) {
-  if (state.marks.pins.empty()) return;
-  Chart normal{"Pins, normal", Dimension::force, {}};
-  Chart shear{"Pins, |shear|", Dimension::force, {}};
-  for (const Pin& pin : state.marks.pins) {
-    const Points points =
-        state.source.curves->of(rect_of(pin), time.from, time.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(pin.number, state.look.settings.theme));
-    const std::string name = std::to_string(pin.number);
-    normal.curves.push_back({name, points, normal_of, colour});
-    shear.curves.push_back({name, points, shear_of, colour});
-  }
-  charts.push_back(std::move(normal));
-  if (state.source.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
-}
-
-void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
-                   const Colours& colours, bool pillars) {
-  if (!state.marks.selection) return;
-  const Points points =
-      state.source.curves->of(state.marks.selection->rect, time.from, time.to, kMostShownPoints);
-  charts.push_back(force_chart("Selection", points, colours, pillars));
-}
-
 /// Forces are sums in single precision, torques those times a length.
 void set_rounding(std::vector<Chart>& charts, const SourceInfo& source) {
   constexpr double kRounding = 1e-6;
@@ -131,10 +102,8 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   const Colours colours = colours_of(style, state.look.settings.theme);
   const bool pillars = state.source.player->info().skin.has_pillars();
   std::vector<Chart> charts;
-  add_total(charts, state.source.curves->total(time.from, time.to, kMostShownPoints), colours,
+  add_total(charts, state.source.curves->between(time.from, time.to, kMostShownPoints), colours,
             pillars);
-  add_pins(charts, state, time);
-  add_selection(charts, state, time, colours, pillars);
   set_rounding(charts, state.source.player->info());
   for (Chart& chart : charts) chart.unit = state.look.settings.units.of(chart.dimension);
   return charts;
@@ -249,10 +218,8 @@ void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
   draw_text(list, {outer.x, outer.y}, style.faint, title);
   double x = outer.x + width_of(title) + 12 * style.unit;
   for (const Curve& curve : chart.curves) {
-    const double width = width_of(curve.name);
-    if (x + width > outer.x + outer.width) break;
     draw_text(list, {x, outer.y}, curve.colour, curve.name);
-    x += width + 10 * style.unit;
+    x += width_of(curve.name) + 10 * style.unit;
   }
 }
 
@@ -334,7 +301,6 @@ void draw_progress(const AppState& state, const PanelStyle& style) {
 
 void time_panel(AppState& state) {
   const PanelStyle style = panel_style(state.look.settings.scale);
-  number_pins(state.marks);
   if (state.source.curves == nullptr || !state.source.field) return;
   draw_progress(state, style);
   const auto [first_s, last_s] = state.source.curves->time_span();

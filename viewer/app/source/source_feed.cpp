@@ -5,7 +5,6 @@
 
 #include "pillarfield/error.h"
 #include "viewer/app/input/actions.h"
-#include "viewer/app/input/marks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -129,11 +128,10 @@ void SourceFeed::end() {
   if (source.survey != nullptr) source.survey->on_progress({});
   source.field.reset();
   source = {};
-  measured_.clear();
 }
 
-bool SourceFeed::take_fields(bool selecting) {
-  attend_survey(selecting);
+bool SourceFeed::take_fields() {
+  attend_survey();
   const bool message = attend_sensor();
   return take_field() || message;
 }
@@ -161,18 +159,8 @@ std::optional<double> SourceFeed::latency_ms() const {
   return since_s > 0 ? std::optional(1e3 * (feed_now_s() - since_s)) : std::nullopt;
 }
 
-void SourceFeed::attend_survey(bool selecting) {
-  const Marks& marks = state_->marks;
-  if (marks.selection && selecting) return;
-  std::vector<PillarRect> rects;
-  for (const Pin& pin : marks.pins) rects.push_back(rect_of(pin));
-  if (marks.selection) rects.push_back(marks.selection->rect);
+void SourceFeed::attend_survey() {
   Survey* const survey = state_->source.survey.get();
-  if (rects != measured_) {
-    state_->source.curves->set_rects(rects);
-    if (survey != nullptr) survey->look_again();
-    measured_ = std::move(rects);
-  }
   if (survey == nullptr) return;
   const PlayerState player = state_->source.player->state();
   survey->set_busy(player.playing);

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "viewer/app/app_state.h"
 #include "viewer/app/load_range.h"
@@ -85,9 +84,8 @@ class SourceFeed {
 
   /// True if a thread has progressed.
   [[nodiscard]] bool take_news() { return news_.exchange(false); }
-  /// Takes what is new: fields and messages of a sensor; passes the marks to the survey, a
-  /// selection once it is made. True if there was something.
-  [[nodiscard]] bool take_fields(bool selecting);
+  /// Takes what is new: fields and messages of a sensor. True if there was something.
+  [[nodiscard]] bool take_fields();
 
   // News since drawn().
   [[nodiscard]] bool has_field() const { return field_is_new_; }
@@ -97,7 +95,7 @@ class SourceFeed {
 
  private:
   void tell();
-  void attend_survey(bool selecting);
+  void attend_survey();
   bool attend_sensor();
   bool take_field();
 
@@ -107,7 +105,6 @@ class SourceFeed {
   std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
   double taken_s_ = 0;                  ///< that of the field on display
   bool field_is_new_ = false;
-  std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::uint64_t live_messages_ = 0;
   std::uint64_t live_tares_ = 0;
   LoadFollower load_follower_;

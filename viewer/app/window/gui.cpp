@@ -48,8 +48,6 @@ constexpr std::array kPanels{
     Panel{"Sensor", [](const AppState& state) { return state.source.player->live() != nullptr; },
           sensor_panel},
     Panel{"View", always, view_panel},
-    Panel{"Selection", [](const AppState& state) { return state.marks.selection.has_value(); },
-          [](const Command& command) { selection_panel(command.state); }},
     Panel{"Contacts", [](const AppState& state) { return state.look.settings.contacts; },
           [](const Command& command) { contacts_panel(command.state, command.place); }},
     Panel{"Under the cursor", always, [](const Command& command) { hover_panel(command.state); }},
