@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "pillarfield/status.h"
 #include "viewer/app/input/actions.h"
 #include "viewer/app/input/gui_input.h"
 #include "viewer/app/input/shortcuts.h"

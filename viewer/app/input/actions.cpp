@@ -37,7 +37,6 @@ void show_quantity(AppState& state, Quantity quantity) {
   const bool same_scale = info_of(settings.quantity).scale == info.scale;
   remembered(state) = settings.range;
   settings.quantity = quantity;
-  complete_field(state);
   if (!same_scale) settings.map = default_map(info.scale);
   if (const auto& range = remembered(state); range && !state.look.fit_each_field) {
     settings.range = *range;
