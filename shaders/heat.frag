@@ -25,7 +25,7 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
       const uint status = status_of(pillar);
       flags |= status;
       const float value = value_of(pillar, status);
-      if (kQuantity == kDifference ? value < 0.0 : !is_usable(status)) continue;
+      if (!is_usable(status)) continue;
       sum += value;
       count += 1.0;
     }
@@ -63,7 +63,6 @@ void main() {
       : value_of(pillar, status);
 
   uint special = special_of(status);
-  if (kQuantity == kDifference && special == kIdle && value >= 0.0) special = kMapped;
   const uint entry = special != kMapped ? kFirstSpecial + special : entry_of(value);
   colour = colour_of_word(colours.entries[entry].x);
   if (special == kMapped && is_ambiguous(status) && scene.shown.x != 0u && on_hatch()) {

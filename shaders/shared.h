@@ -53,7 +53,6 @@ PF_CONSTANT uint kStatus = 8u;
 PF_CONSTANT uint kUncertainty = 9u;
 PF_CONSTANT uint kParity = 10u;
 PF_CONSTANT uint kPressure = 11u;
-PF_CONSTANT uint kDifference = 12u;
 
 // Scales, in the order of Scale in viewer/style/quantity.h.
 PF_CONSTANT uint kSequential = 0u;

@@ -70,7 +70,6 @@ float value_of(uint pillar, uint status) {
     case kPhi: return plane_value(scene.angles.z, pillar);
     case kUncertainty: return uncertainty_of(pillar, status);
     case kParity: return parity_of(pillar);
-    case kDifference: return uintBitsToFloat(readings[pillar]);  // Below 0 without a value.
   }
   return 0.0;
 }

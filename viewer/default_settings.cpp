@@ -6,7 +6,7 @@
 #include "pillarfield/error.h"
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
-#include "viewer/source/selection.h"
+#include "viewer/source/curves.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -26,8 +26,7 @@ std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
   const std::uint64_t sampled = std::min(frames, kMostSampled);
   for (std::uint64_t i = 0; i < sampled; ++i) {
     // Midpoints of equal intervals, since the first frame may be without contact.
-    ShownField field = producer.produce((2 * i + 1) * frames / (2 * sampled));
-    if (quantity == Quantity::difference) add_difference(field, producer.open_truth);
+    const ShownField field = producer.produce((2 * i + 1) * frames / (2 * sampled));
     for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
       for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
         const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
@@ -62,9 +61,8 @@ void require_available(Quantity quantity, const SourceInfo& source) {
   if (is_available(quantity, source)) return;
   const bool pillars = source.skin.has_pillars();
   throw Error(source.name, std::string("it has no data for ") + info_of(quantity).name,
-              pillars || quantity == Quantity::difference
-                  ? "choose another --layer; not every file holds readings, noise and true forces"
-                  : "choose another --layer; sensels without pillars feel normal force alone");
+              pillars ? "choose another --layer; not every file holds readings and noise"
+                      : "choose another --layer; sensels without pillars feel normal force alone");
 }
 
 Surface surface_of(const Options& options, const SourceInfo& source) {
@@ -84,13 +82,10 @@ std::uint64_t most_loaded_frame(FieldProducer& producer) {
   const std::uint64_t frames = producer.info().frames;
   const std::uint64_t compared = std::min(frames, kMostCompared);
   std::uint64_t most_loaded = 0;
-  double most_n = 0;
+  float most_n = 0;
   for (std::uint64_t i = 0; i < compared; ++i) {
     const ShownField field = producer.produce((2 * i + 1) * frames / (2 * compared));
-    const ForceFieldView& forces = field.forces;
-    const double total_n =
-        sums_over(field, {0, forces.rows, 0, forces.cols}, producer.info().skin.element_pitch_mm())
-            .normal;
+    const float total_n = curve_point(field, producer.info().skin.element_pitch_mm()).normal;
     if (total_n > most_n) {
       most_n = total_n;
       most_loaded = field.index;

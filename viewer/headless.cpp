@@ -20,25 +20,20 @@
 namespace pillarfield::viewer {
 namespace {
 
-vk::Extent2D extent_of(const Viewport& place) {
-  return {static_cast<std::uint32_t>(place.width), static_cast<std::uint32_t>(place.height)};
-}
-
 /// Draws pictures and reads their pixels back.
 class HeadlessRenderer {
  public:
-  HeadlessRenderer(const Options& options, vk::Extent2D size)
+  explicit HeadlessRenderer(const Options& options)
       : instance_({}, options.validate),
         device_(instance_, {options.gpu, {}, !options.copy_fields}),
-        renderer_(instance_, device_, size, scale_of(options)) {}
+        renderer_(instance_, device_, {options.width, options.height}, scale_of(options)) {}
 
   [[nodiscard]] static double scale_of(const Options& options) {
     return options.scale > 0 ? options.scale : 1;
   }
 
   [[nodiscard]] Pixels render(const ShownField& field, const SourceInfo& source,
-                              const RenderSettings& settings, const Viewport& place) {
-    renderer_.resize(extent_of(place), settings.scale);
+                              const RenderSettings& settings) {
     device_.run([&](const vk::raii::CommandBuffer& commands) {
       renderer_.record(commands, field, source, settings);
     });
@@ -168,69 +163,35 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
               "start again");
 }
 
-/// The source, and what is shown beside it.
-using Shown = std::vector<std::unique_ptr<FieldProducer>>;
-
-Shown open_all(const Options& options) {
+std::unique_ptr<FieldProducer> open_headless(const Options& options) {
   const bool on_terminal = isatty(STDERR_FILENO) == 1;
-  const auto open = [&](const std::filesystem::path& source) {
-    return open_producer(source, producer_options(options, [=](const std::string& line) {
-                           if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
-                         }));
-  };
-  Shown shown;
-  shown.push_back(open(options.source));
-  const FieldProducer& first = *shown.front();
-  if (options.truth) shown.push_back(opened_truth(first.open_truth, first.info().name));
-  if (!options.beside.empty()) shown.push_back(open(options.beside));
-  return shown;
-}
-
-/// The pictures of the sources.
-std::vector<Viewport> places_of(const Options& options, const Shown& shown,
-                                const RenderSettings& settings) {
-  const Viewport all{0, 0, static_cast<double>(options.width), static_cast<double>(options.height)};
-  if (shown.size() == 1) return {all};
-  return {first_half(all, settings), second_half(all, settings)};
+  return open_producer(options.source, producer_options(options, [=](const std::string& line) {
+                         if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
+                       }));
 }
 
 Pixels draw(HeadlessRenderer& headless, FieldProducer& producer, std::uint64_t frame,
-            const RenderSettings& settings, const Viewport& place) {
-  ShownField field = producer.produce(std::min(frame, producer.info().frames - 1));
-  const bool knows_truth = producer.info().has_truth;
-  if (settings.quantity == Quantity::difference && knows_truth) {
-    add_difference(field, producer.open_truth);
-  }
+            const RenderSettings& settings) {
+  ShownField field = producer.produce(frame);
   if (settings.contacts) {
     field.contacts = std::make_shared<const ShownContacts>(producer.contacts_of(field));
   }
-  return headless.render(field, producer.info(), settings, place);
-}
-
-/// All sources side by side; the last has the colour bar.
-Pixels draw_all(HeadlessRenderer& headless, const Shown& shown, std::uint64_t frame,
-                RenderSettings settings, const std::vector<Viewport>& places) {
-  Pixels pixels = draw(headless, *shown.front(), frame, settings, places.front());
-  settings.colour_bar = true;
-  if (shown.size() == 1) return pixels;
-  return side_by_side(pixels, draw(headless, *shown.back(), frame, settings, places.back()));
+  return headless.render(field, producer.info(), settings);
 }
 
 /// Renders the frames of `span` into `pictures` and the video.
-void write_pictures(const Options& options, const Shown& shown, const RenderSettings& settings,
+void write_pictures(const Options& options, FieldProducer& producer, const RenderSettings& settings,
                     const FrameRange& span, const std::vector<std::filesystem::path>& pictures) {
-  const std::vector<Viewport> places = places_of(options, shown, settings);
-  HeadlessRenderer headless(options, extent_of(places.front()));
-  const VideoPace pace(options, shown.front()->info().rate_hz);
+  HeadlessRenderer headless(options);
+  const VideoPace pace(options, producer.info().rate_hz);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
-    const auto width = static_cast<std::uint32_t>(places.back().x + places.back().width);
-    video = std::make_unique<VideoWriter>(options.video, width, options.height, pace.fps(),
+    video = std::make_unique<VideoWriter>(options.video, options.width, options.height, pace.fps(),
                                           replace_of(options));
   }
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     stop_if_interrupted(options, frame - span.begin);
-    const Pixels pixels = draw_all(headless, shown, frame, settings, places);
+    const Pixels pixels = draw(headless, producer, frame, settings);
     if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace_of(options));
     if (video == nullptr) continue;
     const std::uint64_t repeats = pace.pictures_of(frame - span.begin);
@@ -251,8 +212,7 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  const Shown shown = open_all(options);
-  FieldProducer* const producer = shown.front().get();
+  const std::unique_ptr<FieldProducer> producer = open_headless(options);
   const SourceInfo& source = producer->info();
   fmt::print(stderr, "{}", warning_lines(source));
   const FrameRange span = frames_of(options, *producer);
@@ -260,8 +220,8 @@ void run_headless(const Options& options) {
   check_exports(options, pictures, replace);
   RenderSettings settings =
       default_settings(options, *producer, HeadlessRenderer::scale_of(options));
-  settings.colour_bar = shown.size() == 1;  // Else the second has it.
-  const Viewport picture = places_of(options, shown, settings).front();
+  const Viewport picture{0, 0, static_cast<double>(options.width),
+                         static_cast<double>(options.height)};
   settings.view = first_view(options, source, layout_of(picture.width, picture.height, settings));
 
   if (!options.csv.empty()) {
@@ -272,7 +232,7 @@ void run_headless(const Options& options) {
     tell_written(options, pictures, span, source);
     return;
   }
-  write_pictures(options, shown, settings, span, pictures);
+  write_pictures(options, *producer, settings, span, pictures);
   tell_written(options, pictures, span, source);
 }
 

@@ -169,11 +169,7 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
   require(!options.video.empty() || (!options.fps && options.speed == 1),
           "--fps and --speed need --video");
   require(!options.headless || !options.source.empty(), "--headless needs a source");
-  require(options.beside.empty() || !options.truth,
-          "a second source and --truth exclude each other");
-  require(options.beside != "-", "only the first source can be standard input");
-  require(!options.headless || (!is_live_source(options.source.string()) &&
-                                !is_live_source(options.beside.string())),
+  require(!options.headless || !is_live_source(options.source.string()),
           "a sensor needs the window; record it with 'pillarfield stream --record' first");
   require(!options.headless || writes,
           "--headless needs something to write: --png, --video or --csv");
@@ -255,9 +251,6 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option(
       "source", options.source,
       "Scene, recording, Tekscan export, plain data, force fields or live source [start page]");
-  app.add_option("beside", options.beside, "A second source, shown beside the first");
-  app.add_flag("--truth", options.truth,
-               "Show the true forces of a simulation beside those solved");
   app.add_option("--calibration", options.calibration, "Calibration file of a recording or sensor")
       ->type_name("FILE")
       ->check(CLI::ExistingFile)

@@ -13,7 +13,6 @@ namespace pillarfield::viewer {
 /// The command line.
 struct Options {
   std::filesystem::path source;       ///< a file, or a live source; empty: the start page
-  std::filesystem::path beside;       ///< a second source, shown at the right; empty: none
   std::filesystem::path calibration;  ///< of recordings and sensors
   ReadOptions plain;      ///< of plain data: array, times, size of a frame, rate, layout, tare
   PlanSettings settings;  ///< those of the command line that the viewer has, too
@@ -24,7 +23,6 @@ struct Options {
   double scale = 0;          ///< 0: the display's scale, 1 without a display
   bool copy_fields = false;  ///< copy fields even where the graphics device could import them
   bool validate = false;
-  bool truth = false;  ///< the true forces beside those solved
   bool headless = false;
   bool paused = false;
   bool statistics = false;  ///< printed when the window closes

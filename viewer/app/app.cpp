@@ -78,7 +78,6 @@ class Application {
   void serve();
   void serve_open();
   void show_start_page();
-  void keep_boxes();
 
   // Drawing.
   bool fit_to_window();
@@ -125,7 +124,7 @@ class Application {
 
 Application::Application(const Options& options)
     : options_(options),
-      choices_{user_.recent(), scenes_at_hand(), {}},
+      choices_{user_.recent(), scenes_at_hand()},
       window_("Pillarfield", options.width, options.height),
       instance_(Window::extensions(), options.validate),
       surface_(window_.make_surface(instance_)),
@@ -179,7 +178,6 @@ void Application::show(LoadedSource loaded) {
   next.look.settings = loaded.settings;
   if (source_was_shown_) next.look.settings.theme = state_.look.settings.theme;
   next.look.view_is_fitted = asks_for_whole_skin(options_);
-  next.marks.boxes = user_.boxes.on(source.skin);
   next.window.show_panels = state_.window.show_panels;
   next.window.folds_curves = state_.window.folds_curves;
   state_ = std::move(next);
@@ -204,7 +202,7 @@ void Application::close() {
 /// Progress of other threads, and new fields.
 void Application::take_news() {
   bool news = feed_.take_news();
-  if (shows_source()) news |= feed_.take_fields(controls_.is_dragging());
+  if (shows_source()) news |= feed_.take_fields();
   if (news) redraws_.field();
 }
 
@@ -246,14 +244,13 @@ void Application::take_input() {
   if (!drops.empty()) pending_.open = drops.front();
 }
 
-/// False while input waits: for a source, in which only Q acts, its picture, or until the name of a
-/// new box has the keyboard.
+/// False while input waits: for a source, in which only Q acts, or its picture.
 bool Application::takes_input() {
   if (feed_.loading() != nullptr || (shows_source() && !state_.source.field)) {
     pending_.quit |= gui_input_.has_pressed(GLFW_KEY_Q);
     return false;
   }
-  return !shows_source() || (drawn_settings_ && !state_.marks.names_box);
+  return !shows_source() || drawn_settings_.has_value();
 }
 
 void Application::route_to_start_page(const InputEvent& event) {
@@ -267,30 +264,18 @@ void Application::route_to_start_page(const InputEvent& event) {
 /// Performs the pending actions, those on a picture once there is one; an Error becomes a notice.
 void Application::serve() {
   serve_open();
-  keep_boxes();
   if (std::exchange(pending_.start, false)) show_start_page();
   if (!state_.source.field || !shows_source() || !drawn_settings_) return;
   const PendingActions asked = std::exchange(pending_, {});
   pending_.quit = asked.quit;
   if (!asked.anything()) return;
   writer_.serve(asked, place_, [this] { return pixels(); });
-  if (asked.truth) {
-    presenter_.clear();
-    drawn_settings_.reset();
-    try {
-      feed_.toggle_truth();
-    } catch (const Error& error) {
-      state_.window.notice.fail(error.what());
-    }
-  }
   redraws_.input(Window::now_s());
 }
 
 void Application::serve_open() {
   if (pending_.open.empty()) return;
   feed_.give_up();  // It may wait for a sensor for ever.
-  options_.beside.clear();
-  options_.truth = false;
   options_.first_frame = 0;
   at_start_ = false;
   chosen_s_ = Window::now_s();
@@ -304,42 +289,28 @@ void Application::show_start_page() {
   state_.window.notice.clear();
 }
 
-/// Remembers the named boxes once they have changed.
-void Application::keep_boxes() {
-  if (state_.source.player == nullptr) return;
-  const Skin& skin = state_.source.player->info().skin;
-  if (user_.boxes.on(skin) == state_.marks.boxes) return;
-  user_.boxes.set(skin, state_.marks.boxes);
-  user_.save();
-}
-
 bool Application::fit_to_window() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return false;
   arrange();
-  std::vector<Presenter::Place> places;
-  if (shows_source()) places.push_back(place_in_window(place_.area));
-  if (shows_source() && state_.source.beside != nullptr) {
-    places.push_back(place_in_window(second_half(screen_.field, state_.look.settings)));
-  }
-  const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
+  std::optional<Presenter::Place> place;
+  if (shows_source()) place = place_in_window(place_.area);
+  const bool fits = !presenter_.stale() && size == sized_for_ && place == presenter_.place() &&
                     scale() == presenter_.gui().scale();
   if (fits) return true;
   sized_for_ = size;
   drawn_settings_.reset();
-  return presenter_.resize(size, places, scale());
+  return presenter_.resize(size, place, scale());
 }
 
 /// Computes the layout for the current window.
 void Application::arrange() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return;
-  const bool alone = state_.source.beside == nullptr;
   state_.look.settings.scale = scale();
-  state_.look.settings.colour_bar = alone;
   const Viewport before = place_.area;
   screen_ = divide(size.width, size.height, scale(), sides_of(state_));
-  place_.area = alone ? screen_.field : first_half(screen_.field, state_.look.settings);
+  place_.area = screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
   if (moved && state_.look.view_is_fitted && state_.source.player != nullptr) {
     reset_view(state_, place_);
@@ -349,7 +320,7 @@ void Application::arrange() {
 void Application::draw() {
   if (shows_source()) return draw_source();
   draw_page();
-  static_cast<void>(presenter_.draw({}));
+  static_cast<void>(presenter_.draw(std::nullopt));
   redraws_.drawn(Window::now_s());
 }
 
@@ -361,19 +332,10 @@ void Application::draw_source() {
   begin_gui_frame();
   draw_gui(command(), screen_, device_.name());
   ImGui::Render();
-  const bool new_settings = drawn_settings_ != settings;
-  const bool new_picture = source.field && (feed_.has_field() || new_settings);
-  RenderSettings beside_settings = settings;
-  beside_settings.colour_bar = true;
-  std::vector<std::optional<Presenter::Picture>> pictures(presenter_.places().size());
-  if (new_picture) {
-    pictures[0].emplace(Presenter::Picture{*source.field, *place_.source, settings});
-  }
-  if (pictures.size() > 1 && source.beside_field && (feed_.has_beside() || new_settings)) {
-    pictures[1].emplace(
-        Presenter::Picture{*source.beside_field, source.beside->info(), beside_settings});
-  }
-  if (!presenter_.draw(pictures)) return;
+  const bool new_picture = source.field && (feed_.has_field() || drawn_settings_ != settings);
+  std::optional<Presenter::Picture> picture;
+  if (new_picture) picture.emplace(Presenter::Picture{*source.field, *place_.source, settings});
+  if (!presenter_.draw(picture)) return;
   // Not before there is something to see, for who waits for it.
   if (new_picture && !drawn_settings_) window_.set_title(place_.source->name + " – Pillarfield");
   measure(begin_s, new_picture);
@@ -391,7 +353,6 @@ void Application::draw_page() {
   if (const Loading* const loading = feed_.loading()) {
     loading_page(loading->options().source.filename().string(), loading->message(), all);
   } else {
-    choices_.pictures = presenter_.gui().pictures();
     const std::string chosen = start_page(choices_, all, state_.window.notice, scale());
     if (!chosen.empty()) pending_.open = chosen;
   }
@@ -430,14 +391,7 @@ void Application::watch_notice() {
   last_notice_.assign(notice);
 }
 
-/// All pictures, side by side.
-Pixels Application::pixels() const {
-  Pixels all = read_pixels(device_, presenter_.image(0));
-  for (std::size_t i = 1; i < presenter_.places().size(); ++i) {
-    all = side_by_side(all, read_pixels(device_, presenter_.image(i)));
-  }
-  return all;
-}
+Pixels Application::pixels() const { return read_pixels(device_, presenter_.image()); }
 
 void Application::print_statistics() const {
   const Player* const player = state_.source.player.get();

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "viewer/app/named_boxes.h"
 #include "viewer/app/panels/plot.h"
 #include "viewer/app/source/loaded_source.h"
 #include "viewer/source/selection.h"
@@ -34,12 +33,6 @@ struct Pin {
   int number = 0;  ///< 1..kMostPins, see number_pins(); 0: not yet numbered
 };
 
-/// A dragged rectangle.
-struct Selection {
-  PillarRect rect;
-  std::optional<CachedSums> cached = {};  ///< see selection_sums()
-};
-
 /// The look of the picture.
 struct ShownLook {
   RenderSettings settings;
@@ -57,9 +50,6 @@ struct Marks {
 
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
-  std::optional<Selection> selection;
-  std::vector<NamedBox> boxes;  ///< at most NamedBoxes::kMost
-  bool names_box = false;       ///< the name of the last box takes the keyboard next
 };
 
 /// The window around the picture.

@@ -51,18 +51,6 @@ Viewport FieldPlace::plot(const RenderSettings& settings) const {
   return plot;
 }
 
-Viewport first_half(const Viewport& area, const RenderSettings& settings) {
-  const double shared = std::max(area.width - margins_of(settings).legend, 2.0);
-  return {area.x, area.y, std::floor(0.5 * shared), area.height};
-}
-
-Viewport second_half(const Viewport& area, const RenderSettings& settings) {
-  const Viewport first = first_half(area, settings);
-  const double most = std::max(area.width - first.width, 1.0);
-  return {area.x + first.width, area.y, std::min(first.width + margins_of(settings).legend, most),
-          area.height};
-}
-
 std::optional<Vec2> sheet_point(const FieldPlace& place, const RenderSettings& settings,
                                 Vec2 pixel) {
   const Viewport plot = place.plot(settings);

@@ -18,11 +18,6 @@ struct FieldPlace {
       const RenderSettings& settings) const;  ///< the skin in the window, pixels
 };
 
-/// Parts of the picture's area where a second source is shown beside the first: their plots have
-/// one size, and the second has the colour bar.
-[[nodiscard]] Viewport first_half(const Viewport& area, const RenderSettings& settings);
-[[nodiscard]] Viewport second_half(const Viewport& area, const RenderSettings& settings);
-
 /// Point of the sheet under a window pixel, mm; none outside the skin or the plot.
 [[nodiscard]] std::optional<Vec2> sheet_point(const FieldPlace& place,
                                               const RenderSettings& settings, Vec2 pixel);

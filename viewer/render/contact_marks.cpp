@@ -101,10 +101,6 @@ Viewport label_box(const std::string& words, Vec2 corner, const Viewport& plot, 
           std::round(std::clamp(corner.y - height, plot.y, bottom)), width, height};
 }
 
-bool covers_any(const Viewport& box, const std::vector<Viewport>& others) {
-  return std::ranges::any_of(others, [&](const Viewport& other) { return overlap(box, other); });
-}
-
 std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks, const Viewport& plot,
                                   double scale) {
   std::vector<Viewport> labels;
@@ -114,7 +110,8 @@ std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks, const V
       const Viewport box = box_about(mark.outline);
       const double top = std::min(box.y, mark.centre.y - 6 * scale);  // Above its hill.
       label = label_box(mark.words, {box.x, top - 3 * scale}, plot, scale);
-      if (covers_any(label, labels)) label.width = 0;
+      const auto covers = [&](const Viewport& other) { return overlap(label, other); };
+      if (std::ranges::any_of(labels, covers)) label.width = 0;
     }
     labels.push_back(label);
   }
@@ -130,7 +127,7 @@ void draw_label(ImDrawList& list, const Viewport& box, const std::string& words,
 
 std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Ground& ground) {
   std::vector<ContactMark> marks;
-  const std::size_t count = std::min(contacts.above_noise, kMostContactsDrawn);
+  const std::size_t count = std::min(contacts.heaviest.size(), kMostContactsDrawn);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = contacts.heaviest[i];
     const TrackedContact& contact = contacts.found.contacts[place];
@@ -151,9 +148,9 @@ std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Grou
 }
 
 std::string contacts_left_out(const ShownContacts& contacts) {
-  if (contacts.above_noise <= kMostContactsDrawn) return {};
+  if (contacts.heaviest.size() <= kMostContactsDrawn) return {};
   return fmt::format("{} of {} contacts are drawn, the heaviest", kMostContactsDrawn,
-                     contacts.above_noise);
+                     contacts.heaviest.size());
 }
 
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const Ground& ground) {

@@ -25,9 +25,9 @@ struct ContactMark {
   std::string words;               ///< "3  50.1 N": id and normal force
 };
 
-/// Marks of the kMostContactsDrawn heaviest contacts above the noise, heaviest first, without those
-/// out of sight or partly behind the eye. An arrow is at most 3 kContactArrowPixels long, and no
-/// longer than the diagonal of its contact or 16 pixels at scale 1.
+/// Marks of the kMostContactsDrawn heaviest contacts, heaviest first, without those out of sight or
+/// partly behind the eye. An arrow is at most 3 kContactArrowPixels long, and no longer than the
+/// diagonal of its contact or 16 pixels at scale 1.
 [[nodiscard]] std::vector<ContactMark> contact_marks(const ShownContacts& contacts,
                                                      const Ground& ground);
 
@@ -41,8 +41,6 @@ struct ContactMark {
 /// mark before.
 [[nodiscard]] std::vector<Viewport> label_boxes(const std::vector<ContactMark>& marks,
                                                 const Viewport& plot, double scale);
-/// True if the box covers a part of one of the others.
-[[nodiscard]] bool covers_any(const Viewport& box, const std::vector<Viewport>& others);
 /// Draws a label on a dark ground.
 void draw_label(ImDrawList& list, const Viewport& box, const std::string& words, unsigned colour,
                 double scale);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "pillarfield/status.h"
 #include "viewer/render/imgui_point.h"
 #include "viewer/render/scene.h"
 #include "viewer/style/surface.h"

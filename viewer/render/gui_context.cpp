@@ -54,45 +54,16 @@ void load_font(ImGuiIO& io, double scale) {
   }
 }
 
-std::vector<TexturePlace> add_pictures(ImFontAtlas& atlas, std::span<const Pixels> pictures) {
-  std::vector<int> ids;
-  for (const Pixels& each : pictures) {
-    ids.push_back(
-        atlas.AddCustomRectRegular(static_cast<int>(each.width), static_cast<int>(each.height)));
-  }
-  unsigned char* texture = nullptr;
-  int width = 0;
-  atlas.GetTexDataAsRGBA32(&texture, &width, nullptr);
-  std::vector<TexturePlace> places;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(ids[i]);
-    const std::size_t line = std::size_t{4} * rect.Width;
-    for (std::size_t row = 0; row < rect.Height; ++row) {
-      const std::size_t at = (rect.Y + row) * static_cast<std::size_t>(width) + rect.X;
-      std::copy_n(pictures[i].rgba.data() + row * line, line, texture + 4 * at);
-    }
-    ImVec2 low;
-    ImVec2 high;
-    atlas.CalcCustomRectUV(&rect, &low, &high);
-    const auto vector = [](const ImVec2& at) {
-      return Vec2{static_cast<double>(at.x), static_cast<double>(at.y)};
-    };
-    places.push_back({vector(low), vector(high)});
-  }
-  return places;
-}
-
 }  // namespace
 
 GuiContext::GuiContext(const gpu::Instance& instance, const gpu::Device& device,
-                       vk::RenderPass render_pass, double scale, std::span<const Pixels> pictures)
+                       vk::RenderPass render_pass, double scale)
     : scale_(scale), context_(ImGui::CreateContext()), pool_(make_texture_pool(device)) {
   use();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // No settings file.
   io.LogFilename = nullptr;
   load_font(io, scale);
-  if (!pictures.empty()) pictures_ = add_pictures(*io.Fonts, pictures);
 
   ImGui_ImplVulkan_InitInfo info{};
   info.Instance = *instance.handle();

@@ -432,7 +432,7 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
       write_triad(canvas, source, layout);
       write_scale_bar(canvas, source, layout);
     }
-    if (settings.colour_bar) write_scales(canvas, source, layout);
+    write_scales(canvas, source, layout);
   }
   ImGui::Render();
 }

@@ -35,14 +35,6 @@ void set_viewport(const vk::raii::CommandBuffer& commands, const Viewport& plot)
                                      static_cast<std::uint32_t>(plot.height)}));
 }
 
-/// Values of the heat map that are not planes of the field.
-FrameView further_values(const ShownField& field, Quantity quantity) {
-  if (quantity == Quantity::parity) return field.raw;
-  if (quantity != Quantity::difference || field.difference == nullptr) return {};
-  const ForceFieldView& forces = field.forces;
-  return {field.difference->data(), SenselType::f32, forces.rows, forces.cols, forces.cols};
-}
-
 }  // namespace
 
 Renderer::Renderer(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
@@ -82,9 +74,10 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField&
   const Layout layout = layout_of(size.width, size.height, settings);
   const shader::Scene scene = scene_of(field, source, settings, layout.plot);
   update(scene, settings);
-  pipelines_.bind({scene_.handle(), colours_.handle(), memory_.take(field, commands),
-                   memory_.take_readings(further_values(field, settings.quantity)),
-                   cells_.handle()});
+  pipelines_.bind(
+      {scene_.handle(), colours_.handle(), memory_.take(field, commands),
+       memory_.take_readings(settings.quantity == Quantity::parity ? field.raw : FrameView{}),
+       cells_.handle()});
 
   const vk::DescriptorSet set = pipelines_.set();
   const std::uint32_t cells = scene.cells.z * scene.cells.w;
@@ -110,12 +103,9 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField&
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.floor());
     commands.draw(6, 1, 0, 0);
   }
-  const bool lacks = settings.quantity == Quantity::difference && field.difference == nullptr;
-  if (!lacks && is_available(settings.quantity, source)) {  // A second source may lack its planes.
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                          pipelines_.heat(heat_kind_of(field, source, settings, layout.plot)));
-    commands.draw(6 * scene.grid.z * scene.grid.w, 1, 0, 0);
-  }
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                        pipelines_.heat(heat_kind_of(field, source, settings, layout.plot)));
+  commands.draw(6 * scene.grid.z * scene.grid.w, 1, 0, 0);
   if (settings.sectors && scene.block.x == 1 && scene.span.x != shader::kNoPlane && cells != 0) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.sectors());
     commands.draw(6, cells, 0, 0);

@@ -71,16 +71,4 @@ Pixels read_pixels(const gpu::Device& device, const gpu::Image& image) {
   return pixels;
 }
 
-Pixels side_by_side(const Pixels& left, const Pixels& right) {
-  Pixels joined{left.width + right.width, left.height, {}};
-  joined.rgba.reserve(left.rgba.size() + right.rgba.size());
-  for (std::size_t row = 0; row < left.height; ++row) {
-    for (const Pixels* const part : {&left, &right}) {
-      const auto begin = part->rgba.begin() + static_cast<std::ptrdiff_t>(4 * row * part->width);
-      joined.rgba.insert(joined.rgba.end(), begin, begin + 4 * std::ptrdiff_t{part->width});
-    }
-  }
-  return joined;
-}
-
 }  // namespace pillarfield::viewer

@@ -32,9 +32,6 @@ class Target {
   vk::raii::Framebuffer framebuffer_ = nullptr;
 };
 
-/// Joins two pictures of equal height.
-[[nodiscard]] Pixels side_by_side(const Pixels& left, const Pixels& right);
-
 /// Reads back a picture whose commands are complete.
 [[nodiscard]] Pixels read_pixels(const gpu::Device& device, const gpu::Image& image);
 

@@ -1,13 +1,14 @@
 #include "viewer/source/curves.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "pillarfield/status.h"
 
 namespace pillarfield::viewer {
 namespace {
-
-std::uint64_t next_index(const std::deque<CurvePoint>& points) {
-  return points.empty() ? 0 : points.back().index + 1;
-}
 
 /// Keeps of each run of points the one with the least and the one with the largest normal force.
 std::vector<CurvePoint> thinned_points(const std::deque<CurvePoint>& points, std::size_t begin,
@@ -38,88 +39,104 @@ std::vector<CurvePoint> points_between(const std::deque<CurvePoint>& points, dou
   return begin < end ? thinned_points(points, begin, end, most) : std::vector<CurvePoint>{};
 }
 
+constexpr std::uint32_t kBlock = 8;  ///< pillars whose statuses are compared at once
+
+/// Sums a field; moments are about the middle of the skin until finish().
+class Adding {
+ public:
+  Adding(const ForceFieldView& forces, const Pitch& pitch_mm)
+      : forces_(forces), pitch_mm_(pitch_mm), sheared_(has_pillars(forces)) {}
+
+  [[nodiscard]] bool is_idle_block(std::uint32_t row, std::uint32_t col) const {
+    std::uint64_t block = 0;
+    static_assert(sizeof block == kBlock);
+    std::memcpy(&block, &forces_.status[std::size_t{row} * forces_.cols + col], kBlock);
+    return block == 0;
+  }
+
+  void add(std::uint32_t row, std::uint32_t col) {
+    const std::size_t at = std::size_t{row} * forces_.cols + col;
+    const double normal = forces_.normal[at];
+    const double shear_x = sheared_ ? forces_.shear_x[at] : 0;
+    const double shear_y = sheared_ ? forces_.shear_y[at] : 0;
+    const bool finite = std::isfinite(normal) && std::isfinite(shear_x) && std::isfinite(shear_y);
+    if ((forces_.status[at] & status::kLoaded) == 0 || !finite) return;
+    const double x = (col + 0.5 - 0.5 * forces_.cols) * pitch_mm_.col_mm;
+    const double y = (0.5 * forces_.rows - row - 0.5) * pitch_mm_.row_mm;
+    normal_ += normal;
+    first_x_ += normal * x;
+    first_y_ += normal * y;
+    shear_x_ += shear_x;
+    shear_y_ += shear_y;
+    turn_ += x * shear_y - y * shear_x;
+  }
+
+  [[nodiscard]] CurvePoint finish(const ShownField& field) const {
+    const bool loaded = normal_ > 0;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    const double centre_x = loaded ? first_x_ / normal_ : unknown;
+    const double centre_y = loaded ? first_y_ / normal_ : unknown;
+    const auto narrow = [](double value) { return static_cast<float>(value); };
+    return {.time_s = field.time_s,
+            .index = field.index,
+            .shear_x = narrow(shear_x_),
+            .shear_y = narrow(shear_y_),
+            .normal = narrow(normal_),
+            .torque = narrow(turn_ - (centre_x * shear_y_ - centre_y * shear_x_)),
+            .centre_x_mm = narrow(centre_x),
+            .centre_y_mm = narrow(centre_y)};
+  }
+
+ private:
+  const ForceFieldView& forces_;
+  Pitch pitch_mm_;
+  bool sheared_;
+  double normal_ = 0, shear_x_ = 0, shear_y_ = 0;  ///< N
+  double first_x_ = 0, first_y_ = 0;               ///< first moments of the normal force, N mm
+  double turn_ = 0;                                ///< moment of the shear, N mm
+};
+
 }  // namespace
 
-CurvePoint curve_point(const ShownField& field, const PillarRect& rect,
-                       const Pitch& element_pitch_mm) {
-  const SelectionSums sums = sums_over(field, rect, element_pitch_mm);
-  const auto narrow = [](double value) { return static_cast<float>(value); };
-  return {.time_s = field.time_s,
-          .index = field.index,
-          .shear_x = narrow(sums.shear_x),
-          .shear_y = narrow(sums.shear_y),
-          .normal = narrow(sums.normal),
-          .torque = narrow(sums.moment_z),
-          .centre_x_mm = narrow(sums.centre_x_mm),
-          .centre_y_mm = narrow(sums.centre_y_mm)};
+CurvePoint curve_point(const ShownField& field, const Pitch& element_pitch_mm) {
+  Adding adding(field.forces, element_pitch_mm);
+  const std::uint32_t cols = field.forces.cols;
+  for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
+    for (std::uint32_t col = 0; col < cols;) {
+      if (col + kBlock <= cols && adding.is_idle_block(row, col)) {
+        col += kBlock;
+      } else {
+        adding.add(row, col++);
+      }
+    }
+  }
+  return adding.finish(field);
 }
 
 Curves::Curves(const Pitch& element_pitch_mm, std::size_t most_points)
     : pitch_mm_(element_pitch_mm), most_points_(std::max<std::size_t>(most_points, 1)) {}
 
-void Curves::set_rects(std::span<const PillarRect> rects) {
+void Curves::add(const CurvePoint& point) {
   const std::scoped_lock lock(mutex_);
-  std::vector<Curve> next;
-  for (const PillarRect& rect : rects) {
-    if (std::ranges::find(next, rect, &Curve::rect) != next.end()) continue;
-    const auto old =
-        std::ranges::find_if(curves_, [&](const Curve& curve) { return curve.rect == rect; });
-    next.push_back(old == curves_.end() ? Curve{rect, {}} : std::move(*old));
-  }
-  curves_ = std::move(next);
-}
-
-void Curves::append(Points& points, const CurvePoint& point) const {
-  if (!points.empty() && point.index <= points.back().index) return;
-  if (points.size() == most_points_) points.pop_front();
-  points.push_back(point);
-}
-
-void Curves::add(const ShownField& field) {
-  const CurvePoint total =
-      curve_point(field, {0, field.forces.rows, 0, field.forces.cols}, pitch_mm_);
-  const std::scoped_lock lock(mutex_);
-  append(total_, total);
-  for (Curve& curve : curves_) append(curve.points, curve_point(field, curve.rect, pitch_mm_));
-}
-
-void Curves::add_total(const CurvePoint& total) {
-  const std::scoped_lock lock(mutex_);
-  append(total_, total);
+  if (!points_.empty() && point.index <= points_.back().index) return;
+  if (points_.size() == most_points_) points_.pop_front();
+  points_.push_back(point);
 }
 
 std::uint64_t Curves::next() const {
   const std::scoped_lock lock(mutex_);
-  std::uint64_t least = next_index(total_);
-  for (const Curve& curve : curves_) least = std::min(least, next_index(curve.points));
-  return least;
-}
-
-bool Curves::wants_total_alone(std::uint64_t index) const {
-  const std::scoped_lock lock(mutex_);
-  return next_index(total_) <= index && std::ranges::all_of(curves_, [&](const Curve& curve) {
-           return next_index(curve.points) > index;
-         });
+  return points_.empty() ? 0 : points_.back().index + 1;
 }
 
 std::pair<double, double> Curves::time_span() const {
   const std::scoped_lock lock(mutex_);
-  if (total_.empty()) return {0, 0};
-  return {total_.front().time_s, total_.back().time_s};
+  if (points_.empty()) return {0, 0};
+  return {points_.front().time_s, points_.back().time_s};
 }
 
-std::vector<CurvePoint> Curves::total(double from_s, double to_s, std::size_t most) const {
+std::vector<CurvePoint> Curves::between(double from_s, double to_s, std::size_t most) const {
   const std::scoped_lock lock(mutex_);
-  return points_between(total_, from_s, to_s, most);
-}
-
-std::vector<CurvePoint> Curves::of(const PillarRect& rect, double from_s, double to_s,
-                                   std::size_t most) const {
-  const std::scoped_lock lock(mutex_);
-  const auto found =
-      std::ranges::find_if(curves_, [&](const Curve& curve) { return curve.rect == rect; });
-  if (found == curves_.end()) return {};
-  return points_between(found->points, from_s, to_s, most);
+  return points_between(points_, from_s, to_s, most);
 }
 
 }  // namespace pillarfield::viewer

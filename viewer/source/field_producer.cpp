@@ -14,7 +14,6 @@
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
-#include "pillarfield/status.h"
 #include "viewer/source/force_file_producer.h"
 #include "viewer/source/solved_producer.h"
 
@@ -91,20 +90,12 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   info.solver += processor.shares_memory() ? ", zero copy" : ", staged";
   const std::shared_ptr<FrameProvider> provider = simulate_frames(*simulator, frames, progress);
   info.frames = frames;
-  info.has_truth = true;
   auto producer = std::make_unique<SolvedProducer>(info, provider, plan, std::move(processor));
   producer->open_again = [=, options =
                                  options_for_later(options)]() -> std::unique_ptr<FieldProducer> {
     // Simulated frames may be read by several threads.
     return std::make_unique<SolvedProducer>(info, provider, plan,
                                             processor_for(device, plan, options, kSurveySlots));
-  };
-  producer->open_truth = [=]() -> std::unique_ptr<FieldProducer> {
-    return std::make_unique<TruthProducer>(info, [=](std::uint64_t index, ForceField& truth) {
-      FrameBuffer readings(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-      simulator->render(index, readings, truth);
-      return simulator->time_of(index);
-    });
   };
   return producer;
 }
@@ -153,7 +144,6 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                       std::back_inserter(info.warnings));
   }
   info.frames = source->frames();
-  info.has_truth = source->has_truth();
   auto producer = std::make_unique<SolvedProducer>(
       info, recorded_frames(path, std::move(source), read), plan, std::move(processor));
   producer->open_again = [=, options =
@@ -162,35 +152,10 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
         info, recorded_frames(path, open_frames(path, read), read), plan,
         processor_for(device, plan, options, kSurveySlots));
   };
-  if (!info.has_truth) return producer;
-  producer->open_truth = [=]() -> std::unique_ptr<FieldProducer> {
-    const std::shared_ptr<FrameSource> frames = open_frames(path, read);
-    return std::make_unique<TruthProducer>(info, [=](std::uint64_t index, ForceField& truth) {
-      frames->read_truth(index, truth);
-      return frames->time(index);
-    });
-  };
   return producer;
 }
 
 }  // namespace
-
-void add_difference(ShownField& field, const FieldProducer::Opener& open_truth) {
-  const auto truth_source = open_truth();
-  const ShownField truth = truth_source->produce(field.index);
-  const auto apart = [&](auto plane, std::size_t i) {
-    const auto& of_truth = truth.forces.*plane;
-    return of_truth.empty() ? 0 : (field.forces.*plane)[i] - of_truth[i];
-  };
-  auto difference = std::make_shared<std::vector<float>>(field.forces.normal.size(), -1.0F);
-  for (std::size_t i = 0; i < difference->size(); ++i) {
-    if (((field.forces.status[i] | truth.forces.status[i]) & status::kLoaded) == 0) continue;
-    (*difference)[i] =
-        std::hypot(apart(&ForceFieldView::shear_x, i), apart(&ForceFieldView::shear_y, i),
-                   apart(&ForceFieldView::normal, i));
-  }
-  field.difference = std::move(difference);
-}
 
 std::string solver_words(SkinLayout layout, const std::string& estimator,
                          const std::string& device) {

@@ -30,7 +30,6 @@ struct SourceInfo {
   bool has_readings = false;  ///< ShownField::raw has data
   bool has_angles = false;    ///< magnitude, theta and phi; of every source with pillars
   bool has_uncertainty = false;
-  bool has_truth = false;             ///< FieldProducer::open_truth, but of a truth
   std::string solver;                 ///< solver_words(), "zero copy"; from a force file its solver
   ContactOptions contacts = {};       ///< for contacts found here
   std::vector<std::string> warnings;  ///< one sentence each
@@ -65,19 +64,14 @@ class FieldProducer {
   /// The total force of a frame where the source stores it.
   [[nodiscard]] virtual std::optional<CurvePoint> stored_total(std::uint64_t index);
 
-  /// Makes another producer of the same source, or of its true forces; empty where there is none.
-  /// Each producer belongs to one thread; the functions may be called in any. Of another producer
-  /// only one field may be alive.
+  /// Makes another producer of the same source. Each producer belongs to one thread; the function
+  /// may be called in any. Of another producer only one field may be alive.
   using Opener = std::function<std::unique_ptr<FieldProducer>()>;
   Opener open_again = {};
-  Opener open_truth = {};
 
  private:
   std::optional<FieldContacts> found_contacts_;
 };
-
-/// Sets the difference of a field to the true forces of its frame.
-void add_difference(ShownField& field, const FieldProducer::Opener& open_truth);
 
 /// "direct on DEVICE"; without pillars, which alone have an estimator, "DEVICE".
 [[nodiscard]] std::string solver_words(SkinLayout layout, const std::string& estimator,

@@ -86,7 +86,7 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
 ShownContacts ForceFileProducer::contacts_of(const ShownField& field) {
   if (!reader_->info().contacts) return FieldProducer::contacts_of(field);
   map_.find(field.forces.status, field.forces.rows, field.forces.cols);
-  return with_extents(reader_->read_contacts(field.index), map_, reader_->info().contacts->noise_n);
+  return with_extents(reader_->read_contacts(field.index), map_);
 }
 
 std::optional<CurvePoint> ForceFileProducer::stored_total(std::uint64_t index) {

@@ -233,8 +233,8 @@ void LivePlayer::publish(const SolvedFrame& frame, ShownField field) {
   }
   field.keep_alive = owner;
   if (tracks_) {
-    field.contacts = std::make_shared<const ShownContacts>(
-        with_extents(*frame.contacts, tracker_.labels(), tracker_.options().noise_n));
+    field.contacts =
+        std::make_shared<const ShownContacts>(with_extents(*frame.contacts, tracker_.labels()));
   }
   newest_.set(std::move(field));
 }

@@ -138,7 +138,7 @@ std::shared_ptr<const ShownContacts> ResultPlayer::contacts_of(const ShownField&
   FrameContacts found = *result_.contacts;
   std::erase_if(found.contacts,
                 [&](const TrackedContact& contact) { return contact.label >= map_.contacts(); });
-  return std::make_shared<const ShownContacts>(with_extents(std::move(found), map_, {}));
+  return std::make_shared<const ShownContacts>(with_extents(std::move(found), map_));
 }
 
 LiveStatus ResultPlayer::status() {

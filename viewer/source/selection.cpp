@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "pillarfield/error.h"
@@ -12,7 +11,6 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr std::uint32_t kBlock = 8;  ///< pillars whose statuses are compared at once
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
@@ -62,80 +60,6 @@ void set_uncertainty(PillarValues& values, const ShownField& field, std::size_t 
   values.component_ends = component_ends(forces, at, field.direct_point, field.shear_coefficient);
 }
 
-bool is_finite(const ForceFieldView& forces, std::size_t at) {
-  const bool finite = std::isfinite(forces.normal[at]);
-  if (!has_pillars(forces)) return finite;
-  return finite && std::isfinite(forces.shear_x[at]) && std::isfinite(forces.shear_y[at]);
-}
-
-/// Accumulates SelectionSums; moments are about the middle of the skin until finish().
-class SumBuilder {
- public:
-  SumBuilder(const ForceFieldView& forces, const Pitch& pitch_mm)
-      : forces_(forces), pitch_mm_(pitch_mm) {}
-
-  void add(PillarIndex pillar) {
-    const std::size_t at = std::size_t{pillar.row} * forces_.cols + pillar.col;
-    const std::uint8_t state = forces_.status[at];
-    ++sums_.pillars;
-    ++sums_.by_region.at(static_cast<std::size_t>(region_of(state)));
-    sums_.ambiguous += (state & status::kAmbiguous) != 0 ? 1 : 0;
-    sums_.saturated += (state & status::kSaturated) != 0 ? 1 : 0;
-    sums_.inconsistent += (state & status::kInconsistent) != 0 ? 1 : 0;
-    if ((state & status::kLoaded) != 0 && is_finite(forces_, at)) add_force(pillar, at);
-  }
-
-  [[nodiscard]] bool is_idle_block(PillarIndex first) const {
-    std::uint64_t block = 0;
-    static_assert(sizeof block == kBlock);
-    std::memcpy(&block, &forces_.status[std::size_t{first.row} * forces_.cols + first.col], kBlock);
-    return block == 0;
-  }
-  void add_idle(std::uint32_t pillars) {
-    sums_.pillars += pillars;
-    sums_.by_region[static_cast<std::size_t>(Region::none)] += pillars;
-  }
-
-  [[nodiscard]] SelectionSums finish() {
-    const auto touched = static_cast<double>(sums_.in_contact);
-    sums_.area_mm2 = touched * pitch_mm_.area_mm2();
-    sums_.mean_normal = sums_.in_contact == 0 ? 0 : sums_.normal / touched;
-    const bool loaded = sums_.normal > 0;
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    sums_.centre_x_mm = loaded ? first_x_ / sums_.normal : unknown;
-    sums_.centre_y_mm = loaded ? first_y_ / sums_.normal : unknown;
-    sums_.moment_z =
-        turn_ - (sums_.centre_x_mm * sums_.shear_y - sums_.centre_y_mm * sums_.shear_x);
-    return sums_;
-  }
-
- private:
-  void add_force(PillarIndex pillar, std::size_t at) {
-    const double x = (pillar.col + 0.5 - 0.5 * forces_.cols) * pitch_mm_.col_mm;
-    const double y = (0.5 * forces_.rows - pillar.row - 0.5) * pitch_mm_.row_mm;
-    const double normal = forces_.normal[at];
-    if (sums_.in_contact == 0 || normal > sums_.peak_normal) {
-      sums_.peak_normal = normal;
-      sums_.peak = pillar;
-    }
-    ++sums_.in_contact;
-    sums_.normal += normal;
-    first_x_ += normal * x;
-    first_y_ += normal * y;
-    if (!has_pillars(forces_)) return;
-    sums_.shear_x += forces_.shear_x[at];
-    sums_.shear_y += forces_.shear_y[at];
-    turn_ += x * forces_.shear_y[at] - y * forces_.shear_x[at];
-  }
-
-  const ForceFieldView& forces_;
-  Pitch pitch_mm_;
-  SelectionSums sums_;
-  double first_x_ = 0;  ///< first moments of the normal force, N mm
-  double first_y_ = 0;
-  double turn_ = 0;  ///< moment of the shear, N mm
-};
-
 }  // namespace
 
 PillarValues values_at(const ShownField& field, PillarIndex pillar) {
@@ -157,24 +81,6 @@ PillarValues values_at(const ShownField& field, PillarIndex pillar) {
   }
   set_uncertainty(values, field, at);
   return values;
-}
-
-SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
-                        const Pitch& element_pitch_mm) {
-  SumBuilder adding(field.forces, element_pitch_mm);
-  const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
-  const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);
-  for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {
-    for (std::uint32_t col = rect.col_begin; col < col_end;) {
-      if (col + kBlock <= col_end && adding.is_idle_block({row, col})) {
-        adding.add_idle(kBlock);
-        col += kBlock;
-      } else {
-        adding.add({row, col++});
-      }
-    }
-  }
-  return adding.finish();
 }
 
 Direction direction_of(float shear_x, float shear_y, float normal) {

@@ -4,10 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "pillarfield/component_ends.h"
-#include "pillarfield/status.h"
 #include "viewer/source/shown_field.h"
 
 namespace pillarfield::viewer {
@@ -44,26 +42,6 @@ struct PillarValues {
 
 /// Throws Error for a pillar outside the field.
 [[nodiscard]] PillarValues values_at(const ShownField& field, PillarIndex pillar);
-
-/// Sums over a rectangle of pillars. A pillar without usable sensels or with a force that is not
-/// finite adds no force and is not in contact.
-struct SelectionSums {
-  double shear_x = 0, shear_y = 0, normal = 0;  ///< total force, N
-  /// Moment of the shear about the centre of pressure, N mm, counter-clockwise; NaN without load.
-  double moment_z = 0;
-  /// Centre of pressure from the middle of the skin, + right and up; NaN without load.
-  double centre_x_mm = 0, centre_y_mm = 0;
-  double area_mm2 = 0;  ///< pillars in contact
-  std::uint64_t pillars = 0, in_contact = 0;
-  double peak_normal = 0, mean_normal = 0;  ///< N per pillar; the mean is over those in contact
-  PillarIndex peak;
-  std::array<std::uint64_t, kRegions> by_region{};  ///< pillars, indexed by Region
-  std::uint64_t ambiguous = 0, saturated = 0, inconsistent = 0;
-};
-
-/// Sums over the part of `rect` inside the field. Idle blocks of 8 pillars cost one comparison.
-[[nodiscard]] SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
-                                      const Pitch& element_pitch_mm);
 
 /// Magnitude of a force and the direction (theta, phi) from which it comes
 /// (docs/derivations/pillar_model.md, equation M2).

@@ -14,18 +14,13 @@ namespace pillarfield::viewer {
 /// The contacts of a shown field.
 struct ShownContacts {
   FrameContacts found;
-  std::vector<PillarRect> extents;  ///< bounding rectangles, in the order of `found.contacts`
-  /// Indices into `found.contacts`: by descending normal force, those at the noise last.
-  std::vector<std::size_t> heaviest;
-  std::size_t above_noise = 0;  ///< the first ones of `heaviest`; the others are single pillars
+  std::vector<PillarRect> extents;    ///< bounding rectangles, in the order of `found.contacts`
+  std::vector<std::size_t> heaviest;  ///< indices into `found.contacts`, by descending normal force
 };
 
-/// Adds the extents of contacts. `map` holds the labels of the field that `found` refers to. A
-/// contact is at the noise if it is a single pillar with a force below 5 `noise_n`, or, where that
-/// is unknown, below 1/50 of the largest normal force of a pillar. Throws Error for a label that
-/// `map` lacks.
-[[nodiscard]] ShownContacts with_extents(FrameContacts found, const ContactLabels& map,
-                                         std::optional<double> noise_n);
+/// Adds the extents of contacts. `map` holds the labels of the field that `found` refers to. Throws
+/// Error for a label that `map` lacks.
+[[nodiscard]] ShownContacts with_extents(FrameContacts found, const ContactLabels& map);
 
 /// Finds and tracks contacts over the shown fields. Frames may be skipped; an earlier frame
 /// restarts tracking with ids from 1.

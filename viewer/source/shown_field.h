@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
@@ -29,9 +28,7 @@ struct ShownField {
   /// Whole pages with all planes of `forces`, which a graphics device may import.
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;
-  std::shared_ptr<const ShownContacts> contacts = {};  ///< null while contacts are off
-  /// Length of solved - true force, N; -1 where neither is loaded. Null: not known, or not asked.
-  std::shared_ptr<const std::vector<float>> difference = {};
+  std::shared_ptr<const ShownContacts> contacts = {};    ///< null while contacts are off
   std::optional<std::chrono::nanoseconds> arrived = {};  ///< from a sensor, std::steady_clock
 };
 

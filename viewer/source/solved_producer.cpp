@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "pillarfield/status.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -88,58 +87,6 @@ bool SolvedProducer::refresh() {
   if (!provider_->refresh()) return false;
   info_.frames = provider_->frames();
   return true;
-}
-
-namespace {
-
-SourceInfo truth_info(SourceInfo info) {
-  info.name += ", truth";
-  info.kind = "truth";
-  Calibration absent;  // what has no sensel has no truth either
-  absent.mask = std::move(info.calibration.mask);
-  info.calibration = std::move(absent);
-  info.has_readings = false;
-  info.has_uncertainty = false;
-  info.has_truth = false;
-  info.solver = "true forces";
-  info.warnings.clear();
-  info.notes.clear();
-  return info;
-}
-
-/// Every loaded element is determined.
-void set_status(ForceField& truth) {
-  for (std::size_t i = 0; i < truth.elements(); ++i) {
-    const bool sheared = !truth.shear_x.empty() && (truth.shear_x[i] != 0 || truth.shear_y[i] != 0);
-    const bool loaded = truth.normal[i] != 0 || sheared;
-    truth.status[i] = loaded ? status::kUsable : 0;
-  }
-}
-
-}  // namespace
-
-TruthProducer::TruthProducer(const SourceInfo& solved, Reader read)
-    : info_(truth_info(solved)),
-      read_(std::move(read)),
-      truth_(info_.skin),
-      blocks_(kMostShown, [this] {
-        return std::make_unique<PlaneBlock>(info_.skin.layout, info_.skin.element_rows(),
-                                            info_.skin.element_cols(), false);
-      }) {}
-
-ShownField TruthProducer::produce(std::uint64_t index) {
-  const std::shared_ptr<PlaneBlock> block = blocks_.acquire();
-  if (block == nullptr) throw_all_fields_in_use();
-  const double time_s = read_(index, truth_);
-  set_status(truth_);
-  block->copy(truth_.view());
-  ShownField field;
-  field.forces = block->view();
-  field.time_s = time_s;
-  field.index = index;
-  field.pages = block->pages();
-  field.keep_alive = block;
-  return field;
 }
 
 }  // namespace pillarfield::viewer

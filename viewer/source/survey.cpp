@@ -17,13 +17,11 @@ Survey::Survey(std::function<std::unique_ptr<FieldProducer>()> open, std::shared
 
 Survey::~Survey() {
   stopping_ = true;
-  look_again();
+  {
+    const std::scoped_lock lock(mutex_);
+    changed_.notify_one();
+  }
   thread_.join();
-}
-
-void Survey::look_again() {
-  const std::scoped_lock lock(mutex_);
-  changed_.notify_one();
 }
 
 Survey::Progress Survey::progress() const {
@@ -59,7 +57,11 @@ void Survey::measure_all(FieldProducer& producer) {
     }
     rests = false;
     const auto begin = Clock::now();
-    measure(producer, next);
+    if (const auto stored = producer.stored_total(next)) {
+      curves_->add(*stored);
+    } else {
+      curves_->add(producer.produce(next));
+    }
     tell(false);
     if (busy_ && !stopping_) std::this_thread::sleep_for(Clock::now() - begin);
   }
@@ -76,16 +78,6 @@ void Survey::rest(FieldProducer& producer) {
     changed_.wait_for(lock, kTellEvery);
   }
   if (!stopping_ && follows_) static_cast<void>(producer.refresh());
-}
-
-void Survey::measure(FieldProducer& producer, std::uint64_t index) {
-  const auto total =
-      curves_->wants_total_alone(index) ? producer.stored_total(index) : std::nullopt;
-  if (total) {
-    curves_->add_total(*total);
-  } else {
-    curves_->add(producer.produce(index));
-  }
 }
 
 void Survey::tell(bool at_once) {

@@ -25,11 +25,9 @@ class Survey {
   void set_busy(bool busy) { busy_ = busy; }
   /// Looks for new frames ten times a second.
   void set_follow(bool follow) { follows_ = follow; }
-  /// Measures frames that a new rectangle lacks.
-  void look_again();
 
   struct Progress {
-    std::uint64_t done = 0;    ///< frames measured for every curve
+    std::uint64_t done = 0;    ///< frames measured
     std::uint64_t frames = 0;  ///< of the source
     std::string failure;       ///< why the survey ended early
   };
@@ -42,7 +40,6 @@ class Survey {
  private:
   void run();
   void measure_all(FieldProducer& producer);
-  void measure(FieldProducer& producer, std::uint64_t index);
   void rest(FieldProducer& producer);
   void set_frames(std::uint64_t frames);
   void tell(bool at_once);

@@ -22,8 +22,6 @@ bool angles(const SourceInfo& source) { return source.has_angles; }
 bool uncertain(const SourceInfo& source) { return source.has_uncertainty; }
 bool readings(const SourceInfo& source) { return source.has_readings && pillars(source); }
 
-bool truth(const SourceInfo& source) { return source.has_truth; }
-
 constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
     {"normal", "Normal force", Dimension::force, Scale::sequential, any},
     {"shear", "Shear", Dimension::force, Scale::sequential, pillars},
@@ -37,7 +35,6 @@ constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
     {"uncertainty", "Uncertainty", Dimension::force, Scale::sequential, uncertain},
     {"parity", "Parity residual", Dimension::counts, Scale::diverging, readings},
     {"pressure", "Pressure", Dimension::pressure, Scale::sequential, any},
-    {"difference", "Difference", Dimension::force, Scale::sequential, truth},
 }};
 
 float root_of_squares(float x, float y) { return std::sqrt(x * x + y * y); }
@@ -86,11 +83,6 @@ bool is_faulty(std::uint8_t status) {
   return (status & (status::kSaturated | status::kInconsistent)) != 0;
 }
 
-float difference_of(const ShownField& field, std::size_t pillar) {
-  const float value = field.difference == nullptr ? -1 : (*field.difference)[pillar];
-  return value < 0 ? kNothing : value;
-}
-
 float region_value(std::uint8_t status) {
   const Region region = region_of(status);
   return region == Region::none ? kNothing : static_cast<float>(region);
@@ -129,8 +121,6 @@ float pressed_value(Quantity quantity, const ShownField& field, const Skin& skin
       return status_value(forces.status[pillar]);
     case Quantity::uncertainty:
       return uncertainty_of(forces, pillar);
-    case Quantity::difference:
-      return difference_of(field, pillar);
     case Quantity::parity:
       break;
   }
@@ -205,8 +195,7 @@ Range fitting_range(Quantity quantity, float largest_value) {
 float value_of(Quantity quantity, const ShownField& field, const Skin& skin, std::uint32_t row,
                std::uint32_t col) {
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
-  const bool of_any = quantity == Quantity::region || quantity == Quantity::status ||
-                      quantity == Quantity::difference;
+  const bool of_any = quantity == Quantity::region || quantity == Quantity::status;
   if (!of_any && !is_pressed(status)) return kNothing;
   return pressed_value(quantity, field, skin, row, col);
 }

@@ -24,9 +24,8 @@ enum class Quantity : std::uint8_t {
                 ///< least half the interval of the magnitude
   parity,       ///< V1 + V3 - V2 - V4 of the readings, counts
   pressure,     ///< normal force over the area of a pillar or sensel, kPa
-  difference,   ///< |solved - true force|, N, also where a true force was missed
 };
-inline constexpr int kQuantities = 13;
+inline constexpr int kQuantities = 12;
 
 enum class Scale : std::uint8_t { sequential, diverging, cyclic, classes };
 

@@ -19,7 +19,7 @@ Margins margins_of(const RenderSettings& settings) {
 
 Layout layout_of(double width, double height, const RenderSettings& settings) {
   const auto [left, top, right, bottom, legend] = margins_of(settings);
-  const double used = left + right + (settings.colour_bar ? legend : 0);
+  const double used = left + right + legend;
   Layout layout;
   layout.plot = {left, top, std::max(width - used, 1.0), std::max(height - top - bottom, 1.0)};
   const double unit = settings.scale;

@@ -29,7 +29,6 @@ struct RenderSettings {
   double arrow_cell = 14;  ///< least width of an arrow's cell, pixels at scale 1
   double scale = 1;        ///< pixels of the display per nominal pixel
   bool legend = true;      ///< axes, colour bar, legends and title
-  bool colour_bar = true;  ///< of these, colour bar and legends
   std::string title;
   friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
 };

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "pillarfield/status.h"
 #include "viewer/app/input/actions.h"
 #include "viewer/app/input/gui_input.h"
 #include "viewer/app/input/shortcuts.h"
@@ -27,7 +28,7 @@ class FakeProducer final : public FieldProducer {
     info_.skin.rows = side * kRows;
     info_.skin.cols = side * kCols;
     info_.frames = kFrames;
-    info_.has_readings = info_.has_uncertainty = info_.has_truth = true;
+    info_.has_readings = info_.has_uncertainty = true;
     info_.has_angles = layout == SkinLayout::pillars;
     info_.contacts.layout = layout;
   }

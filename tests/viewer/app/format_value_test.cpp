@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "pillarfield/status.h"
+
 namespace pillarfield::viewer {
 namespace {
 

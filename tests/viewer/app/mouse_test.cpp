@@ -63,7 +63,6 @@ TEST(Mouse, AClickPinsAndAnotherUnpins) {
   const Vec2 pixel = mouse.pixel(7, 21);
   mouse.drag(pixel, {pixel.x + 2, pixel.y + 1});
   EXPECT_EQ(mouse.state.marks.pins.size(), 2u) << "a trembling click";
-  EXPECT_FALSE(mouse.state.marks.selection);
 }
 
 TEST(Mouse, PinsAreNotMoreThanThereMayBe) {
@@ -89,19 +88,10 @@ TEST(Mouse, ADoubleClickResetsTheViewAndLeavesPinsAlone) {
   EXPECT_NE(mouse.top(), fitted) << "two slow clicks";
 }
 
-TEST(Mouse, ADragSelectsThePillarsItTouches) {
-  Mouse mouse;
-  mouse.drag(mouse.pixel(12, 20), mouse.pixel(4, 6));
-  ASSERT_TRUE(mouse.state.marks.selection);
-  EXPECT_EQ(mouse.state.marks.selection->rect, (PillarRect{4, 13, 6, 21}));
-  EXPECT_TRUE(mouse.state.marks.pins.empty());
-  mouse.drag(mouse.pixel(10, 10), {2000, -500});
-  EXPECT_EQ(mouse.state.marks.selection.value().rect, (PillarRect{0, 11, 10, FakeProducer::kCols}));
-}
-
-TEST(Mouse, OtherButtonsAndShiftMoveTheView) {
+TEST(Mouse, ADragMovesTheView) {
   for (const auto& [button, modifiers] :
-       {std::pair{MouseButton::right, Modifiers{}}, std::pair{MouseButton::middle, Modifiers{}},
+       {std::pair{MouseButton::left, Modifiers{}}, std::pair{MouseButton::right, Modifiers{}},
+        std::pair{MouseButton::middle, Modifiers{}},
         std::pair{MouseButton::left, Modifiers{true, false}}}) {
     Mouse mouse;
     const Vec2 from = mouse.pixel(10, 15);
@@ -110,7 +100,6 @@ TEST(Mouse, OtherButtonsAndShiftMoveTheView) {
     const auto moved = pixel_of(mouse.place, mouse.state.look.settings, *point);
     EXPECT_NEAR(moved->x, from.x + 60, 1e-6);
     EXPECT_NEAR(moved->y, from.y - 40, 1e-6);
-    EXPECT_FALSE(mouse.state.marks.selection);
     EXPECT_FALSE(mouse.state.look.view_is_fitted);
   }
 }
@@ -136,7 +125,6 @@ TEST(Mouse, ADragTurnsAViewInPerspective) {
   EXPECT_NE(after.azimuth, before.azimuth);
   EXPECT_NE(after.elevation, before.elevation);
   EXPECT_EQ(after.distance_mm, before.distance_mm);
-  EXPECT_FALSE(mouse.state.marks.selection);
 }
 
 TEST(Mouse, OutsideTheFieldItDoesNothing) {
@@ -146,7 +134,6 @@ TEST(Mouse, OutsideTheFieldItDoesNothing) {
   mouse.drag({900, 300}, {950, 350});
   mouse.controls.take(WheelEvent{2, {900, 300}}, mouse.command());
   EXPECT_TRUE(mouse.state.marks.pins.empty());
-  EXPECT_FALSE(mouse.state.marks.selection);
   EXPECT_EQ(mouse.state.look.settings, before);
 }
 

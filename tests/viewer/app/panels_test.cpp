@@ -9,7 +9,6 @@
 #include "tests/io/sample_files.h"
 #include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/export/export.h"
-#include "viewer/app/source/start_pictures.h"
 #include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
@@ -31,7 +30,6 @@ struct Panels : testing::Test {
 
 TEST_F(Panels, EachWidgetActs) {
   RenderSettings& settings = fake.state.look.settings;
-  fake.state.source.open_truth = []() -> std::unique_ptr<FieldProducer> { return nullptr; };
   set_range(fake.state, {0, 100});
   press({"View", "Fit"});
   EXPECT_EQ(settings.range, (Range{0, 3}));
@@ -44,8 +42,6 @@ TEST_F(Panels, EachWidgetActs) {
     press({"View", name});
     EXPECT_NE(settings.*layer, before) << name;
   }
-  press({"View", "truth"});
-  EXPECT_TRUE(fake.pending.truth);
   press({"View", "light"});
   EXPECT_EQ(settings.theme, Theme::light);
   press({"View", "3-D"});
@@ -56,9 +52,6 @@ TEST_F(Panels, EachWidgetActs) {
     press({"Write", name});
     EXPECT_TRUE(fake.pending.*request) << name;
   }
-  select_pillars(fake.state, {1, 8, 2, 9});
-  press({"Selection", "Keep as a named box"});
-  EXPECT_EQ(fake.state.marks.boxes.size(), 1U);
 }
 
 TEST_F(Panels, AHeadingFoldsItsPanel) {
@@ -84,22 +77,6 @@ TEST_F(Panels, PinsAreChosenByTheirNumbersAndRemoved) {
   EXPECT_EQ(fake.state.marks.pins.size(), 1U) << "a pin outside the field";
 }
 
-TEST_F(Panels, SumsOfTheSelectionFollowRectangleAndFrame) {
-  fake.state.marks.selection = Selection{{4, 20, 8, 30}};
-  const auto sum = [&](const PillarRect& rect) {
-    return sums_over(*fake.state.source.field, rect, fake.player().info().skin.element_pitch_mm())
-        .normal;
-  };
-  EXPECT_EQ(selection_sums(fake.state).normal, sum({4, 20, 8, 30}));
-  fake.state.marks.selection->rect.row_end = 14;
-  const double second = sum({4, 14, 8, 30});
-  EXPECT_EQ(selection_sums(fake.state).normal, second);
-  fake.state.source.field->forces.normal = fake.state.source.field->forces.shear_x;
-  EXPECT_EQ(selection_sums(fake.state).normal, second) << "cached for the frame";
-  ++fake.state.source.field->index;
-  EXPECT_LT(selection_sums(fake.state).normal, second);
-}
-
 std::set<std::string> available(const SourceInfo& source) {
   std::set<std::string> names;
   for (int i = 0; i < kQuantities; ++i) {
@@ -112,8 +89,8 @@ std::set<std::string> available(const SourceInfo& source) {
 TEST(QuantitiesOfSensels, AreThoseOfNormalForce) {
   SourceInfo source = FakeProducer(SkinLayout::sensels).info();
   EXPECT_EQ(available(source),
-            (std::set<std::string>{"difference", "normal", "pressure", "status", "uncertainty"}));
-  source.has_uncertainty = source.has_truth = false;
+            (std::set<std::string>{"normal", "pressure", "status", "uncertainty"}));
+  source.has_uncertainty = false;
   EXPECT_EQ(available(source), (std::set<std::string>{"normal", "pressure", "status"}));
   EXPECT_EQ(available(FakeProducer().info()).size(), static_cast<std::size_t>(kQuantities));
 }
@@ -143,9 +120,7 @@ std::string words_of_panels(SkinLayout layout) {
       FieldContacts(source.skin.element_pitch_mm(), source.contacts)
           .contacts_of(*fake.state.source.field));
   toggle_pin(fake.state, {3, 4});
-  select_pillars(fake.state, {1, 8, 2, 9});
   fake.state.marks.hovered = PillarIndex{5, 6};
-  fake.state.marks.boxes = {{"heel", {1, 8, 2, 9}, 1}};
   FakeGui gui;
   std::string words;
   for (int i = 0; i < 2; ++i) {  // Sizes are known in the second frame.
@@ -165,7 +140,7 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
   const std::string words = words_of_panels(SkinLayout::sensels);
   const std::string others = words_of_panels(SkinLayout::pillars);
   for (const std::string word : {"illar", "hear", "egion", "gnitude", "ambig", "arity", "slip", "φ",
-                                 "θ", "moment", "arrows", "hatch", "sectors"}) {
+                                 "θ", "arrows", "hatch", "sectors"}) {
     EXPECT_EQ(words.find(word), std::string::npos) << word << " in " << words;
     EXPECT_NE(others.find(word), std::string::npos) << word;
   }
@@ -174,30 +149,27 @@ TEST(PanelsOfSensels, HaveNoWordOfPillars) {
   }
 }
 
-TEST(StartPage, APictureAndARecentSourceAreChosenByTheirNames) {
-  StartChoices choices{{"old.h5"}, {"scenes/demo.toml", "scenes/wave.toml"}, {}};
-  choices.pictures.resize(embedded_pictures().size());
+TEST(StartPage, ASceneAndARecentSourceAreChosenByTheirNames) {
+  const StartChoices choices{{"old.h5"}, {"scenes/demo.toml", "scenes/wave.toml"}};
   FakeGui gui;
   std::string chosen;
   const auto draw = [&] {
     const std::string source = start_page(choices, {0, 0, 500, 1600}, "", 1);
     if (!source.empty()) chosen = source;
   };
-  gui.press({"demo"}, draw, "start");
+  gui.press({"Scenes, simulated as they are opened", "demo"}, draw, "start");
   EXPECT_EQ(chosen, "scenes/demo.toml");
   gui.press({"recent", "old.h5"}, draw, "start");
   EXPECT_EQ(chosen, "old.h5");
 }
 
-TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
+TEST(ShowContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
   FakeAppState fake;
   const View whole = fake.state.look.settings.view;
-  const PillarRect extent{2, 4, 20, 24};
-  mark_contact(fake.state, fake.place, {3, 2}, extent);
-  EXPECT_EQ(fake.state.marks.selection.value().rect, extent);
+  show_contact(fake.state, fake.place, {3, 2});
   EXPECT_EQ(fake.state.look.settings.view, whole);
   fake.state.look.settings.view = TopView{{-10, -5}, 500};
-  mark_contact(fake.state, fake.place, {3, 2}, extent);
+  show_contact(fake.state, fake.place, {3, 2});
   EXPECT_EQ(std::get<TopView>(fake.state.look.settings.view).centre_mm, (Vec2{3, 2}));
   EXPECT_FALSE(fake.state.look.view_is_fitted);
 }

@@ -20,11 +20,11 @@ auto state_of(const FakeAppState& fake) {
   const AppState& state = fake.state;
   const PlayerState player = fake.player().state();
   const PendingActions& pending = fake.pending;
-  return std::tuple(state.look.settings, state.marks.pins.size(), state.marks.selection.has_value(),
-                    state.window.show_help, state.window.show_panels, player.frame, player.playing,
-                    player.loops, player.follows, player.speed, pending.quit, pending.picture,
-                    pending.video, pending.table, pending.stop, pending.record, pending.truth,
-                    pending.start, state.window.notice);
+  return std::tuple(state.look.settings, state.marks.pins.size(), state.window.show_help,
+                    state.window.show_panels, player.frame, player.playing, player.loops,
+                    player.follows, player.speed, pending.quit, pending.picture, pending.video,
+                    pending.table, pending.stop, pending.record, pending.start,
+                    state.window.notice);
 }
 
 /// A state that every shortcut changes.
@@ -33,7 +33,6 @@ void set_up(FakeAppState& fake, Quantity quantity) {
   set_range(fake.state, {0, 7.5f});
   fake.player().seek(50);
   toggle_pin(fake.state, {3, 4});
-  select_pillars(fake.state, {1, 2, 3, 4});
   zoom(fake.state.look.settings.view, fake.place.plot(fake.state.look.settings), {300, 300}, 2);
 }
 

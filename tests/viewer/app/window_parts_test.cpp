@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "tests/viewer/app/fake_app_state.h"
+#include "tests/viewer/source/touched_field.h"
 #include "viewer/app/panels/plot.h"
 #include "viewer/app/source/source_feed.h"
 #include "viewer/app/window/gui.h"
 #include "viewer/app/window/redraws.h"
+#include "viewer/render/contact_marks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -20,14 +22,14 @@ double area(const Viewport& box) { return box.width * box.height; }
 
 constexpr Sides kBothSides{true, 131};
 
-/// Both sides beside `pictures` of a skin.
-Sides sides_beside(double aspect, int pictures) { return {true, 131, aspect, pictures}; }
+/// Both sides of a skin.
+Sides sides_of_skin(double aspect) { return {true, 131, aspect}; }
 
 TEST(Screen, ItsPartsTileTheWindow) {
   for (const std::uint32_t width : {1u, 100u, 481u, 1280u, 3841u}) {
     for (const std::uint32_t height : {1u, 30u, 321u, 720u, 2160u}) {
       for (const double scale : {1.0, 1.25, 2.0}) {
-        for (const Sides& sides : {Sides{}, kBothSides, sides_beside(0.4, 1), sides_beside(3, 2)}) {
+        for (const Sides& sides : {Sides{}, kBothSides, sides_of_skin(0.4), sides_of_skin(3)}) {
           const Screen screen = divide(width, height, scale, sides);
           const double all = area(screen.field) + area(screen.column) + area(screen.row) +
                              area(screen.transport) + area(screen.status);
@@ -47,7 +49,7 @@ TEST(Screen, FieldAndCurvesHaveTheirRoom) {
     for (const double aspect : {0.42, 1.0, 2.0}) {
       const auto divided = [&](double width, double height) {
         return divide(static_cast<std::uint32_t>(scale * width),
-                      static_cast<std::uint32_t>(scale * height), scale, sides_beside(aspect, 1));
+                      static_cast<std::uint32_t>(scale * height), scale, sides_of_skin(aspect));
       };
       const Screen small = divided(1280, 720);
       EXPECT_GE(area(small.field), 0.55 * 1280 * 720 * scale * scale);
@@ -63,20 +65,9 @@ TEST(Screen, FieldAndCurvesHaveTheirRoom) {
   }
 }
 
-TEST(Layout, LegendLiesBesideThePlotAndHalvesHaveEqualPlots) {
-  RenderSettings settings;
-  const Layout whole = layout_of(1000, 600, settings);
+TEST(Layout, LegendLiesBesideThePlot) {
+  const Layout whole = layout_of(1000, 600, {});
   EXPECT_LT(whole.plot.x + whole.plot.width, whole.bar.x);
-  for (const double width : {1000.0, 642.0, 321.0}) {
-    const Viewport all{0, 0, width, 400};
-    const Viewport first = first_half(all, settings);
-    const Viewport second = second_half(all, settings);
-    EXPECT_LE(second.x + second.width, width);
-    RenderSettings bare = settings;
-    bare.colour_bar = false;
-    EXPECT_EQ(layout_of(first.width, 400, bare).plot.width,
-              layout_of(second.width, 400, settings).plot.width);
-  }
 }
 
 TEST(LoadRange, RisesAtOnceAndFallsWithPatience) {
@@ -164,6 +155,27 @@ TEST(Curve, BreaksWhereThereIsNoValue) {
     const auto [from, to] = std::minmax({x_of(i), x_of(i + 1), x_of(i + 2)});
     EXPECT_TRUE(to < 45 || from > 55);
   }
+}
+
+TEST(LabelBoxes, CoverNoLabelOfAHeavierContact) {
+  SourceInfo source;
+  source.skin.rows = 40;
+  source.skin.cols = 80;
+  source.skin.sensel_pitch_mm = 0.5;
+  RenderSettings settings;
+  settings.view = TopView{{0, 0}, 10};
+  const Viewport plot{30, 20, 400, 200};
+  const ShownContacts contacts = FieldContacts(1).contacts_of(
+      touched_field(0, 20, 40, {{{4, 8, 20, 22}, 3}, {{4, 8, 23, 25}, 2}, {{12, 16, 20, 22}, 1}}));
+  const auto marks = contact_marks(contacts, Ground(nullptr, source, settings, plot));
+  FakeGui gui;
+  gui.frame([&] {
+    const std::vector<Viewport> labels = label_boxes(marks, plot, 1);
+    ASSERT_EQ(labels.size(), 3U);
+    EXPECT_GT(labels[0].width, 0);
+    EXPECT_EQ(labels[1].width, 0) << "beside a heavier one";
+    EXPECT_GT(labels[2].width, 0);
+  });
 }
 
 /// Draws while due; returns the number of frames.

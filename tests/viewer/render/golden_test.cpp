@@ -96,7 +96,6 @@ const std::vector<GoldenPicture>& golden_pictures() {
       {"demo_uncertainty_zoom",
        {"demo.toml", "--frame=31", "--layer=uncertainty", "--zoom=5", "--centre=6,1", "--sectors"}},
       {"demo_contacts", {"demo.toml", "--frame=31", "--contacts", "--no-arrows"}},
-      {"demo_difference", {"demo.toml", "--frame=31", "--layer=difference"}},
       {"pad_values", {"touch/pad.toml", "--frame=71", "--layer=pressure", "--zoom=8"}},
       {"pad_half", {"touch/pad.toml", "--frame=71", "--layer=pressure"}},
       {"pad_pressure", {"touch/pad.toml", "--frame=71", "--layer=pressure", "--contacts"}},
@@ -151,7 +150,6 @@ struct Scenery {
         field(producer->produce(options.first_frame)),
         source(producer->info()) {
     settings.view = first_view(options, source, layout_of(kWidth, kHeight, settings));
-    if (settings.quantity == Quantity::difference) add_difference(field, producer->open_truth);
     if (!settings.contacts) return;
     field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
   }

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <thread>
 
 #include "pillarfield/error.h"
+#include "pillarfield/status.h"
 #include "tests/viewer/source/touched_field.h"
 #include "viewer/source/survey.h"
 
@@ -15,7 +17,6 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr double kCurvePitch = 1.25;
-constexpr PillarRect kWholeSkin{0, 20, 0, 30};
 
 /// A force that rises with the frame.
 ShownField rising_field(std::uint64_t index) {
@@ -25,44 +26,86 @@ ShownField rising_field(std::uint64_t index) {
 }
 
 TEST(CurvePoint, OfAnIdleSkinHasNoCentre) {
-  const CurvePoint idle = curve_point(touched_field(3, 20, 30, {}), kWholeSkin, kCurvePitch);
+  const CurvePoint idle = curve_point(touched_field(3, 20, 30, {}), kCurvePitch);
   EXPECT_EQ(idle.normal, 0);
   EXPECT_TRUE(std::isnan(idle.centre_x_mm));
   EXPECT_TRUE(std::isnan(idle.torque));
 }
 
-TEST(Curves, TakeEachFrameOnceAndKeepThoseOfARectangleThatStays) {
+/// A field of random forces and status bytes.
+ForceField random_forces(std::uint32_t rows, std::uint32_t cols) {
+  ForceField forces(rows, cols);
+  std::mt19937 random(rows * 100 + cols);
+  std::uniform_real_distribution<float> force(-1, 1);
+  for (std::size_t i = 0; i < forces.elements(); ++i) {
+    forces.shear_x[i] = force(random);
+    forces.shear_y[i] = force(random);
+    forces.normal[i] = 1 + force(random);
+    forces.status[i] = static_cast<std::uint8_t>(random() % 3 == 0 ? 0 : random() % 256);
+  }
+  return forces;
+}
+
+TEST(CurvePoint, IsTheSumOfAPlainLoop) {
+  for (const auto& [rows, cols] : {std::pair{1U, 1U}, std::pair{9U, 14U}, std::pair{20U, 33U}}) {
+    ForceField forces = random_forces(rows, cols);
+    forces.normal[0] = std::nanf("");
+    double normal = 0, shear_x = 0, shear_y = 0, moment_x = 0, moment_y = 0, turn = 0;
+    for (std::size_t i = 1; i < forces.elements(); ++i) {
+      if ((forces.status[i] & status::kLoaded) == 0) continue;
+      const double x = kCurvePitch * (static_cast<double>(i % cols) + 0.5 - 0.5 * cols);
+      const double y = kCurvePitch * (0.5 * rows - static_cast<double>(i / cols) - 0.5);
+      const double n = forces.normal[i], sx = forces.shear_x[i], sy = forces.shear_y[i];
+      normal += n;
+      shear_x += sx;
+      shear_y += sy;
+      moment_x += n * x;
+      moment_y += n * y;
+      turn += x * sy - y * sx;
+    }
+    ShownField field;
+    field.forces = forces.view();
+    const CurvePoint point = curve_point(field, kCurvePitch);
+    EXPECT_NEAR(point.normal, normal, 1e-4);
+    EXPECT_NEAR(point.shear_x, shear_x, 1e-4);
+    EXPECT_NEAR(point.shear_y, shear_y, 1e-4);
+    if (!(normal > 0)) continue;
+    EXPECT_NEAR(point.centre_x_mm, moment_x / normal, 1e-4);
+    EXPECT_NEAR(point.centre_y_mm, moment_y / normal, 1e-4);
+    EXPECT_NEAR(point.torque, turn - (moment_x * shear_y - moment_y * shear_x) / normal, 1e-3);
+  }
+}
+
+TEST(CurvePoint, ATurnToTheLeftIsPositive) {
+  ShownField field = touched_field(0, 3, 3, {{{1, 2, 0, 1}, 2, 0, -1}, {{1, 2, 2, 3}, 2, 0, 1}});
+  const CurvePoint point = curve_point(field, kCurvePitch);
+  EXPECT_FLOAT_EQ(point.torque, 2 * kCurvePitch);
+  EXPECT_EQ(point.centre_x_mm, 0);
+  EXPECT_EQ(point.centre_y_mm, 0);
+}
+
+TEST(Curves, TakeEachFrameOnce) {
   Curves curves(kCurvePitch);
-  const PillarRect first{2, 3, 12, 13};
-  const PillarRect second{15, 17, 3, 29};
-  curves.set_rects(std::vector{first});
   for (const std::uint64_t index : {0U, 1U, 1U, 0U, 2U}) curves.add(rising_field(index));
-  EXPECT_EQ(curves.total(0, 1, 100).size(), 3U);
-  curves.set_rects(std::vector{second, first});
-  EXPECT_EQ(curves.of(first, 0, 1, 100).size(), 3U);
-  EXPECT_EQ(curves.of(second, 0, 1, 100).size(), 0U);
-  EXPECT_EQ(curves.next(), 0U);
-  curves.add(rising_field(0));
-  EXPECT_EQ(curves.next(), 1U);
-  EXPECT_EQ(curves.total(0, 1, 100).size(), 3U);
-  EXPECT_FLOAT_EQ(curves.of(first, 0, 1, 100)[2].normal, 3);
+  EXPECT_EQ(curves.between(0, 1, 100).size(), 3U);
+  EXPECT_EQ(curves.next(), 3U);
 }
 
 TEST(Curves, ThinningKeepsThePeakAndTheNeighboursOfTheWindow) {
   Curves curves(kCurvePitch);
   for (std::uint64_t i = 0; i < 1000; ++i) {
-    curves.add_total({.time_s = 0.01 * static_cast<double>(i),
-                      .index = i,
-                      .normal = i == 457   ? 9.0F
-                                : i == 613 ? -2.0F
-                                           : 1.0F});
+    curves.add(CurvePoint{.time_s = 0.01 * static_cast<double>(i),
+                          .index = i,
+                          .normal = i == 457   ? 9.0F
+                                    : i == 613 ? -2.0F
+                                               : 1.0F});
   }
-  const auto points = curves.total(0, 100, 50);
+  const auto points = curves.between(0, 100, 50);
   EXPECT_LE(points.size(), 52U);
   const auto [low, high] = std::ranges::minmax(points, {}, &CurvePoint::normal);
   EXPECT_EQ(low.index, 613U);
   EXPECT_EQ(high.index, 457U);
-  const auto window = curves.total(2.005, 2.025, 50);
+  const auto window = curves.between(2.005, 2.025, 50);
   ASSERT_EQ(window.size(), 4U);
   EXPECT_EQ(window.front().index, 200U);
   EXPECT_EQ(window.back().index, 203U);
@@ -71,7 +114,7 @@ TEST(Curves, ThinningKeepsThePeakAndTheNeighboursOfTheWindow) {
 TEST(Curves, ALongCurveLosesItsBegin) {
   Curves curves(kCurvePitch, 10);
   for (std::uint64_t i = 0; i < 25; ++i) curves.add(rising_field(i));
-  const auto points = curves.total(-1, 1, 100);
+  const auto points = curves.between(-1, 1, 100);
   ASSERT_EQ(points.size(), 10U);
   EXPECT_EQ(points.front().index, 15U);
 }
@@ -86,7 +129,7 @@ class RisingProducer final : public FieldProducer {
     return rising_field(index);
   }
   [[nodiscard]] std::optional<CurvePoint> stored_total(std::uint64_t index) override {
-    if (index % 2 != 0) return std::nullopt;
+    if (index % 2 != 0 || index == 40) return std::nullopt;
     return CurvePoint{.time_s = 0.01 * static_cast<double>(index), .index = index, .normal = -1};
   }
   bool refresh() override {
@@ -106,32 +149,24 @@ void wait_until(Condition condition) {
   EXPECT_TRUE(condition());
 }
 
-TEST(Survey, MeasuresEveryFrameThenNewRectanglesAndNewFrames) {
+TEST(Survey, MeasuresEveryFrameThenNewFrames) {
   const auto curves = std::make_shared<Curves>(kCurvePitch);
   Survey survey([] { return std::make_unique<RisingProducer>(20); }, curves);
   wait_until([&] { return survey.progress().done == 20; });
-  const auto total = curves->total(0, 1, 100);
-  ASSERT_EQ(total.size(), 20U);
-  EXPECT_EQ(total[6].normal, -1) << "stored";
-  EXPECT_FLOAT_EQ(total[7].normal,
-                  static_cast<float>(sums_over(rising_field(7), kWholeSkin, 1).normal));
-  const PillarRect pillar{2, 3, 12, 13};
-  curves->set_rects(std::vector{pillar});
-  survey.look_again();
-  wait_until([&] { return curves->of(pillar, 0, 1, 100).size() == 20; });
+  const auto points = curves->between(0, 1, 100);
+  ASSERT_EQ(points.size(), 20U);
+  EXPECT_EQ(points[6].normal, -1) << "stored";
+  EXPECT_EQ(points[7].normal, curve_point(rising_field(7), kCurvePitch).normal);
   survey.set_follow(true);
   wait_until([&] { return survey.progress().done == 30; });
-  EXPECT_EQ(curves->of(pillar, 0, 1, 100).size(), 30U);
 }
 
 TEST(Survey, AFailureIsReportedAndWhatWasMeasuredStays) {
   const auto curves = std::make_shared<Curves>(kCurvePitch);
-  const PillarRect pillar{2, 3, 12, 13};
-  curves->set_rects(std::vector{pillar});
   Survey survey([] { return std::make_unique<RisingProducer>(50); }, curves);
   wait_until([&] { return !survey.progress().failure.empty(); });
   EXPECT_NE(survey.progress().failure.find("frame 40 is damaged"), std::string::npos);
-  EXPECT_EQ(curves->of(pillar, 0, 1, 100).size(), 40U);
+  EXPECT_EQ(curves->between(0, 1, 100).size(), 40U);
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST(LivePlayer, SolvesEveryFrameAndShowsTheNewest) {
   const PlayerStatistics statistics = live.player->statistics();
   EXPECT_EQ(statistics.produced, 101U);
   EXPECT_EQ(statistics.taken + statistics.not_shown + statistics.waiting, 101U);
-  const auto points = live.curves->total(-1, 1e9, 1000);
+  const auto points = live.curves->between(-1, 1e9, 1000);
   ASSERT_EQ(points.size(), 101U);
   EXPECT_FLOAT_EQ(points.front().normal, 2);
   EXPECT_FLOAT_EQ(points.back().normal, 4);
@@ -133,7 +133,7 @@ TEST(LivePlayer, PauseFreezesThePictureNotTheSensor) {
   live.player->pause();
   live.send(80, 5);
   EXPECT_FALSE(live.player->take());
-  EXPECT_EQ(live.curves->total(-1, 1e9, 1000).size(), 6U);
+  EXPECT_EQ(live.curves->between(-1, 1e9, 1000).size(), 6U);
   live.player->play();
   live.send(100);
   EXPECT_EQ(live.newest().forces.normal[2 * 8 + 2], 1);

@@ -123,7 +123,7 @@ TEST(ResultPlayer, ShowsForcesAndContactsOfTheOtherProgram) {
   EXPECT_EQ(next.forces.normal[heavy], 2);
   EXPECT_GT(next.time_s, field.time_s);
   EXPECT_EQ(next.index, 1U);
-  const auto points = shown.opened.curves->total(-1, 1e9, 10);
+  const auto points = shown.opened.curves->between(-1, 1e9, 10);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_FLOAT_EQ(points.back().normal, 12 * 2 + 4);
 }

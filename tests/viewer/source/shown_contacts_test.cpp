@@ -43,23 +43,13 @@ TEST(ShownContacts, TheHeaviestComesFirst) {
   EXPECT_DOUBLE_EQ(contacts.found.total.normal_n, 4 * (1 + 3 + 2 + 3));
 }
 
-TEST(ShownContacts, SinglePillarsBelowFiveDeviationsComeLast) {
-  const ShownField field = touched_field(
-      0, 20, 30, {{{1, 2, 1, 2}, 0.6F}, {{5, 6, 5, 6}, 0.4F}, {{9, 10, 9, 11}, 0.1F}});
-  ContactOptions options;
-  options.noise_n = 0.1;
-  const ShownContacts contacts = FieldContacts(kContactPitch, options).contacts_of(field);
-  EXPECT_EQ(contacts.heaviest, (std::vector<std::size_t>{0, 2, 1}));
-  EXPECT_EQ(contacts.above_noise, 2U);
-}
-
 TEST(ShownContacts, ANumberThatTheStatusLacksIsAnError) {
   ContactLabels map;
   const ShownField field = touched_field(0, 20, 30, {{{1, 3, 1, 3}}});
   map.find(field.forces.status, 20, 30);
   FrameContacts found;
   found.contacts.emplace_back().label = 1;
-  EXPECT_THROW(static_cast<void>(with_extents(found, map, {})), Error);
+  EXPECT_THROW(static_cast<void>(with_extents(found, map)), Error);
 }
 
 TEST(FieldContacts, FollowsOnwardsAlsoPastFramesLeftOut) {

@@ -62,15 +62,6 @@ class Window:
     def key(self, name):
         self.screen.xdotool("key", "--window", self.id, name)
 
-    def move(self, x, y):
-        self.screen.xdotool("mousemove", "--window", self.id, round(x), round(y))
-
-    def drag(self, begin, end, button=1):
-        self.move(*begin)
-        self.screen.xdotool("mousedown", button)
-        self.move(*end)
-        self.screen.xdotool("mouseup", button)
-
     def sleep(self, sleeps=True):
         """Draws no more, as if a frame took long, or goes on."""
         self.process.send_signal(signal.SIGSTOP if sleeps else signal.SIGCONT)

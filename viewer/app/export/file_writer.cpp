@@ -129,7 +129,7 @@ bool FileWriter::wants_picture() const {
     source.player->pause();  // The user played on or went elsewhere.
     source.player->seek(next);
   }
-  return source.field && source.field->index == next && source.is_in_step(next);
+  return source.field && source.field->index == next;
 }
 
 void FileWriter::add(const Pixels& pixels) {

@@ -25,12 +25,6 @@ View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
   return fit_top(place.skin(), layout.plot);
 }
 
-/// Adds what the quantity needs to the field on display.
-void complete_field(AppState& state) {
-  if (state.look.settings.quantity != Quantity::difference || !state.source.field) return;
-  if (state.source.open_truth) add_difference(*state.source.field, state.source.open_truth);
-}
-
 }  // namespace
 
 void show_quantity(AppState& state, Quantity quantity) {
@@ -43,7 +37,6 @@ void show_quantity(AppState& state, Quantity quantity) {
   const bool same_scale = info_of(settings.quantity).scale == info.scale;
   remembered(state) = settings.range;
   settings.quantity = quantity;
-  complete_field(state);
   if (!same_scale) settings.map = default_map(info.scale);
   if (const auto& range = remembered(state); range && !state.look.fit_each_field) {
     settings.range = *range;
@@ -94,7 +87,6 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit) {
 void show_contacts(AppState& state, bool shown) {
   state.look.settings.contacts = shown;
   state.source.player->set_contacts(shown);
-  if (state.source.beside != nullptr) state.source.beside->set_contacts(shown);
 }
 
 void reset_view(AppState& state, const FieldPlace& place) {
@@ -132,13 +124,7 @@ void toggle_pin(AppState& state, PillarIndex pillar) {
   number_pins(state.marks);
 }
 
-void select_pillars(AppState& state, const PillarRect& rect) {
-  state.marks.selection = Selection{rect};
-}
-
-void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
-                  const PillarRect& extent) {
-  select_pillars(state, extent);
+void show_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre) {
   const Vec2 point{centre.x_mm, centre.y_mm};
   const auto pixel = pixel_of(place, state.look.settings, point);
   if (pixel && contains(place.plot(state.look.settings), *pixel)) return;
@@ -148,28 +134,6 @@ void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& ce
     std::get<OrbitView>(state.look.settings.view).target_mm = point;
   }
   state.look.view_is_fitted = false;
-}
-
-void clear_marks(AppState& state) {
-  state.marks.pins.clear();
-  state.marks.selection.reset();
-}
-
-void keep_selection(AppState& state) {
-  if (!state.marks.selection) {
-    state.window.notice.fail("select a part first; drag over the field");
-    return;
-  }
-  if (state.marks.boxes.size() == NamedBoxes::kMost) {
-    state.window.notice.fail(fmt::format("{} boxes at most; remove one", NamedBoxes::kMost));
-    return;
-  }
-  int number = 1;
-  while (std::ranges::find(state.marks.boxes, number, &NamedBox::number) != state.marks.boxes.end())
-    ++number;
-  state.marks.boxes.push_back({fmt::format("box {}", number), state.marks.selection->rect, number});
-  state.marks.selection.reset();
-  state.marks.names_box = state.window.show_panels;
 }
 
 void change_speed(AppState& state, int steps) {
@@ -190,7 +154,6 @@ void change_speed(AppState& state, int steps) {
 
 void take_field(AppState& state, ShownField field) {
   state.source.field = std::move(field);
-  complete_field(state);
   if (state.look.fit_each_field) fit_range(state);
 }
 

@@ -34,14 +34,8 @@ void stop_at_skin(AppState& state, const FieldPlace& place);
 
 /// Pins or unpins a pillar.
 void toggle_pin(AppState& state, PillarIndex pillar);
-void select_pillars(AppState& state, const PillarRect& rect);
-/// Selects the extent of a contact; moves the view if its centre of pressure is out of sight.
-void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
-                  const PillarRect& extent);
-void clear_marks(AppState& state);  ///< named boxes stay
-
-/// Makes the selection a named box, whose name can be typed next.
-void keep_selection(AppState& state);
+/// Moves the view if a contact's centre of pressure is out of sight.
+void show_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre);
 
 /// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);

@@ -31,19 +31,6 @@ void settle(const Command& command) {
   command.state.look.view_is_fitted = false;
 }
 
-void mark_between(const Command& command, Vec2 begin_mm, Vec2 pixel) {
-  const RenderSettings& settings = command.state.look.settings;
-  const auto* const view = std::get_if<TopView>(&settings.view);
-  if (view == nullptr) return;
-  const Vec2 end_mm = sheet_point_beyond(command.place, settings, *view, pixel);
-  const auto rect = pillars_between(command.place, begin_mm, end_mm);
-  if (rect) {
-    select_pillars(command.state, *rect);
-  } else {
-    command.state.marks.selection.reset();
-  }
-}
-
 }  // namespace
 
 void Controls::take(const InputEvent& event, const Command& command) {
@@ -69,15 +56,9 @@ void Controls::hover(const Command& command) const {
 
 void Controls::press(const ButtonEvent& event, const Command& command) {
   if (drag_ || !contains(command.place.area, event.pixel)) return;
-  const RenderSettings& settings = command.state.look.settings;
-  const bool pans = event.button != MouseButton::left || event.modifiers.shift;
-  const Purpose purpose = pans                    ? Purpose::pan
-                          : shows_orbit(settings) ? Purpose::orbit
-                                                  : Purpose::mark;
-  drag_ = Drag{event.button, purpose, event.pixel, event.pixel, false};
-  if (const auto* view = std::get_if<TopView>(&settings.view)) {
-    drag_->begin_mm = sheet_point_beyond(command.place, settings, *view, event.pixel);
-  }
+  const bool turns = event.button == MouseButton::left && !event.modifiers.shift &&
+                     shows_orbit(command.state.look.settings);
+  drag_ = Drag{event.button, turns, event.pixel, event.pixel, false};
 }
 
 void Controls::move(Vec2 pixel, const Command& command) {
@@ -89,15 +70,12 @@ void Controls::move(Vec2 pixel, const Command& command) {
   const Vec2 way{pixel.x - drag_->last.x, pixel.y - drag_->last.y};
   drag_->last = pixel;
   View& view = command.state.look.settings.view;
-  if (drag_->purpose == Purpose::mark) {
-    mark_between(command, drag_->begin_mm, pixel);
-  } else if (drag_->purpose == Purpose::orbit) {
+  if (drag_->turns) {
     orbit(view, way);
-    settle(command);
   } else {
     pan(view, plot_of(command), way);
-    settle(command);
   }
+  settle(command);
 }
 
 void Controls::release(const ButtonEvent& event, const Command& command) {

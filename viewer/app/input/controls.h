@@ -11,8 +11,8 @@ inline constexpr double kDoubleClickSeconds = 0.35;
 /// Translates key and mouse events in the field into actions, independent of a window.
 ///
 /// A click (press and release in one place) toggles a pin; a double click resets the view and
-/// restores the pin. A drag selects pillars in a top view and turns a 3-D view; with Shift or
-/// another button it moves either.
+/// restores the pin. A drag moves a top view and turns a 3-D view, which Shift or another button
+/// moves.
 class Controls {
  public:
   void take(const InputEvent& event, const Command& command);
@@ -27,14 +27,12 @@ class Controls {
   void hover(const Command& command) const;
 
  private:
-  enum class Purpose : std::uint8_t { mark, orbit, pan };
   struct Drag {
     MouseButton button;
-    Purpose purpose;
-    Vec2 begin;       ///< position of the press
-    Vec2 last;        ///< last position
-    bool moved;       ///< beyond the tolerance of a click
-    Vec2 begin_mm{};  ///< in a top view
+    bool turns;  ///< a 3-D view; else moves the view
+    Vec2 begin;  ///< position of the press
+    Vec2 last;   ///< last position
+    bool moved;  ///< beyond the tolerance of a click
   };
   struct Click {
     double time_s;

@@ -138,20 +138,6 @@ void route_key(const KeyEvent& key, const Command& command, Controls& controls) 
   }
 }
 
-/// The second picture has the view of the first, so a place in it means the one in the first.
-InputEvent in_first_half(InputEvent event, const AppState& state, const Viewport& field) {
-  if (state.source.beside == nullptr) return event;
-  const Viewport second = second_half(field, state.look.settings);
-  std::visit(
-      [&](auto& each) {
-        if constexpr (requires { each.pixel; }) {
-          if (contains(second, each.pixel)) each.pixel.x -= second.x - field.x;
-        }
-      },
-      event);
-  return event;
-}
-
 }  // namespace
 
 void route(const InputEvent& event, const Command& command, const Viewport& field,
@@ -177,7 +163,7 @@ void route(const InputEvent& event, const Command& command, const Viewport& fiel
   const bool in_field = wheel != nullptr && contains(field, wheel->pixel) && !covered;
   if (!in_field) GuiInput::take(event);
   if (!covered || (button != nullptr && !presses)) {
-    controls.take(in_first_half(event, command.state, field), command);
+    controls.take(event, command);
   }
 }
 

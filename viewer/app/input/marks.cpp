@@ -7,11 +7,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 #include "viewer/app/panels/panel_style.h"
-#include "viewer/app/window/style.h"
-#include "viewer/render/contact_marks.h"
 #include "viewer/render/ground.h"
 #include "viewer/render/imgui_point.h"
 
@@ -27,39 +24,12 @@ class Marker {
         ground_(state.source.field ? &*state.source.field : nullptr, *place.source,
                 state.look.settings, place.plot(state.look.settings)),
         list_(*ImGui::GetBackgroundDrawList()),
-        unit_(static_cast<float>(state.look.settings.scale)) {
-    if (!settings_.contacts || !state.source.field || !state.source.field->contacts) return;
-    taken_ = label_boxes(contact_marks(*state.source.field->contacts, ground_), ground_.plot(),
-                         settings_.scale);
-  }
+        unit_(static_cast<float>(state.look.settings.scale)) {}
 
-  void outline(const PillarRect& rect, ImU32 colour) const {
-    const auto points = ground_.outline(rect);
+  void outline(const PillarIndex& pillar) const {
+    const auto points = ground_.outline({pillar.row, pillar.row + 1, pillar.col, pillar.col + 1});
     draw_outline(list_, points, IM_COL32(0, 0, 0, 200), 3 * unit_);
-    draw_outline(list_, points, colour, 1.4f * unit_);
-  }
-
-  /// A named box: its name stands below its lowest point, or inside where a label is there.
-  void box(const NamedBox& box) {
-    const ImU32 colour = packed(pin_colour(box.number, Theme::dark));
-    outline(box.rect, colour);
-    std::optional<Vec2> corner;
-    for (const SeenPoint& point : ground_.outline(box.rect)) {
-      const bool lower =
-          !corner || point.y > corner->y || (point.y == corner->y && point.x < corner->x);
-      if (lower && !point.hidden) corner = point;
-    }
-    if (!corner) return;
-    const double height = static_cast<double>(ImGui::CalcTextSize(box.name.c_str()).y);
-    const double scale = settings_.scale;
-    const double gap = std::round(4 * scale);
-    const Viewport plot = place_.plot(settings_);
-    Viewport label = label_box(box.name, {corner->x, corner->y + gap + height}, plot, scale);
-    if (covers_any(label, taken_)) {
-      label = label_box(box.name, {corner->x + gap, corner->y - gap}, plot, scale);
-    }
-    draw_label(list_, label, box.name, colour, scale);
-    taken_.push_back(label);
+    draw_outline(list_, points, IM_COL32(255, 255, 255, 230), 1.4f * unit_);
   }
 
   void pin(const Pin& pin, bool inspected) const {
@@ -104,26 +74,14 @@ class Marker {
   Ground ground_;
   ImDrawList& list_;
   float unit_;
-  std::vector<Viewport> taken_;  ///< by labels
 };
 
 }  // namespace
 
-FieldPlace beside_place(const AppState& state, const FieldPlace& place) {
-  FieldPlace beside = place;
-  beside.area.x += place.area.width;
-  beside.source = &state.source.beside->info();
-  return beside;
-}
-
 void draw_marks(const AppState& state, const FieldPlace& place) {
-  Marker marker(state, place);
+  const Marker marker(state, place);
   marker.clip();
-  for (const NamedBox& box : state.marks.boxes) marker.box(box);
-  if (state.marks.selection)
-    marker.outline(state.marks.selection->rect, palette_of(Theme::dark).accent);
-  if (state.marks.hovered)
-    marker.outline(rect_of(Pin{*state.marks.hovered}), IM_COL32(255, 255, 255, 230));
+  if (state.marks.hovered) marker.outline(*state.marks.hovered);
   for (std::size_t i = 0; i < state.marks.pins.size(); ++i) {
     marker.pin(state.marks.pins[i], i + 1 == state.marks.pins.size());
   }
@@ -157,10 +115,6 @@ void number_pins(Marks& marks) {
     while (is_taken(marks, number)) ++number;
     pin.number = number;
   }
-}
-
-PillarRect rect_of(const Pin& pin) {
-  return {pin.pillar.row, pin.pillar.row + 1, pin.pillar.col, pin.pillar.col + 1};
 }
 
 void inspect_pin(Marks& marks, std::size_t index) {

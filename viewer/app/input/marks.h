@@ -6,18 +6,12 @@
 
 namespace pillarfield::viewer {
 
-/// Draws numbered pins, named boxes, the selection and the pillar under the cursor over the
+/// Draws numbered pins and the pillar under the cursor over the
 /// picture; files do not include them.
 void draw_marks(const AppState& state, const FieldPlace& place);
 
-/// The place of the second source, at the right of the first.
-[[nodiscard]] FieldPlace beside_place(const AppState& state, const FieldPlace& place);
-
 /// Gives each unnumbered pin the least free number; a pin keeps its number and colour.
 void number_pins(Marks& marks);
-
-/// The pin's pillar alone.
-[[nodiscard]] PillarRect rect_of(const Pin& pin);
 
 /// Makes a pin the inspected one; the others keep their order.
 void inspect_pin(Marks& marks, std::size_t index);

@@ -107,14 +107,14 @@ void take_tare(const Command& command) {
   }
 }
 
-/// Closes help, else stops writing, else clears the marks.
+/// Closes help, else stops writing, else clears the pins.
 void escape(const Command& command) {
   if (command.state.window.show_help) {
     command.state.window.show_help = false;
   } else if (command.state.window.writing) {
     command.pending.stop = true;
   } else {
-    clear_marks(command.state);
+    command.state.marks.pins.clear();
   }
 }
 
@@ -151,7 +151,6 @@ constexpr std::array kShortcuts{
     shows<Quantity::parity>(plain(GLFW_KEY_Y), "Y", "parity residual"),
 
     shows<Quantity::pressure>(plain(GLFW_KEY_D), "D", "pressure"),
-    shows<Quantity::difference>(plain(GLFW_KEY_E), "E", "difference to the true forces"),
 
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows",
              toggle_of_pillars<&RenderSettings::arrows>, with_pillars},
@@ -168,16 +167,12 @@ constexpr std::array kShortcuts{
     Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
              [](const Command& command) { fit_range(command.state); }},
     Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
-    Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
-             ask<&PendingActions::truth>},
     Shortcut{Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
              [](const Command& command) {
                command.state.window.show_panels = !command.state.window.show_panels;
              }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_O), "O", "keep the selection as a named box",
-             [](const Command& command) { keep_selection(command.state); }},
-    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and selection", escape},
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
              ask<&PendingActions::picture>},
@@ -203,7 +198,7 @@ constexpr std::array kShortcuts{
 constexpr std::array kMouseHelp{
     MouseHelp{"hover", "values under the cursor"},
     MouseHelp{"click", "pin or unpin a place"},
-    MouseHelp{"drag", "select a part; in 3-D turn the view"},
+    MouseHelp{"drag", "move the view; in 3-D turn it"},
     MouseHelp{"right drag, Shift+drag", "move the view"},
     MouseHelp{"wheel", "zoom about the cursor"},
     MouseHelp{"double click", "the whole skin"},

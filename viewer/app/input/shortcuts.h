@@ -18,14 +18,11 @@ struct PendingActions {
   bool table = false;    ///< write the visible pillars as CSV
   bool stop = false;     ///< stop writing
   bool record = false;   ///< start or stop recording a sensor
-  bool truth = false;    ///< show or hide the truth beside
   bool start = false;    ///< show the start page
   std::string open;      ///< a source to open; empty: none
 
   /// True if something of the open source is asked for.
-  [[nodiscard]] bool anything() const {
-    return picture || video || table || stop || record || truth;
-  }
+  [[nodiscard]] bool anything() const { return picture || video || table || stop || record; }
 };
 
 /// Arguments of an action.

@@ -91,7 +91,7 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayou
                                         const PressureUnit& unit) {
   std::optional<std::size_t> clicked;
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(contacts.above_noise));
+  clipper.Begin(static_cast<int>(contacts.heaviest.size()));
   while (clipper.Step()) {
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const std::size_t place = contacts.heaviest[static_cast<std::size_t>(row)];
@@ -105,12 +105,12 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts, SkinLayou
 
 std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts,
                                          SkinLayout layout, const PressureUnit& unit) {
-  const std::size_t rows = std::min(contacts.above_noise, kMostRows) + 2;
+  const std::size_t rows = std::min(contacts.heaviest.size(), kMostRows) + 2;
   const auto line = static_cast<float>(style.line);
   const float height =
       (line + 2 * ImGui::GetStyle().CellPadding.y) * static_cast<float>(rows) + line + 2;
   const float ids = width_of_ids(contacts);
-  const float bar = contacts.above_noise > kMostRows ? ImGui::GetStyle().ScrollbarSize : 0;
+  const float bar = contacts.heaviest.size() > kMostRows ? ImGui::GetStyle().ScrollbarSize : 0;
   const auto columns = fitting_columns(layout, ImGui::GetContentRegionAvail().x - ids - bar);
   if (!ImGui::BeginTable("contacts", static_cast<int>(columns.size()) + 1, kTableFlags,
                          ImVec2(0, height))) {
@@ -140,13 +140,7 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
   const SkinLayout layout = state.source.player->info().skin.layout;
   if (const auto clicked =
           contact_table(style, contacts, layout, state.look.settings.units.pressure)) {
-    mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
-                 contacts.extents[*clicked]);
-  }
-  if (const std::size_t noise = contacts.heaviest.size() - contacts.above_noise; noise > 0) {
-    faint_text(
-        style,
-        fmt::format("{} single {} at the noise are not listed", noise, name_of(layout)).c_str());
+    show_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure);
   }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     faint_text(style, warning.c_str());

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "pillarfield/status.h"
 #include "viewer/style/quantity.h"
 #include "viewer/style/ticks.h"
 

@@ -8,7 +8,6 @@
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/shortcuts.h"
 #include "viewer/app/source/user_settings.h"
-#include "viewer/render/gui_context.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
 
@@ -25,19 +24,12 @@ void hover_panel(const AppState& state);
 /// pins.
 void pillar_panel(AppState& state);
 
-/// The selection: total force, centre of pressure, area, peak, mean; of pillars the shares of the
-/// regions, of sensels the pressure.
-void selection_panel(AppState& state);
-
-/// The named boxes: force, shear and mean pressure of each; names can be edited, boxes removed.
-void boxes_panel(AppState& state);
-
-/// The contacts of the field on display, heaviest first, and their total. A click selects the
-/// extent of a contact.
+/// The contacts of the field on display, heaviest first, and their total. A click brings a
+/// contact into sight.
 void contacts_panel(AppState& state, const FieldPlace& place);
 
-/// Total force, torque and centre of pressure of the whole skin over time, and the force on pins,
-/// named boxes and selection. The wheel zooms, a drag pans, a click seeks.
+/// Total force, torque and centre of pressure of the whole skin over time. The wheel zooms, a drag
+/// pans, a click seeks.
 void time_panel(AppState& state);
 
 /// A sensor: record and tare, rate, losses, faulty sensels.
@@ -70,7 +62,6 @@ void status_row(const AppState& state, const std::string& gpu);
 struct StartChoices {
   std::vector<std::string> recent;
   std::vector<std::filesystem::path> scenes;
-  std::vector<TexturePlace> pictures;  ///< of embedded_pictures(), in the texture of the font
 };
 
 /// The page of a window without a source: pictures of scenes, a line for the name of a source,
@@ -84,13 +75,5 @@ void loading_page(const std::string& source, const std::string& message, const V
 /// Controls of the play head in one row: play, step, position, speed, loop, follow. Fills the
 /// current ImGui window.
 void transport(const Command& command);
-
-/// Sums over the selection in the field on display; both must exist. Cached per frame and
-/// rectangle, since a square metre takes milliseconds.
-[[nodiscard]] const SelectionSums& selection_sums(AppState& state);
-
-/// The same over a rectangle, which `cached` is of; the field must exist.
-[[nodiscard]] const SelectionSums& sums_of(const AppState& state, const PillarRect& rect,
-                                           std::optional<CachedSums>& cached);
 
 }  // namespace pillarfield::viewer

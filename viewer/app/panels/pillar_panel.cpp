@@ -86,7 +86,7 @@ void add_mapped(std::vector<ShownValue>& lines, const AppState& state, PillarInd
   const Skin& skin = state.source.player->info().skin;
   const bool elsewhere = quantity == Quantity::pressure && !skin.has_pillars();
   const bool adds = quantity == Quantity::uncertainty || quantity == Quantity::parity ||
-                    quantity == Quantity::pressure || quantity == Quantity::difference;
+                    quantity == Quantity::pressure;
   if (!adds || elsewhere) return;
   const QuantityInfo info = info_of(quantity);
   const double value = value_of(quantity, *state.source.field, skin, pillar.row, pillar.col);
@@ -143,26 +143,11 @@ void pillar_panel(AppState& state) {
   value_table(style, lines_of(state, values, pin.pillar));
 }
 
-namespace {
-
-/// The same place in the second source, if it has one.
-void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pillar) {
-  if (!state.source.beside_field) return;
-  const ForceFieldView& forces = state.source.beside_field->forces;
-  if (pillar.row >= forces.rows || pillar.col >= forces.cols) return;
-  leave_gap(style, 4);
-  heading(style, state.source.beside_is_truth ? "truth" : state.source.beside->info().name);
-  value_table(style, shown_forces(values_at(*state.source.beside_field, pillar),
-                                  state.source.beside->info().skin, state.look.settings.units));
-}
-
-}  // namespace
-
 void hover_panel(const AppState& state) {
   const PanelStyle style = panel_style(state.look.settings.scale);
   if (!state.source.field || !state.marks.hovered) {
     const char* const name = element_name(state.source.player->info().skin);
-    faint_text(style, fmt::format("A click pins a {}, a drag selects.", name).c_str());
+    faint_text(style, fmt::format("A click pins a {}.", name).c_str());
     return;
   }
   const PillarIndex pillar = *state.marks.hovered;
@@ -174,10 +159,9 @@ void hover_panel(const AppState& state) {
   if (state.source.field->raw.data != nullptr) {
     faint_text(style, format_readings(values).c_str());
   }
-  if (values.status == 0) return show_beside(style, state, pillar);
+  if (values.status == 0) return;
   leave_gap(style, 2);
   value_table(style, lines_of(state, values, pillar));
-  show_beside(style, state, pillar);
 }
 
 }  // namespace pillarfield::viewer

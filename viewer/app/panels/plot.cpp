@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "viewer/app/panels/panel_style.h"
 
@@ -80,43 +79,6 @@ std::vector<Vec2> thinned(std::span<const Vec2> curve, const PlotArea& area) {
     append(points, pixels, column);
   }
   return points;
-}
-
-std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width) {
-  std::vector<int> widths(counts.size(), 0);
-  const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-  if (total == 0) return widths;
-  int left = width;
-  std::size_t widest = 0;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const double exact = width * (static_cast<double>(counts[i]) / static_cast<double>(total));
-    widths[i] = std::max(static_cast<int>(exact), counts[i] > 0 ? 1 : 0);
-    left -= widths[i];
-    if (counts[i] > counts[widest]) widest = i;
-  }
-  // The widest share absorbs the rounding error.
-  widths[widest] = std::max(widths[widest] + left, 0);
-  return widths;
-}
-
-Legend legend_of(std::span<const double> names, const LegendRoom& room) {
-  Legend legend;
-  Legend::Place next{room.title + room.gap, 0};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto fits = [&] {
-      const bool others_follow = next.line + 1 == room.most_lines && i + 1 < names.size();
-      return next.x + names[i] + (others_follow ? room.gap + room.rest : 0) <= room.width;
-    };
-    if (!fits() && next.line + 1 < room.most_lines) next = {0, next.line + 1};
-    legend.lines = next.line + 1;
-    if (!fits()) {
-      legend.rest = next;
-      break;
-    }
-    legend.names.push_back(next);
-    next.x += names[i] + room.gap;
-  }
-  return legend;
 }
 
 PlotTicks ticks_of(const PlotArea& area, const PanelStyle& style) {

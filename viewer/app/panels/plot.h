@@ -65,33 +65,6 @@ struct PlotArea {
 /// of each pixel column.
 [[nodiscard]] std::vector<Vec2> thinned(std::span<const Vec2> curve, const PlotArea& area);
 
-/// Whole pixel widths in proportion to the counts, with sum `width`; at least one pixel for each
-/// positive count if `width` allows. All 0 for zero counts.
-[[nodiscard]] std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width);
-
-/// Places of the names of curves behind and below a title.
-struct Legend {
-  struct Place {
-    double x = 0;  ///< from the begin of the line, pixels
-    int line = 0;  ///< 0: that of the title
-  };
-  std::vector<Place> names;   ///< of the first names, as many as fit
-  std::optional<Place> rest;  ///< of the number of the others
-  int lines = 1;
-};
-
-/// Room of a legend, pixels.
-struct LegendRoom {
-  double title = 0;
-  double width = 0;
-  double gap = 0;   ///< before a name on the line of another or of the title
-  double rest = 0;  ///< width of the number of names that do not fit
-  int most_lines = 1;
-};
-
-/// Places names of these widths so that none ends beyond the room.
-[[nodiscard]] Legend legend_of(std::span<const double> names, const LegendRoom& room);
-
 /// Ticks of both axes of a plot.
 struct PlotTicks {
   std::vector<Tick> x;

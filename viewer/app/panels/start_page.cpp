@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <utility>
 
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/source/start_pictures.h"
 #include "viewer/app/window/gui.h"
 
 namespace pillarfield::viewer {
@@ -40,55 +37,16 @@ std::string recent_list(const std::vector<std::string>& recent) {
   return source_list("recent", recent, recent, 1);
 }
 
-/// A list of scenes, without those that have a picture.
 std::string scene_list(const char* title, const std::vector<std::filesystem::path>& scenes) {
   std::vector<std::string> paths;
   std::vector<std::string> names;
   for (const auto& scene : scenes) {
-    const std::string name = scene.stem().string();
-    if (std::ranges::find(embedded_pictures(), name, &EmbeddedPicture::scene) !=
-        embedded_pictures().end()) {
-      continue;
-    }
     paths.push_back(scene.string());
-    names.push_back(name);
+    names.push_back(scene.stem().string());
   }
   if (paths.empty()) return {};
   caption(title);
   return source_list(title, paths, names, 4);
-}
-
-/// A picture with its title below, in the middle; true if clicked.
-bool picture_button(const char* title, const TexturePlace& place, double scale) {
-  const auto width = static_cast<float>(std::round(kStartPictureWidth * scale));
-  const float height = std::round(width * 2 / 3);
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const ImVec2 low = ImGui::GetCursorScreenPos();
-  const bool clicked = ImGui::InvisibleButton(title, ImVec2(width, height + line));
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 high(low.x + width, low.y + height);
-  list.AddImage(ImGui::GetIO().Fonts->TexID, low, high, to_imgui(place.low), to_imgui(place.high));
-  const bool hovered = ImGui::IsItemHovered();
-  list.AddRect(low, high, ImGui::GetColorU32(hovered ? ImGuiCol_CheckMark : ImGuiCol_Border), 0, 0,
-               hovered ? 2.0f : 1.0f);
-  draw_text(list, {static_cast<double>(low.x + width / 2), static_cast<double>(high.y + 2)},
-            ImGui::GetColorU32(ImGuiCol_Text), title, Align::middle);
-  return clicked;
-}
-
-std::string picture_row(const StartChoices& choices, double scale) {
-  std::string chosen;
-  const auto gap = static_cast<float>((kStartPageWidth - 4 * kStartPictureWidth) / 3 * scale);
-  bool first = true;
-  for (std::size_t i = 0; i < choices.pictures.size(); ++i) {
-    const std::string name(embedded_pictures()[i].scene);
-    const auto scene = std::ranges::find_if(
-        choices.scenes, [&](const std::filesystem::path& path) { return path.stem() == name; });
-    if (scene == choices.scenes.end()) continue;
-    if (!std::exchange(first, false)) ImGui::SameLine(0, gap);
-    if (picture_button(name.c_str(), choices.pictures[i], scale)) chosen = scene->string();
-  }
-  return chosen;
 }
 
 /// Returns the name that is entered.
@@ -128,7 +86,7 @@ std::string start_page(const StartChoices& choices, const Viewport& area, const 
   ImGui::Spacing();
   std::string chosen;
   for (const std::string& each :
-       {picture_row(choices, scale), name_line(), recent_list(choices.recent),
+       {name_line(), recent_list(choices.recent),
         scene_list("Scenes, simulated as they are opened", choices.scenes)}) {
     if (chosen.empty()) chosen = each;
   }

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "viewer/app/input/marks.h"
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
@@ -49,9 +48,6 @@ double shear_y_of(const CurvePoint& point) { return static_cast<double>(point.sh
 double torque_of(const CurvePoint& point) { return static_cast<double>(point.torque); }
 double centre_x_of(const CurvePoint& point) { return static_cast<double>(point.centre_x_mm); }
 double centre_y_of(const CurvePoint& point) { return static_cast<double>(point.centre_y_mm); }
-double shear_of(const CurvePoint& point) {
-  return std::hypot(shear_x_of(point), shear_y_of(point));
-}
 
 struct Colours {
   ImU32 x, y, normal;
@@ -86,48 +82,6 @@ void add_total(std::vector<Chart>& charts, const Points& points, const Colours& 
        {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
-/// A part of the skin with its name and the number of its colour.
-struct MarkedPart {
-  std::string name;
-  PillarRect rect;
-  int number;
-};
-
-/// Forces on marked parts of the skin.
-void add_parts(std::vector<Chart>& charts, const AppState& state, const Span& time,
-               const std::string& title, const std::vector<MarkedPart>& parts) {
-  if (parts.empty()) return;
-  Chart normal{title + ", normal", Dimension::force, {}};
-  Chart shear{title + ", |shear|", Dimension::force, {}};
-  for (const auto& [name, rect, number] : parts) {
-    const Points points = state.source.curves->of(rect, time.from, time.to, kMostShownPoints);
-    const ImU32 colour = packed(pin_colour(number, state.look.settings.theme));
-    normal.curves.push_back({name, points, normal_of, colour});
-    shear.curves.push_back({name, points, shear_of, colour});
-  }
-  charts.push_back(std::move(normal));
-  if (state.source.player->info().skin.has_pillars()) charts.push_back(std::move(shear));
-}
-
-void add_marks(std::vector<Chart>& charts, const AppState& state, const Span& time) {
-  std::vector<MarkedPart> boxes;
-  for (const NamedBox& box : state.marks.boxes) boxes.push_back({box.name, box.rect, box.number});
-  std::vector<MarkedPart> pins;
-  for (const Pin& pin : state.marks.pins) {
-    pins.push_back({std::to_string(pin.number), rect_of(pin), pin.number});
-  }
-  add_parts(charts, state, time, "Boxes", boxes);
-  add_parts(charts, state, time, "Pins", pins);
-}
-
-void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
-                   const Colours& colours, bool pillars) {
-  if (!state.marks.selection) return;
-  const Points points =
-      state.source.curves->of(state.marks.selection->rect, time.from, time.to, kMostShownPoints);
-  charts.push_back(force_chart("Selection", points, colours, pillars));
-}
-
 /// Forces are sums in single precision, torques those times a length.
 void set_rounding(std::vector<Chart>& charts, const SourceInfo& source) {
   constexpr double kRounding = 1e-6;
@@ -148,10 +102,8 @@ std::vector<Chart> charts_of(const AppState& state, const Span& time, const Pane
   const Colours colours = colours_of(style, state.look.settings.theme);
   const bool pillars = state.source.player->info().skin.has_pillars();
   std::vector<Chart> charts;
-  add_total(charts, state.source.curves->total(time.from, time.to, kMostShownPoints), colours,
+  add_total(charts, state.source.curves->between(time.from, time.to, kMostShownPoints), colours,
             pillars);
-  add_marks(charts, state, time);
-  add_selection(charts, state, time, colours, pillars);
   set_rounding(charts, state.source.player->info());
   for (Chart& chart : charts) chart.unit = state.look.settings.units.of(chart.dimension);
   return charts;
@@ -196,7 +148,6 @@ struct ChartFrame {
   double lasts_s = 0;
   double label_width = 0;
   std::vector<Span> gaps;  ///< of time without frames
-  int title_lines = 1;     ///< of titles and names
 };
 
 /// Stretches of time in which a sensor sent nothing, the last of them up to now.
@@ -260,42 +211,23 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
   }
 }
 
-std::string chart_title(const Chart& chart) {
-  return fmt::format("{}, {}", chart.title, chart.unit.name);
-}
-
-Legend chart_legend(const Chart& chart, double width, const PanelStyle& style) {
-  constexpr int kMostLines = 2;
-  std::vector<double> names;
-  for (const Curve& curve : chart.curves) names.push_back(width_of(curve.name));
-  return legend_of(names, {.title = width_of(chart_title(chart)) + 2 * style.unit,
-                           .width = width,
-                           .gap = 10 * style.unit,
-                           .rest = width_of("+ 99"),
-                           .most_lines = kMostLines});
-}
-
 /// Title, unit and the names of the curves in their colours.
 void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
                 const PanelStyle& style) {
-  draw_text(list, {outer.x, outer.y}, style.faint, chart_title(chart));
-  const Legend legend = chart_legend(chart, outer.width, style);
-  const auto place = [&](const Legend::Place& at) {
-    return Vec2{outer.x + at.x, outer.y + at.line * style.line};
-  };
-  for (std::size_t i = 0; i < legend.names.size(); ++i) {
-    draw_text(list, place(legend.names[i]), chart.curves[i].colour, chart.curves[i].name);
+  const std::string title = fmt::format("{}, {}", chart.title, chart.unit.name);
+  draw_text(list, {outer.x, outer.y}, style.faint, title);
+  double x = outer.x + width_of(title) + 12 * style.unit;
+  for (const Curve& curve : chart.curves) {
+    draw_text(list, {x, outer.y}, curve.colour, curve.name);
+    x += width_of(curve.name) + 10 * style.unit;
   }
-  if (!legend.rest) return;
-  const std::size_t others = chart.curves.size() - legend.names.size();
-  draw_text(list, place(*legend.rest), style.faint, fmt::format("+ {}", others));
 }
 
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   // The axes begin half a line lower.
-  const double title = (frame.title_lines - 0.1) * style.line;
+  const double title = 0.9 * style.line;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
   const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
   draw_title(list, chart, outer, style);
@@ -329,7 +261,8 @@ double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
 
 /// Charts in rows that fill the height that is left, as many per row as fit; in a place that is
 /// high below each other.
-void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const PanelStyle& style) {
+void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
+                 const PanelStyle& style) {
   const ImVec2 available = ImGui::GetContentRegionAvail();
   const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
@@ -337,12 +270,9 @@ void draw_charts(const std::vector<Chart>& charts, ChartFrame frame, const Panel
   const std::size_t beside = available.x > available.y ? std::min(fitting, charts.size()) : 1;
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
-  for (const Chart& chart : charts) {
-    frame.title_lines = std::max(frame.title_lines, chart_legend(chart, width, style).lines);
-  }
   const double height =
       std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 4 * style.unit,
-               kChartHeight * style.unit + (frame.title_lines - 1) * style.line);
+               kChartHeight * style.unit);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -371,7 +301,6 @@ void draw_progress(const AppState& state, const PanelStyle& style) {
 
 void time_panel(AppState& state) {
   const PanelStyle style = panel_style(state.look.settings.scale);
-  number_pins(state.marks);
   if (state.source.curves == nullptr || !state.source.field) return;
   draw_progress(state, style);
   const auto [first_s, last_s] = state.source.curves->time_span();

@@ -98,11 +98,6 @@ void choose_layers(const Command& command) {
     boxes.add("hatch", settings.hatch, "ambiguous pillars (X)");
     boxes.add("sectors", settings.sectors, "uncertainty of ambiguous shear, at large zoom (U)");
   }
-  bool truth = state.source.beside_is_truth;
-  if ((state.source.open_truth || truth) &&
-      boxes.add("truth", truth, "the true forces beside (W)")) {
-    command.pending.truth = true;
-  }
   bool light = settings.theme == Theme::light;
   if (boxes.add("light", light, "dark on white (T)")) {
     settings.theme = light ? Theme::light : Theme::dark;

@@ -155,7 +155,6 @@ namespace {
 constexpr double kLabelWidth = 74;
 constexpr double kValueWidth = 56;
 constexpr double kGap = 8;
-constexpr double kRangeWidth = 100;
 
 void faint(const PanelStyle& style, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, style.faint);
@@ -186,10 +185,6 @@ void value_table(const PanelStyle& style, std::span<const ShownValue> values) {
   for (const ShownValue& value : values) line(style, value);
   ImGui::EndGroup();
   ImGui::PopStyleVar();
-}
-
-double value_table_width(const PanelStyle& style) {
-  return (kLabelWidth + kValueWidth + kGap + kRangeWidth) * style.unit;
 }
 
 namespace {

@@ -45,9 +45,6 @@ void question(ImDrawList& list, const ImVec2& middle, float side, unsigned colou
 /// columns.
 void value_table(const PanelStyle& style, std::span<const ShownValue> values);
 
-/// Width of a table, pixels.
-[[nodiscard]] double value_table_width(const PanelStyle& style);
-
 /// A sensel's reading as a bar, in raw counts.
 struct ReadingBar {
   double reading = 0;    ///< NaN if unknown

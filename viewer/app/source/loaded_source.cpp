@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -64,25 +63,13 @@ LoadedSource load_file(const Options& options, const std::filesystem::path& path
   loaded.settings = default_settings(options, *producer, scale);
   ShownSource& source = loaded.source;
   source.name = path.string();
-  source.open_truth = producer->open_truth;
   source.curves = std::make_shared<Curves>(producer->info().skin.element_pitch_mm());
   source.survey = std::make_unique<Survey>(producer->open_again, source.curves);
   source.player = play_file(std::move(producer));
   return loaded;
 }
 
-LoadedSource load_one(const Options& options, const std::filesystem::path& source, double scale,
-                      const LoadProgress& tell) {
-  return is_live_source(source.string()) ? load_sensor(options, source.string(), scale, tell)
-                                         : load_file(options, source, scale, tell);
-}
-
 }  // namespace
-
-bool ShownSource::is_in_step(std::uint64_t index) const {
-  if (beside == nullptr || beside->live() != nullptr) return true;
-  return beside_field && beside_field->index == std::min(index, beside->info().frames - 1);
-}
 
 ProducerOptions producer_options(const Options& options, LoadProgress tell) {
   ProducerOptions wanted;
@@ -102,23 +89,9 @@ ProducerOptions producer_options(const Options& options, LoadProgress tell) {
 }
 
 LoadedSource load_source(const Options& options, double scale, const LoadProgress& tell) {
-  LoadedSource loaded = load_one(options, options.source, scale, tell);
-  if (options.truth) show_truth(loaded.source);
-  if (options.beside.empty()) return loaded;
-  loaded.source.beside = std::move(load_one(options, options.beside, scale, tell).source.player);
-  return loaded;
-}
-
-std::unique_ptr<FieldProducer> opened_truth(const FieldProducer::Opener& open_truth,
-                                            const std::string& name) {
-  if (open_truth) return open_truth();
-  throw Error(name, "its true forces are not known",
-              "show a scene, or a recording of 'pillarfield simulate'");
-}
-
-void show_truth(ShownSource& source) {
-  source.beside = play_file(opened_truth(source.open_truth, source.player->info().name));
-  source.beside_is_truth = true;
+  const std::filesystem::path& source = options.source;
+  return is_live_source(source.string()) ? load_sensor(options, source.string(), scale, tell)
+                                         : load_file(options, source, scale, tell);
 }
 
 std::string warning_lines(const SourceInfo& info) {

@@ -5,7 +5,6 @@
 
 #include "pillarfield/error.h"
 #include "viewer/app/input/actions.h"
-#include "viewer/app/input/marks.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -120,77 +119,36 @@ void SourceFeed::begin(const Options& options) {
   if (options.first_frame != 0) source.player->seek(options.first_frame);
   // After seek(): contacts are tracked from the first shown frame on.
   source.player->set_contacts(state_->look.settings.contacts);
-  begin_beside();
   if (!options.paused) source.player->play();
-}
-
-void SourceFeed::begin_beside() {
-  Player* const beside = state_->source.beside.get();
-  if (beside == nullptr) return;
-  beside->set_contacts(state_->look.settings.contacts);
-  beside->on_new_field([this] { tell(); });
 }
 
 void SourceFeed::end() {
   ShownSource& source = state_->source;
   if (source.player != nullptr) source.player->on_new_field({});
-  if (source.beside != nullptr) source.beside->on_new_field({});
   if (source.survey != nullptr) source.survey->on_progress({});
-  held_.reset();
   source.field.reset();
-  source.beside_field.reset();
   source = {};
-  measured_.clear();
 }
 
-void SourceFeed::toggle_truth() {
-  ShownSource& source = state_->source;
-  if (source.beside == nullptr) {
-    show_truth(source);
-    source.beside->seek(source.field->index);
-    return begin_beside();
-  }
-  source.beside->on_new_field({});
-  source.beside_field.reset();
-  source.beside.reset();
-  source.beside_is_truth = false;
-}
-
-bool SourceFeed::take_fields(bool selecting) {
-  attend_survey(selecting);
+bool SourceFeed::take_fields() {
+  attend_survey();
   const bool message = attend_sensor();
   return take_field() || message;
 }
 
-/// True for a new field of either source.
 bool SourceFeed::take_field() {
-  ShownSource& source = state_->source;
-  bool failed = false;
-  if (!held_) {
-    taken_s_ = produced_s_;
-    try {
-      held_ = source.player->take();
-    } catch (const Error& error) {  // A sensor leaves its picture; a file ends the program.
-      if (source.player->live() == nullptr) throw;
-      state_->window.notice.fail(error.what());
-      failed = true;
-    }
-    if (held_ && source.beside != nullptr) source.beside->seek(held_->index);
+  taken_s_ = produced_s_;
+  try {
+    auto field = state_->source.player->take();
+    if (!field) return false;
+    viewer::take_field(*state_, *std::move(field));
+  } catch (const Error& error) {  // A sensor leaves its picture; a file ends the program.
+    if (state_->source.player->live() == nullptr) throw;
+    state_->window.notice.fail(error.what());
+    return true;
   }
-  const bool beside = take_beside();
-  if (!held_ || !source.is_in_step(held_->index)) return beside || failed;
-  viewer::take_field(*state_, *std::exchange(held_, std::nullopt));
   load_follower_.take_field(*state_);
   return field_is_new_ = true;
-}
-
-bool SourceFeed::take_beside() {
-  ShownSource& source = state_->source;
-  if (source.beside == nullptr) return false;
-  auto field = source.beside->take();
-  if (!field) return false;
-  source.beside_field = std::move(*field);
-  return beside_is_new_ = true;
 }
 
 std::optional<double> SourceFeed::latency_ms() const {
@@ -201,19 +159,8 @@ std::optional<double> SourceFeed::latency_ms() const {
   return since_s > 0 ? std::optional(1e3 * (feed_now_s() - since_s)) : std::nullopt;
 }
 
-void SourceFeed::attend_survey(bool selecting) {
-  const Marks& marks = state_->marks;
-  if (marks.selection && selecting) return;
-  std::vector<PillarRect> rects;
-  for (const Pin& pin : marks.pins) rects.push_back(rect_of(pin));
-  for (const NamedBox& box : marks.boxes) rects.push_back(box.rect);
-  if (marks.selection) rects.push_back(marks.selection->rect);
+void SourceFeed::attend_survey() {
   Survey* const survey = state_->source.survey.get();
-  if (rects != measured_) {
-    state_->source.curves->set_rects(rects);
-    if (survey != nullptr) survey->look_again();
-    measured_ = std::move(rects);
-  }
   if (survey == nullptr) return;
   const PlayerState player = state_->source.player->state();
   survey->set_busy(player.playing);

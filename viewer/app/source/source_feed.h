@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "viewer/app/app_state.h"
 #include "viewer/app/load_range.h"
@@ -83,39 +82,29 @@ class SourceFeed {
   /// Ends with it; releases the memory of its fields before their players.
   void end();
 
-  /// Shows the truth beside, or takes away what is beside. Throws Error without a truth.
-  void toggle_truth();
-
   /// True if a thread has progressed.
   [[nodiscard]] bool take_news() { return news_.exchange(false); }
-  /// Takes what is new: fields, both sources in step, and messages of a sensor; passes the marks to
-  /// the survey, a selection once it is made. True if there was something.
-  [[nodiscard]] bool take_fields(bool selecting);
+  /// Takes what is new: fields and messages of a sensor. True if there was something.
+  [[nodiscard]] bool take_fields();
 
   // News since drawn().
   [[nodiscard]] bool has_field() const { return field_is_new_; }
-  [[nodiscard]] bool has_beside() const { return beside_is_new_; }
   /// Time since the new field arrived at a sensor, else since it was solved; none without.
   [[nodiscard]] std::optional<double> latency_ms() const;
-  void drawn() { field_is_new_ = beside_is_new_ = false; }
+  void drawn() { field_is_new_ = false; }
 
  private:
   void tell();
-  void begin_beside();
-  void attend_survey(bool selecting);
+  void attend_survey();
   bool attend_sensor();
   bool take_field();
-  bool take_beside();
 
   AppState* state_;
   void (*wake_)();
   std::atomic<bool> news_ = false;      ///< a thread has progressed
   std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
   double taken_s_ = 0;                  ///< that of the field on display
-  std::optional<ShownField> held_;      ///< until the second source has its frame
   bool field_is_new_ = false;
-  bool beside_is_new_ = false;
-  std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::uint64_t live_messages_ = 0;
   std::uint64_t live_tares_ = 0;
   LoadFollower load_follower_;

@@ -51,7 +51,6 @@ UserSettings::UserSettings() : path_(settings_path()) {
   const std::string text = path_.empty() ? "" : text_in(path_);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    boxes.add_line(line);
     if (!line.starts_with(kRecent) || recent_.size() == kMostRecent) continue;
     const std::string source = line.substr(kRecent.size());
     if (is_there(source)) recent_.push_back(source);
@@ -76,7 +75,6 @@ void UserSettings::save() const noexcept {
     std::filesystem::path part = path_;
     part += "." + std::to_string(getpid());
     std::ofstream file(part, std::ios::trunc);
-    file << boxes.text();
     for (const std::string& source : recent_) file << kRecent << source << '\n';
     file.close();
     if (file) {

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "viewer/app/named_boxes.h"
-
 namespace pillarfield::viewer {
 
 /// Settings that the window keeps between runs, in $XDG_CONFIG_HOME/pillarfield/viewer.conf, else
@@ -16,8 +14,6 @@ class UserSettings {
 
   UserSettings();  ///< reads the file; damaged lines are ignored
   void save() const noexcept;
-
-  NamedBoxes boxes;
 
   /// Sources opened last, newest first; files that are gone are left out.
   [[nodiscard]] const std::vector<std::string>& recent() const { return recent_; }

@@ -21,7 +21,6 @@ constexpr double kTransport = 36;
 constexpr double kStatus = 24;
 constexpr double kRow = 131;
 constexpr double kFoldedRow = 28;
-constexpr double kLineOfNames = 16;     ///< of named boxes, in the row
 constexpr double kLeastBeside = 300;    ///< width of curves beside the field
 constexpr double kMostOfRow = 0.4;      ///< of the window's height
 constexpr double kLeastOfField = 0.55;  ///< of the window, where curves have more than their least
@@ -36,7 +35,6 @@ struct Panel {
   const char* title = nullptr;
   bool (*has_contents)(const AppState& state) = nullptr;
   void (*draw)(const Command& command) = nullptr;
-  bool (*unfolds)(const AppState& state) = nullptr;
 };
 
 bool always(const AppState& /*state*/) { return true; }
@@ -50,11 +48,6 @@ constexpr std::array kPanels{
     Panel{"Sensor", [](const AppState& state) { return state.source.player->live() != nullptr; },
           sensor_panel},
     Panel{"View", always, view_panel},
-    Panel{"Selection", [](const AppState& state) { return state.marks.selection.has_value(); },
-          [](const Command& command) { selection_panel(command.state); }},
-    Panel{"Boxes", [](const AppState& state) { return !state.marks.boxes.empty(); },
-          [](const Command& command) { boxes_panel(command.state); },
-          [](const AppState& state) { return state.marks.names_box; }},
     Panel{"Contacts", [](const AppState& state) { return state.look.settings.contacts; },
           [](const Command& command) { contacts_panel(command.state, command.place); }},
     Panel{"Under the cursor", always, [](const Command& command) { hover_panel(command.state); }},
@@ -133,10 +126,10 @@ Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
   RenderSettings settings;
   settings.scale = scale;
   const Margins margins = margins_of(settings);
-  const double around = sides.pictures * (margins.left + margins.right) + margins.legend;
+  const double around = margins.left + margins.right + margins.legend;
   const double across = margins.top + margins.bottom;
-  return {field.width - around - sides.pictures * sides.aspect * (field.height - across),
-          field.height - across - (field.width - around) / (sides.pictures * sides.aspect)};
+  return {field.width - around - sides.aspect * (field.height - across),
+          field.height - across - (field.width - around) / sides.aspect};
 }
 
 }  // namespace
@@ -144,12 +137,8 @@ Vec2 spare_room(const Viewport& field, double scale, const Sides& sides) {
 Sides sides_of(const AppState& state) {
   if (!state.window.show_panels || state.source.player == nullptr) return {};
   const SkinSize skin = skin_size(state.source.player->info());
-  Sides sides{.column = true,
-              .aspect = skin.width_mm / skin.height_mm,
-              .pictures = state.source.beside == nullptr ? 1 : 2};
-  if (!has_curves(state)) return sides;
-  sides.row = kRow + (state.marks.boxes.empty() ? 0 : kLineOfNames);
-  if (state.window.folds_curves) sides.row = kFoldedRow;
+  Sides sides{.column = true, .aspect = skin.width_mm / skin.height_mm};
+  if (has_curves(state)) sides.row = state.window.folds_curves ? kFoldedRow : kRow;
   return sides;
 }
 
@@ -190,7 +179,6 @@ int fixed_window_flags() {
 void draw_panels(const Command& command) {
   for (const Panel& panel : kPanels) {
     if (!panel.has_contents(command.state)) continue;
-    if (panel.unfolds != nullptr && panel.unfolds(command.state)) ImGui::SetNextItemOpen(true);
     ImGui::PushID(panel.title);
     if (section(panel.title)) panel.draw(command);
     ImGui::PopID();
@@ -202,7 +190,6 @@ void draw_gui(const Command& command, const Screen& screen, const std::string& g
   const Theme theme = state.look.settings.theme;
   const float padding = ImGui::GetStyle().WindowPadding.x;
   draw_marks(state, command.place);
-  if (state.source.beside != nullptr) draw_marks(state, beside_place(state, command.place));
   draw_silence(state, command.place.area);
   draw_status(state, screen.status, gpu);
   draw_column(command, screen.column);

@@ -16,13 +16,12 @@ struct Screen {
   Viewport status;     ///< one line at the bottom
 };
 
-/// Sides that are shown. Curves take the room that the pictures of the whole skin leave, beside
-/// them where that is wide.
+/// Sides that are shown. Curves take the room that the picture of the whole skin leaves, beside it
+/// where that is wide.
 struct Sides {
   bool column = false;
   double row = 0;     ///< least height of the curves, nominal pixels; 0: none
   double aspect = 0;  ///< width over height of the skin; 0: not known
-  int pictures = 1;   ///< side by side
 };
 [[nodiscard]] Sides sides_of(const AppState& state);
 

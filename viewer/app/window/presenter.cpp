@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "viewer/app/source/start_pictures.h"
-
 namespace pillarfield::viewer {
 namespace {
 
@@ -45,32 +43,25 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
       device_(&device),
       chain_(device, surface),
       render_pass_(make_gui_pass(device, chain_.format())),
+      renderer_(instance, device, vk::Extent2D{1, 1}, scale),
       gui_(make_gui(scale)),
       pool_(device.handle(),
             {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
       buffers_(device.handle(),
                vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1)),
       ready_(device.handle(), vk::SemaphoreCreateInfo()),
-      done_(device.handle(), vk::FenceCreateInfo()) {
-  parts_.push_back({std::make_unique<Renderer>(instance, device, vk::Extent2D{1, 1}, scale)});
-}
+      done_(device.handle(), vk::FenceCreateInfo()) {}
 
-bool Presenter::resize(vk::Extent2D window, const std::vector<Place>& places, double scale) {
+bool Presenter::resize(vk::Extent2D window, const std::optional<Place>& place, double scale) {
   // Presentation may still use the semaphores of the old images.
   finish();
   framebuffers_.clear();
   if (!chain_.resize(window)) return false;
   make_framebuffers();
-  places_ = places;
-  parts_.resize(std::max<std::size_t>(places.size(), 1));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    Part& part = parts_[i];
-    const vk::Extent2D size = places[i].size;
-    if (part.renderer == nullptr) {
-      part.renderer = std::make_unique<Renderer>(*instance_, *device_, size, scale);
-    }
-    if (size != part.renderer->image().size()) part.has_picture = false;
-    part.renderer->resize(size, scale);
+  place_ = place;
+  if (place) {
+    if (place->size != renderer_.image().size()) has_picture_ = false;
+    renderer_.resize(place->size, scale);
   }
   if (scale != gui_->scale()) {
     gui_ = make_gui(scale);
@@ -79,8 +70,7 @@ bool Presenter::resize(vk::Extent2D window, const std::vector<Place>& places, do
 }
 
 std::unique_ptr<GuiContext> Presenter::make_gui(double scale) const {
-  return std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale,
-                                      start_pictures(scale));
+  return std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale);
 }
 
 void Presenter::make_framebuffers() {
@@ -95,16 +85,14 @@ void Presenter::make_framebuffers() {
 
 void Presenter::clear() {
   finish();
-  for (Part& part : parts_) {
-    part.has_picture = false;
-    part.renderer->memory().forget();
-  }
+  has_picture_ = false;
+  renderer_.memory().forget();
 }
 
-bool Presenter::draw(const std::vector<std::optional<Picture>>& pictures) {
+bool Presenter::draw(const std::optional<Picture>& picture) {
   const auto index = chain_.acquire(*ready_);
   if (!index) return false;
-  record(*index, pictures);
+  record(*index, picture);
   submit(*index);
   chain_.present(*index);
   static_cast<void>(device_->handle().waitForFences(*done_, VK_TRUE, UINT64_MAX));
@@ -112,23 +100,21 @@ bool Presenter::draw(const std::vector<std::optional<Picture>>& pictures) {
   return true;
 }
 
-void Presenter::record(std::uint32_t index, const std::vector<std::optional<Picture>>& pictures) {
+void Presenter::record(std::uint32_t index, const std::optional<Picture>& picture) {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    if (!pictures[i]) continue;
-    const Picture& picture = *pictures[i];
-    parts_.at(i).renderer->record(commands, picture.field, picture.source, picture.settings);
-    parts_.at(i).has_picture = true;
+  if (picture) {
+    renderer_.record(commands, picture->field, picture->source, picture->settings);
+    has_picture_ = true;
   }
-  copy_pictures(chain_.image(index));
+  copy_picture_or_blank(chain_.image(index));
   draw_gui(index);
   commands.end();
 }
 
-/// Discards the old contents: pictures and panels cover the whole image, which is blank where a
+/// Discards the old contents: picture and panels cover the whole image, which is blank where the
 /// picture is missing.
-void Presenter::copy_pictures(vk::Image image) const {
+void Presenter::copy_picture_or_blank(vk::Image image) const {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   const auto wait = [&](vk::AccessFlags before, ImageLayout layout) {
     const vk::ImageMemoryBarrier barrier(before, Access::eTransferWrite, layout,
@@ -137,15 +123,13 @@ void Presenter::copy_pictures(vk::Image image) const {
     commands.pipelineBarrier(Stage::eTransfer, Stage::eTransfer, {}, nullptr, nullptr, barrier);
   };
   wait({}, ImageLayout::eUndefined);
-  if (places_.empty() || !std::ranges::all_of(parts_, &Part::has_picture)) {
+  if (!place_ || !has_picture_) {
     commands.clearColorImage(image, ImageLayout::eTransferDstOptimal,
                              vk::ClearColorValue(std::array{0.055f, 0.067f, 0.086f, 1.0f}),
                              kWholeColour);
     wait(Access::eTransferWrite, ImageLayout::eTransferDstOptimal);
   }
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (parts_[i].has_picture) copy_picture(image, parts_[i].renderer->image(), places_[i]);
-  }
+  if (place_ && has_picture_) copy_picture(image, renderer_.image(), *place_);
 }
 
 void Presenter::copy_picture(vk::Image image, const gpu::Image& picture, const Place& place) const {

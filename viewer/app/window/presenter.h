@@ -23,10 +23,10 @@ class Presenter {
     friend bool operator==(const Place&, const Place&) = default;
   };
 
-  /// Sets the size of the window, the places of its pictures and the scale. Returns false for a
-  /// window without pixels, which cannot be drawn.
-  bool resize(vk::Extent2D window, const std::vector<Place>& places, double scale);
-  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+  /// Sets the size of the window, the place of its picture, if it has one, and the scale. Returns
+  /// false for a window without pixels, which cannot be drawn.
+  bool resize(vk::Extent2D window, const std::optional<Place>& place, double scale);
+  [[nodiscard]] const std::optional<Place>& place() const { return place_; }
 
   /// The window has changed: call resize(), even with equal sizes.
   [[nodiscard]] bool stale() const { return chain_.stale(); }
@@ -39,33 +39,25 @@ class Presenter {
     const RenderSettings& settings;
   };
 
-  /// Draws the pictures that are given, in the order of places(), copies all to their places, draws
-  /// the frame of ImGui::Render() in gui() over them, and presents. A picture that is not given
-  /// keeps its contents. Returns false, drawing nothing, where the window has no image available.
-  bool draw(const std::vector<std::optional<Picture>>& pictures);
+  /// Draws the picture that is given, copies it to its place, draws the frame of ImGui::Render() in
+  /// gui() over it, and presents. Without one the picture keeps its contents. Returns false,
+  /// drawing nothing, where the window has no image available.
+  bool draw(const std::optional<Picture>& picture);
 
-  /// Forgets the contents of all pictures and the memory of their fields.
+  /// Forgets the contents of the picture and the memory of its fields.
   void clear();
 
   /// The ImGui context of the panels.
   [[nodiscard]] const GuiContext& gui() const { return *gui_; }
-  [[nodiscard]] const gpu::Image& image(std::size_t index) const {
-    return parts_.at(index).renderer->image();
-  }
-  /// Renderer of the first picture.
-  [[nodiscard]] Renderer& renderer() { return *parts_.front().renderer; }
+  [[nodiscard]] const gpu::Image& image() const { return renderer_.image(); }
+  [[nodiscard]] Renderer& renderer() { return renderer_; }
 
   /// Waits until the device is idle.
   void finish() const { device_->handle().waitIdle(); }
 
  private:
-  struct Part {
-    std::unique_ptr<Renderer> renderer;
-    bool has_picture = false;
-  };
-
-  void record(std::uint32_t index, const std::vector<std::optional<Picture>>& pictures);
-  void copy_pictures(vk::Image image) const;
+  void record(std::uint32_t index, const std::optional<Picture>& picture);
+  void copy_picture_or_blank(vk::Image image) const;
   void copy_picture(vk::Image image, const gpu::Image& picture, const Place& place) const;
   void draw_gui(std::uint32_t index) const;
   void submit(std::uint32_t index);
@@ -76,8 +68,9 @@ class Presenter {
   const gpu::Device* device_;
   gpu::SwapChain chain_;
   vk::raii::RenderPass render_pass_;
-  std::vector<Part> parts_;  ///< at least one
-  std::vector<Place> places_;
+  Renderer renderer_;
+  std::optional<Place> place_;
+  bool has_picture_ = false;
   std::unique_ptr<GuiContext> gui_;
   std::vector<vk::raii::Framebuffer> framebuffers_;
   vk::raii::CommandPool pool_;
