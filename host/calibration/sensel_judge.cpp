@@ -25,11 +25,6 @@ constexpr double kMostVary = 0.8;
 /// that has less than half of it.
 constexpr double kVisibleNoise = 0.9;
 constexpr std::uint32_t kVisibleFrames = 100;
-/// Frames in which others must predict a response, and its least precision.
-constexpr std::uint32_t kLeastEvidence = 6;
-constexpr double kLeastPrecision = 0.025;
-/// Deviations by which a response of less precision must be below the limit.
-constexpr double kSure = 4;
 
 }  // namespace
 
@@ -151,16 +146,5 @@ std::optional<SenselFault> SenselJudge::verdict_of_constant(std::size_t sensel) 
 bool is_still(const SenselStatistics& read, double noise, double still_factor) {
   return double{read.highest} - read.lowest <= still_factor * noise;
 }
-
-bool SenselResponse::is_tested(double noise) const {
-  return frames >= kLeastEvidence && deviation(noise) < kLeastPrecision;
-}
-
-bool SenselResponse::is_below(double most, double noise) const {
-  if (is_tested(noise)) return ratio() < most;
-  return frames >= kLeastEvidence && ratio() + kSure * deviation(noise) < most;
-}
-
-double SenselResponse::deviation(double noise) const { return noise / std::sqrt(squares); }
 
 }  // namespace pillarfield

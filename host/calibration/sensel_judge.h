@@ -12,8 +12,7 @@
 
 namespace pillarfield {
 
-// The judge of sensels of the doctor, the tare, the search for faults and the live watch: evidence
-// in, verdict out, with one set of constants.
+// The judge of sensels of the tare, the search for faults and the live watch.
 
 /// Multiple of the typical noise above which a sensel is noisy.
 inline constexpr double kNoisy = 5;
@@ -83,23 +82,5 @@ class SenselJudge {
 
 /// True if the range of readings is that of noise alone.
 [[nodiscard]] bool is_still(const SenselStatistics& read, double noise, double still_factor);
-
-/// Response of a sensel where others predict one.
-struct SenselResponse {
-  std::uint32_t frames = 0;
-  double products = 0;
-  double squares = 0;
-
-  void add(double signal, double expected) {
-    ++frames;
-    products += signal * expected;
-    squares += expected * expected;
-  }
-  [[nodiscard]] bool is_tested(double noise) const;
-  /// True if the response is below `most`, for sure.
-  [[nodiscard]] bool is_below(double most, double noise) const;
-  [[nodiscard]] double ratio() const { return products / squares; }
-  [[nodiscard]] double deviation(double noise) const;
-};
 
 }  // namespace pillarfield
