@@ -243,6 +243,8 @@ class Faulty(World):
                     follows += (load - follows) / 200
                 self.load[number] = load + left * (load < 0.02) - follows
             self.rest += 0.5 * self.peak
+        elif fault == "missing":
+            self.rest += 10 * self.noise + 0.1 * self.peak
         elif fault == "drift":
             self.drift = random.choice([-1, 1]) * random.uniform(0.1, 0.3) * self.peak
             self.rest += 0.6 * self.peak
@@ -251,9 +253,8 @@ class Faulty(World):
         if fault == "stuck":
             counts[:, row, col] = counts[:, row, col].min() if random.random() < 0.5 else np.median(counts) + 7
         elif fault in ("saturated", "absent"):
-            full = 255 if counts.dtype == np.uint8 else 65535
-            counts = counts.astype("f4")
-            counts[:, row, col] = -1 if fault == "absent" else full
+            counts = counts.astype("f4") if fault == "absent" else counts
+            counts[:, row, col] = -1 if fault == "absent" else 255 if counts.dtype == np.uint8 else 65535
         elif fault == "missing":
             counts[[100, 101, 150]] = 0
         elif fault == "two values":
@@ -293,7 +294,7 @@ class Faulty(World):
         if fault == "ghosts":
             return (6, 5) in findings.get("ghosts", pf.ArrayFinding("", "", [], [])).sensels
         name = {"repeated": "repeated frames", "missing": "missing frames"}.get(fault, fault)
-        if name not in findings and fault in ("dead", "stuck", "weak"):
+        if name not in findings and fault in ("dead", "stuck", "weak", "saturated"):
             return any(self.place in each.sensels for name, each in findings.items() if name in ("dead", "stuck", "weak"))
         return name in findings and (not findings[name].sensels or self.place in findings[name].sensels)
 
