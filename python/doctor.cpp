@@ -1,10 +1,8 @@
 #include "pillarfield/doctor.h"
 
-#include <cstring>
 #include <limits>
 #include <mutex>
 #include <string>
-#include <tuple>
 
 #include "calibration/doctor/diagnosis_facts.h"
 #include "python/bindings.h"
@@ -14,8 +12,8 @@
 namespace pillarfield::python {
 namespace {
 
-/// The facts as JSON, and the picture, uint8 [rows, cols, 3].
-std::tuple<std::string, py::array> diagnose(Frames& frames, const std::string& name, bool timed) {
+/// The facts as JSON.
+std::string diagnose(Frames& frames, const std::string& name, bool timed) {
   Diagnosis found;
   {
     const py::gil_scoped_release unlocked;
@@ -31,17 +29,14 @@ std::tuple<std::string, py::array> diagnose(Frames& frames, const std::string& n
     }
     found = doctor.result();
   }
-  const RgbPicture picture = draw(found, name);
-  py::array_t<std::uint8_t> pixels(Shape{picture.height, picture.width, 3});
-  std::memcpy(pixels.mutable_data(), picture.rgb.data(), picture.rgb.size());
-  return {facts_of(found).dump(), pixels};
+  return facts_of(found).dump();
 }
 
 }  // namespace
 
 void bind_doctor(py::module_& module) {
   module.def("doctor", &diagnose, py::arg("frames"), py::arg("name"), py::arg("timed"),
-             "The facts of pillarfield.doctor() as JSON, and its picture.");
+             "The facts of pillarfield.doctor() as JSON.");
 }
 
 }  // namespace pillarfield::python

@@ -24,6 +24,9 @@
 namespace pillarfield {
 namespace {
 
+/// Deviation of a changing prediction, in that of three readings' noise.
+constexpr double kMovingFactor = 5;
+
 /// The other three sensels of a pillar, for each sensel: two neighbours and the opposite one.
 struct Others {
   std::size_t neighbour;
@@ -59,10 +62,10 @@ SolverPlan plan_of_sensels(SolverPlan plan) {
 }  // namespace
 
 FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
-                         const SkinCalibration& calibration, const FaultOptions& options)
+                         const SkinCalibration& calibration, std::uint32_t least_frames)
     : statistics_(std::move(name), skin, type),
       calibration_(calibration),
-      options_(options),
+      least_frames_(least_frames),
       predictions_(skin.sensels()) {
   require_fitting(calibration, skin, statistics_.name());
   plan_.skin = skin;
@@ -134,7 +137,7 @@ class FaultFinder::Classifier {
         loaded_frames = std::max(loaded_frames, finder_.predictions_[sensels.at(n)].usable);
       }
     }
-    const bool loaded = loaded_frames >= finder_.options_.least_frames;
+    const bool loaded = loaded_frames >= finder_.least_frames_;
     const auto moving = std::count(moves.begin(), moves.end(), true);
     moving_ += static_cast<std::size_t>(moving);
     for (std::size_t n = 0; n < sensels.size(); ++n) {
@@ -174,18 +177,17 @@ class FaultFinder::Classifier {
   }
 
   [[nodiscard]] bool is_still(std::size_t sensel) const {
-    return pillarfield::is_still(read(sensel), noise(sensel), finder_.options_.still_factor);
+    return pillarfield::is_still(read(sensel), noise(sensel));
   }
 
   /// True if the prediction of parity moves by more than the noise of three readings.
   [[nodiscard]] bool should_move(std::size_t sensel) const {
     const Prediction& prediction = finder_.predictions_[sensel];
-    if (prediction.frames < std::max(2U, finder_.options_.least_frames)) return false;
+    if (prediction.frames < std::max(2U, finder_.least_frames_)) return false;
     const Calibration& planes = finder_.plan_.calibration;
     const double gain = planes.gain.empty() ? 1 : planes.gain[sensel];
     const double deviation = std::sqrt(prediction.squares / (prediction.frames - 1));
-    return deviation > 0 &&
-           deviation >= finder_.options_.moving_factor * std::sqrt(3.0) * gain * noise(sensel);
+    return deviation > 0 && deviation >= kMovingFactor * std::sqrt(3.0) * gain * noise(sensel);
   }
 
   [[nodiscard]] SenselFault fault_of(std::size_t sensel) const {
@@ -201,7 +203,7 @@ class FaultFinder::Classifier {
 };
 
 FaultResult FaultFinder::result() const {
-  require_frames(statistics_, options_.least_frames);
+  require_frames(statistics_, least_frames_);
   FaultResult result;
   FindingList found(plan_.calibration.mask, statistics_);
   Classifier classifier(*this, found, result);
@@ -217,10 +219,10 @@ FaultResult FaultFinder::result() const {
 
 namespace {
 
-FaultResult faults_by_parity(const StepWork& work, const FaultOptions& options) {
+FaultResult faults_by_parity(const StepWork& work, std::uint32_t least_frames) {
   const StepFrames& first = work.files.front();
   const WireCorrection correct = work.correction(first, WireUse::loaded);
-  FaultFinder finder(first.name(), correct.skin(), correct.type(), work.before, options);
+  FaultFinder finder(first.name(), correct.skin(), correct.type(), work.before, least_frames);
   for (const StepFrames& file : work.files) {
     work.for_each(file, [&](const FrameView& frame, double) { finder.add(frame); });
   }
@@ -228,11 +230,7 @@ FaultResult faults_by_parity(const StepWork& work, const FaultOptions& options) 
 }
 
 /// Without pillars there is no parity: masks what the doctor finds.
-FaultResult faults_by_neighbours(const StepWork& work, const FaultOptions& options) {
-  for (const char* const name : {"still", "moving"}) {
-    if (work.numbers(name).empty()) continue;
-    throw Error(name, "it is of parity, which needs pillars", "leave it out");
-  }
+FaultResult faults_by_neighbours(const StepWork& work, std::uint32_t least_frames) {
   const StepFrames& first = work.files.front();
   const WireCorrection correct = work.correction(first, WireUse::loaded);
   Doctor doctor(first.name(), correct.skin(), correct.type());
@@ -243,7 +241,7 @@ FaultResult faults_by_neighbours(const StepWork& work, const FaultOptions& optio
       doctor.add(frame, std::numeric_limits<double>::quiet_NaN());
     });
   }
-  require_frames(statistics, options.least_frames);
+  require_frames(statistics, least_frames);
   const Diagnosis seen = doctor.result();
   if (seen.contact_frames == 0) refuse_still(statistics);
   FindingList found(work.before.planes.mask, statistics);
@@ -256,14 +254,11 @@ FaultResult faults_by_neighbours(const StepWork& work, const FaultOptions& optio
 }
 
 SkinCalibration run_faults(StepWork& work) {
-  FaultOptions options;
-  options.least_frames =
-      static_cast<std::uint32_t>(work.number("min-frames", options.least_frames));
-  options.still_factor = work.number("still", options.still_factor);
-  options.moving_factor = work.number("moving", options.moving_factor);
+  const auto least_frames =
+      static_cast<std::uint32_t>(work.number("min-frames", kLeastFaultFrames));
   const bool has_pillars = work.files.front().skin.has_pillars();
   const FaultResult result =
-      has_pillars ? faults_by_parity(work, options) : faults_by_neighbours(work, options);
+      has_pillars ? faults_by_parity(work, least_frames) : faults_by_neighbours(work, least_frames);
   const SkinCalibration& calibration = result.calibration;
   const std::size_t sensels = std::size_t{calibration.rows} * calibration.cols;
   StepReport& report = work.report;
@@ -274,11 +269,7 @@ SkinCalibration run_faults(StepWork& work) {
   report.notes.push_back(fmt::format("Untested: {} of {} sensels, never {}; --json lists them",
                                      grouped(result.untested.size()), grouped(sensels),
                                      has_pillars ? "predicted to change" : "touched"));
-  work.parameters = fmt::format("least_frames = {}", options.least_frames);
-  if (has_pillars) {
-    work.parameters += fmt::format(", still_factor = {}, moving_factor = {}", options.still_factor,
-                                   options.moving_factor);
-  }
+  work.parameters = fmt::format("least_frames = {}", least_frames);
   return calibration;
 }
 
@@ -289,18 +280,9 @@ StepKind faults_step() {
                    "Find dead, stuck and saturated sensels by parity, or without pillars by their "
                    "neighbours, and mask them.",
                    "FRAMES", "Frames in which all of the skin is pressed", run_faults};
-  step.arguments = {
-      StepArgument::whole(
-          "min-frames",
-          "Smallest number of frames, and of those in which parity predicts a sensel [30]",
-          {2, 1e9}),
-      StepArgument::number("still", "RATIO",
-                           "Largest range of a constant reading, in multiples of its noise [10]",
-                           {1e-6, 1e6}),
-      StepArgument::number(
-          "moving", "RATIO",
-          "Smallest deviation of a changing prediction, in multiples of its noise [5]",
-          {1e-6, 1e6})};
+  step.arguments = {StepArgument::whole(
+      "min-frames",
+      "Smallest number of frames, and of those in which parity predicts a sensel [30]", {2, 1e9})};
   step.examples = {kSimulateIdle,
                    "simulate scenes/calibration/new_skin_rolled.toml --uncalibrated -o rolled.h5",
                    kTareIdle, "calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5"};

@@ -11,6 +11,10 @@
 namespace pillarfield {
 namespace {
 
+/// Range of a constant reading, in its noise.
+constexpr double kStill = 10;
+/// Multiple of the typical noise above which a sensel is noisy.
+constexpr double kNoisy = 5;
 /// Distance from the typical level, in spreads, beyond which a level is an outlier.
 constexpr double kFar = 6;
 /// Least distance of a value that means nothing from the readings, in their range.
@@ -25,11 +29,6 @@ constexpr double kMostVary = 0.8;
 /// that has less than half of it.
 constexpr double kVisibleNoise = 0.9;
 constexpr std::uint32_t kVisibleFrames = 100;
-/// Frames in which others must predict a response, and its least precision.
-constexpr std::uint32_t kLeastEvidence = 6;
-constexpr double kLeastPrecision = 0.025;
-/// Deviations by which a response of less precision must be below the limit.
-constexpr double kSure = 4;
 
 }  // namespace
 
@@ -117,10 +116,6 @@ bool SenselJudge::is_far_above(std::size_t sensel) const {
   return sensels_[sensel].level > typical_.level + kFar * typical_.spread;
 }
 
-bool SenselJudge::is_far_below(std::size_t sensel) const {
-  return sensels_[sensel].level < typical_.level - kFar * typical_.spread;
-}
-
 std::optional<SenselFault> SenselJudge::verdict(std::size_t sensel) const {
   const SenselEvidence& each = sensels_[sensel];
   if (lacks_readings(each.read, frames_)) return SenselFault::not_a_number;
@@ -143,24 +138,13 @@ std::optional<SenselFault> SenselJudge::verdict_of_constant(std::size_t sensel) 
     const bool is_odd = most_vary && typical_.low > 4 * typical_.noise + 1;
     return is_odd ? std::optional(SenselFault::absent) : std::nullopt;
   }
-  const bool is_far = is_far_above(sensel) || is_far_below(sensel);
+  const bool is_far = std::abs(value - typical_.level) > kFar * typical_.spread;
   const bool shows_noise = typical_.noise > kVisibleNoise && frames_ >= kVisibleFrames;
   return is_far || (most_vary && shows_noise) ? std::optional(SenselFault::stuck) : std::nullopt;
 }
 
-bool is_still(const SenselStatistics& read, double noise, double still_factor) {
-  return double{read.highest} - read.lowest <= still_factor * noise;
+bool is_still(const SenselStatistics& read, double noise) {
+  return double{read.highest} - read.lowest <= kStill * noise;
 }
-
-bool SenselResponse::is_tested(double noise) const {
-  return frames >= kLeastEvidence && deviation(noise) < kLeastPrecision;
-}
-
-bool SenselResponse::is_below(double most, double noise) const {
-  if (is_tested(noise)) return ratio() < most;
-  return frames >= kLeastEvidence && ratio() + kSure * deviation(noise) < most;
-}
-
-double SenselResponse::deviation(double noise) const { return noise / std::sqrt(squares); }
 
 }  // namespace pillarfield

@@ -12,11 +12,7 @@
 
 namespace pillarfield {
 
-// The judge of sensels of the doctor, the tare, the search for faults and the live watch: evidence
-// in, verdict out, with one set of constants.
-
-/// Multiple of the typical noise above which a sensel is noisy.
-inline constexpr double kNoisy = 5;
+// The judge of sensels of the tare, the search for faults and the live watch.
 
 /// Evidence of one sensel from raw readings, counts.
 struct SenselEvidence {
@@ -56,9 +52,8 @@ class SenselJudge {
   /// not_a_number, absent, saturated, stuck or noisy; unset: nothing is wrong with its readings.
   [[nodiscard]] std::optional<SenselFault> verdict(std::size_t sensel) const;
 
-  /// True if a reading without load is far from the typical one.
+  /// True if a reading without load is far above the typical one.
   [[nodiscard]] bool is_far_above(std::size_t sensel) const;
-  [[nodiscard]] bool is_far_below(std::size_t sensel) const;
 
   [[nodiscard]] const TypicalSensel& typical() const { return typical_; }
   [[nodiscard]] std::span<const SenselEvidence> sensels() const { return sensels_; }
@@ -81,25 +76,7 @@ class SenselJudge {
 /// True if most of the readings are at full scale.
 [[nodiscard]] bool is_saturated(const SenselStatistics& read);
 
-/// True if the range of readings is that of noise alone.
-[[nodiscard]] bool is_still(const SenselStatistics& read, double noise, double still_factor);
-
-/// Response of a sensel where others predict one.
-struct SenselResponse {
-  std::uint32_t frames = 0;
-  double products = 0;
-  double squares = 0;
-
-  void add(double signal, double expected) {
-    ++frames;
-    products += signal * expected;
-    squares += expected * expected;
-  }
-  [[nodiscard]] bool is_tested(double noise) const;
-  /// True if the response is below `most`, for sure.
-  [[nodiscard]] bool is_below(double most, double noise) const;
-  [[nodiscard]] double ratio() const { return products / squares; }
-  [[nodiscard]] double deviation(double noise) const;
-};
+/// True if the range of readings is that of noise alone: at most ten times `noise`.
+[[nodiscard]] bool is_still(const SenselStatistics& read, double noise);
 
 }  // namespace pillarfield

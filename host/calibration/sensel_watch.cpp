@@ -86,13 +86,11 @@ void SenselWatch::State::run(const std::stop_token& stop) {
 
 void SenselWatch::State::add(std::optional<FaultFinder>& finder, WatchClock::time_point& start) {
   if (!finder) {
-    finder.emplace("health", plan.skin, plan.sensel_type, watched_calibration(plan),
-                   FaultOptions{});
+    finder.emplace("health", plan.skin, plan.sensel_type, watched_calibration(plan));
     start = WatchClock::now();
   }
   finder->add(frame.view());
-  if (WatchClock::now() - start < window ||
-      finder->statistics().frames() < FaultOptions{}.least_frames) {
+  if (WatchClock::now() - start < window || finder->statistics().frames() < kLeastFaultFrames) {
     return;
   }
   const SenselHealth found = judge(*finder);
@@ -134,7 +132,7 @@ void SenselWatch::State::update_faults(const FaultFinder& finder) {
 bool SenselWatch::State::is_still(const SenselStatistics& sensel, std::size_t index) const {
   const double noise =
       plan.calibration.noise.empty() ? reading_noise(plan) : plan.calibration.noise[index];
-  return pillarfield::is_still(sensel, noise, FaultOptions{}.still_factor);
+  return pillarfield::is_still(sensel, noise);
 }
 
 bool SenselWatch::State::drifts(const SenselStatistics& sensel, std::size_t index) const {

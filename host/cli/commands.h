@@ -121,8 +121,6 @@ struct DoctorOptions : PrintOptions {
   ReadOptions read;
   double seconds = 10;  ///< of a live source
   std::uint32_t serial_baud = 2'000'000;
-  std::string png;  ///< file of the picture; empty: none
-  Replace replace = Replace::results;
 };
 
 void simulate(const SimulateOptions& options);

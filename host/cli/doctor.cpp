@@ -16,7 +16,6 @@
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/live.h"
-#include "pillarfield/png_file.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/tare.h"
 
@@ -224,13 +223,8 @@ void print(const DoctorOptions& options, const Diagnosis& found) {
 }  // namespace
 
 void doctor(const DoctorOptions& options) {
-  const bool is_live = is_live_source(options.source);
-  if (!options.png.empty()) {
-    check_outputs({is_live ? "" : options.source}, {{options.png, OutputKind::png}},
-                  options.replace);
-  }
-  const Diagnosis found = is_live ? look_at_source(options) : look_at_file(options);
-  if (!options.png.empty()) write_png(options.png, draw(found, options.source), options.replace);
+  const Diagnosis found =
+      is_live_source(options.source) ? look_at_source(options) : look_at_file(options);
   if (options.json) {
     fmt::print("{}\n", json_text(json_of(options, found)));
   } else {

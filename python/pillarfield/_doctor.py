@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from . import _core
 from ._frames import Axes, FileOptions, Path, is_files, is_table, refuse_unknown
-from ._picture import Image, png_of
 from ._recording import Recording, source_of
 from ._scene import Simulation
 
@@ -51,13 +50,6 @@ class Diagnosis:
     idle_counts: float
     rate_hz: Optional[float]
     facts: dict[str, Any]
-    _pixels: Image = dataclasses.field(compare=False)
-
-    def picture(self) -> bytes:
-        """PNG of the array: the largest change of each sensel under load, counts, and the faults."""
-        return png_of(self._pixels)
-
-    _repr_png_ = picture
 
     def __repr__(self) -> str:
         facts = self.facts
@@ -95,9 +87,8 @@ def doctor(frames: Union[Path, npt.ArrayLike, Recording, Simulation], *,
         timed = isinstance(frames, (Recording, Simulation)) or times is not None or rate_hz is not None
     judged = "counts" if is_table(frames) or is_files(frames) else ""
     source = source_of(frames, None, times, rate_hz, axes=axes, untimed=rate_hz is None, readings=judged, **file)
-    text, pixels = _core.doctor(source, name, timed)
-    facts = json.loads(text)
+    facts = json.loads(_core.doctor(source, name, timed))
     findings = [ArrayFinding(each["fault"], each["text"], [(row, col) for row, col in each.get("sensels", [])],
                              each.get("lines", [])) for each in facts["findings"]]
     return Diagnosis(findings, facts["polarity"], facts["noise_counts"]["median"], facts["idle_counts"],
-                     facts["rate_hz"], facts, pixels)
+                     facts["rate_hz"], facts)

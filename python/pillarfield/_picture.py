@@ -45,7 +45,7 @@ def picture(planes: dict[str, Any], quantity: str, limits: Optional[tuple[float,
         ink = 20 if light else 230
         _write(image, f"{high:.3g} {unit}", 20, left + 22, ink)
         _write(image, f"{low:.3g} {unit}", image.shape[0] - 30, left + 22, ink)
-    return png_of(image)
+    return _png_of(image)
 
 
 def _write(image: Image, text: str, top: int, left: int, ink: int) -> None:
@@ -92,7 +92,7 @@ def _cell_means(plane: npt.NDArray[np.float32], cell: int) -> Any:
     return whole.reshape(rows, cell, cols, cell).mean((1, 3))
 
 
-def png_of(image: Image) -> bytes:
+def _png_of(image: Image) -> bytes:
     """PNG of pixels, uint8 [rows, cols, 3]."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:

@@ -27,10 +27,6 @@ PressedSkin leaning_skin(const std::optional<double>& arm_mm, double noise_count
   return skin;
 }
 
-SkinCalibration leaning_tare(PressedSkin& skin) {
-  return take_tare(blank_calibration(skin.skin()), skin.bare(100), {}).calibration;
-}
-
 /// Frames under four balls, pressed down at different places within a pillar.
 FrameStatistics balls(PressedSkin& skin, double radius_mm, double load_n) {
   Scene scene = skin.scene();
@@ -50,7 +46,7 @@ FrameStatistics balls(PressedSkin& skin, double radius_mm, double load_n) {
 }
 
 ArmResult calibrated_arm(PressedSkin& skin, double radius_mm = 6, double load_n = 60) {
-  const SkinCalibration before = leaning_tare(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics presses[] = {balls(skin, radius_mm, load_n)};
   return calibrate_arm(before, presses);
 }
@@ -73,7 +69,7 @@ TEST(CalibrateArm, RecoversItWithinItsStatedError) {
 
 TEST(CalibrateArm, ReplacesAnEarlierArmAndKeepsTheRest) {
   PressedSkin skin = leaning_skin(0.5);
-  SkinCalibration before = leaning_tare(skin);
+  SkinCalibration before = skin.tared();
   before.planes.effects.arm_mm = 0.1;
   before.planes.effects.residual = {0.001, 0};
   const FrameStatistics presses[] = {balls(skin, 6, 60), balls(skin, 8, 100)};
@@ -88,7 +84,7 @@ TEST(CalibrateArm, ReplacesAnEarlierArmAndKeepsTheRest) {
 TEST(CalibrateArm, FollowsTheShearCoefficient) {
   PressedSkin skin = leaning_skin(0.5);
   skin.scene().sensor.effects.shear_coefficient = {0.8, 0.8};
-  SkinCalibration before = leaning_tare(skin);
+  SkinCalibration before = skin.tared();
   before.planes.effects.shear_coefficient = {0.8, 0.8};
   const FrameStatistics presses[] = {balls(skin, 6, 60)};
   EXPECT_NEAR(calibrate_arm(before, presses).arm_mm, 0.5, 0.03);
@@ -121,7 +117,7 @@ TEST(CalibrateArm, RefusesWhatSaysTooLittle) {
 /// An image of the skin turned by half a circle leans the wrong way.
 TEST(CalibrateArm, RefusesALeanAwayFromThePressure) {
   PressedSkin skin = leaning_skin(0.5);
-  const SkinCalibration before = leaning_tare(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics upright = balls(skin, 6, 60);
   const Skin& of = skin.skin();
   FrameStatistics turned("turned.h5", of, SenselType::f32);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -85,28 +84,6 @@ class Follower {
   std::optional<Processor> processor_;
   std::uint64_t frame_ = 0;
 };
-
-double total_normal(const ForceField& forces) {
-  return std::accumulate(forces.normal.begin(), forces.normal.end(), 0.0);
-}
-
-/// Mean of the total over a number of frames.
-double mean_total(Follower& follower, int frames) {
-  double total = 0;
-  for (int i = 0; i < frames; ++i) total += total_normal(follower.step());
-  return total / frames;
-}
-
-TEST(Baseline, AConstantPressDoesNotFadeInTenThousandFrames) {
-  // Followed within a second, for a hundred: what could fade would be gone.
-  Follower follower(pressed_scene(20), 1);
-  const double at_first = mean_total(follower, 200);
-  for (int i = 0; i < 9'600; ++i) follower.step();
-  const double at_last = mean_total(follower, 200);
-  EXPECT_NEAR(at_first, 20, 0.4);
-  // 500 pressed sensels of one count of noise make 0.005 N in a mean of 200.
-  EXPECT_NEAR(at_last, at_first, 0.03);
-}
 
 TEST(Baseline, IsFrozenAtTheFringeOfAContact) {
   // So light that the outermost pillars flicker about the threshold.
@@ -256,16 +233,6 @@ TEST(Baseline, InTurnsIsNotDeceivedByHum) {
   }
   EXPECT_LT(rms_difference(turns.tare(), turns.unloaded()), kMostInTurns);
   EXPECT_GT(rms_difference(tenth.tare(), tenth.unloaded()), 0.5 * kHumCounts);
-}
-
-TEST(Baseline, ComesBackAfterAContact) {
-  Scene scene = pressed_scene(20);
-  std::get<std::vector<ClosedFormContact>>(scene.load).front().path = {
-      {0, 0, 0, 20}, {10, 0, 0, 20}, {10.01, 0, 0, 0}};
-  scene.sensor.drift_counts_per_s = 0.05;
-  Follower follower(scene, 1);
-  for (int i = 0; i < 2'000; ++i) follower.step();
-  EXPECT_LT(tracking_error(follower, scene, 2'000), 0.2);
 }
 
 }  // namespace

@@ -25,10 +25,6 @@ PressedSkin bendable_skin(double spread_counts_mm) {
   return skin;
 }
 
-SkinCalibration flat(PressedSkin& skin) {
-  return take_tare(blank_calibration(skin.skin()), skin.bare(100), {}).calibration;
-}
-
 FrameStatistics bent(PressedSkin& skin, const Curvature& curvature) {
   PressedSkin shape = skin;
   if (shape.scene().bending) {
@@ -42,7 +38,7 @@ FrameStatistics bent(PressedSkin& skin, const Curvature& curvature) {
 constexpr double kRadius = 60;
 
 BendingResult bent_in_three_directions(PressedSkin& skin) {
-  const SkinCalibration before = flat(skin);
+  const SkinCalibration before = skin.tared();
   const Curvature along[] = {curvature_of_cylinder(kRadius, 90), curvature_of_cylinder(kRadius, 0),
                              curvature_of_cylinder(kRadius, 45),
                              curvature_of_cylinder(kRadius, -45)};
@@ -98,7 +94,7 @@ TEST(BendingCalibration, ACylinderCurvesAcrossItsAxis) {
 
 TEST(BendingCalibration, RefusesWhatDoesNotTell) {
   PressedSkin skin = bendable_skin(300);
-  const SkinCalibration before = flat(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics frames = skin.bare(10);
   const Curvature x = curvature_of_cylinder(60, 90);
   const BentSkin twice[] = {{frames, x}, {frames, x}};

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
-#include "pillarfield/host_solve.h"
 #include "pillarfield/simulator.h"
 #include "skin/pillar_sensels.h"
 #include "tests/base/message.h"
@@ -58,25 +58,36 @@ SkinCalibration calibration_of(const Simulator& simulator) {
   return calibration;
 }
 
-/// Changes the readings of frame t.
-using Spoil = std::function<void(std::span<std::uint8_t> readings, std::uint32_t t)>;
+/// Changes the readings of a frame.
+using Spoil = std::function<void(FrameBuffer& frame)>;
 
-void no_spoil(std::span<std::uint8_t>, std::uint32_t) {}
+void no_spoil(FrameBuffer&) {}
 
 FaultResult faults_in(const Scene& scene, const Spoil& spoil, std::uint32_t frames = kPressedFrames,
-                      const FaultOptions& options = {}) {
+                      std::uint32_t least_frames = kLeastFaultFrames,
+                      const std::vector<std::uint8_t>& mask = {}) {
   const Simulator simulator(scene);
   const Skin& skin = simulator.scene().skin;
-  FaultFinder finder("frames.h5", skin, simulator.sensel_type(), calibration_of(simulator),
-                     options);
+  SkinCalibration calibration = calibration_of(simulator);
+  calibration.planes.mask = mask;
+  FaultFinder finder("frames.h5", skin, simulator.sensel_type(), calibration, least_frames);
   FrameBuffer frame(simulator.sensel_type(), skin.rows, skin.cols);
   ForceField truth(skin.pillar_rows(), skin.pillar_cols());
   for (std::uint32_t t = 0; t < frames; ++t) {
     simulator.render(t, frame, truth);
-    spoil(frame.readings<std::uint8_t>(), t);
+    spoil(frame);
     finder.add(frame.view());
   }
   return finder.result();
+}
+
+/// Constant readings of some sensels.
+Spoil reads(std::vector<std::pair<std::size_t, std::uint8_t>> readings) {
+  return [readings](FrameBuffer& frame) {
+    for (const auto& [sensel, reading] : readings) {
+      frame.readings<std::uint8_t>()[sensel] = reading;
+    }
+  };
 }
 
 std::size_t place(std::uint32_t row, std::uint32_t col) { return std::size_t{row} * kSize + col; }
@@ -101,13 +112,13 @@ TEST(FaultFinder, DeadStuckAndSaturatedSenselsAreMasked) {
   const std::size_t off = place(13, 15);        // 4
   const std::size_t stuck = place(20, 21);      // 1
   const std::size_t saturated = place(25, 30);  // 3
-  const auto spoil = [=](std::span<std::uint8_t> readings, std::uint32_t t) {
-    readings[dead] = 0;
-    readings[off] = static_cast<std::uint8_t>(11 + t % 3);  // its tare, and noise
-    readings[stuck] = 90;
-    readings[saturated] = 255;
-  };
-  const FaultResult result = faults_in(swaying_ball(), spoil);
+  const auto constant = reads({{dead, 0}, {stuck, 90}, {saturated, 255}});
+  int t = 0;
+  const FaultResult result = faults_in(swaying_ball(), [&](FrameBuffer& frame) {
+    constant(frame);
+    frame.readings<std::uint8_t>()[off] =
+        static_cast<std::uint8_t>(11 + t++ % 3);  // its tare, and noise
+  });
   EXPECT_EQ(result.findings.size(), 4U);
   const std::pair<std::size_t, SenselFault> expected[] = {{dead, SenselFault::unresponsive},
                                                           {off, SenselFault::unresponsive},
@@ -123,59 +134,24 @@ TEST(FaultFinder, DeadStuckAndSaturatedSenselsAreMasked) {
   EXPECT_EQ(count_masked(result.calibration.planes), 4U);
 }
 
-/// Once masked, the solver recovers the sensel by parity.
-TEST(FaultFinder, TheMaskRestoresTheForces) {
-  const std::size_t stuck = place(20, 21);
-  const FaultResult result =
-      faults_in(swaying_ball(), [=](auto readings, std::uint32_t) { readings[stuck] = 230; });
-  const Simulator simulator(swaying_ball());
-  const Skin& skin = simulator.scene().skin;
-  FrameBuffer frame(SenselType::u8, skin.rows, skin.cols);
-  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
-  simulator.render(60, frame, truth);
-  frame.readings<std::uint8_t>()[stuck] = 230;
-  SolverPlan plan;
-  plan.skin = skin;
-  apply(result.calibration, plan.skin, plan.calibration);
-  const std::size_t pillar = 10 * std::size_t{kSize / 2} + 10;
-  const double normal = solve_on_host(plan, frame.view()).normal[pillar];
-  // Two readings of one count of noise, over 2 k.
-  EXPECT_NEAR(normal, truth.normal[pillar], 4 * 1.5 / 640);
-  plan.calibration.mask.clear();
-  EXPECT_GT(std::abs(solve_on_host(plan, frame.view()).normal[pillar] - truth.normal[pillar]),
-            10 * 1.5 / 640);
-}
-
 TEST(FaultFinder, ASenselThatIsNoNumberIsMasked) {
   Scene scene = swaying_ball();
   scene.sensor.adc_bits.reset();
-  const Simulator simulator(scene);
-  FaultFinder finder("frames.h5", simulator.scene().skin, SenselType::f32,
-                     calibration_of(simulator), {});
-  FrameBuffer frame(SenselType::f32, kSize, kSize);
-  ForceField truth(kSize / 2, kSize / 2);
-  for (std::uint32_t t = 0; t < kPressedFrames; ++t) {
-    simulator.render(t, frame, truth);
+  int t = 0;
+  const FaultResult result = faults_in(scene, [&](FrameBuffer& frame) {
     frame.readings<float>()[place(8, 8)] = std::numeric_limits<float>::quiet_NaN();
-    if (t == 7) frame.readings<float>()[place(4, 4)] = std::numeric_limits<float>::infinity();
-    finder.add(frame.view());
-  }
-  const FaultResult result = finder.result();
+    if (t++ == 7) frame.readings<float>()[place(4, 4)] = std::numeric_limits<float>::infinity();
+  });
   ASSERT_EQ(result.findings.size(), 1U);
   EXPECT_EQ(result.findings[0].fault, SenselFault::not_a_number);
   EXPECT_EQ(result.calibration.planes.mask[place(8, 8)], 0);
 }
 
 TEST(FaultFinder, TwoInAPillarAreSuspectedAndNotMasked) {
-  for (const auto& [a, b] : {std::pair{place(10, 10), place(11, 11)},     // opposite
-                             std::pair{place(10, 10), place(10, 11)}}) {  // adjacent
-    const auto spoil = [a = a, b = b](std::span<std::uint8_t> readings, std::uint32_t) {
-      readings[a] = 0;
-      readings[b] = 70;
-    };
-    const FaultResult result = faults_in(swaying_ball(), spoil);
+  for (const std::size_t other : {place(11, 11), place(10, 11)}) {  // opposite, adjacent
+    const FaultResult result = faults_in(swaying_ball(), reads({{place(10, 10), 0}, {other, 70}}));
     EXPECT_EQ(result.findings.size(), 2U);
-    for (const std::size_t sensel : {a, b}) {
+    for (const std::size_t sensel : {place(10, 10), other}) {
       const SenselFinding* const finding = finding_at(result, sensel);
       ASSERT_NE(finding, nullptr);
       EXPECT_EQ(finding->fault, SenselFault::unknown);
@@ -186,23 +162,13 @@ TEST(FaultFinder, TwoInAPillarAreSuspectedAndNotMasked) {
 }
 
 TEST(FaultFinder, AStillSenselBesideAMissingOneIsSuspected) {
-  Scene scene = swaying_ball();
-  const Simulator simulator(scene);
-  SkinCalibration calibration = calibration_of(simulator);
-  calibration.planes.mask.assign(simulator.scene().skin.sensels(), 1);
-  calibration.planes.mask[place(10, 10)] = 0;
-  FaultFinder finder("frames.h5", simulator.scene().skin, SenselType::u8, calibration, {});
-  FrameBuffer frame(SenselType::u8, kSize, kSize);
-  ForceField truth(kSize / 2, kSize / 2);
-  for (std::uint32_t t = 0; t < kPressedFrames; ++t) {
-    simulator.render(t, frame, truth);
-    frame.readings<std::uint8_t>()[place(11, 10)] = 12;
-    finder.add(frame.view());
-  }
-  const FaultResult result = finder.result();
+  std::vector<std::uint8_t> mask(std::size_t{kSize} * kSize, 1);
+  mask[place(10, 10)] = 0;
+  const FaultResult result = faults_in(swaying_ball(), reads({{place(11, 10), 12}}), kPressedFrames,
+                                       kLeastFaultFrames, mask);
   ASSERT_EQ(result.findings.size(), 1U);
   EXPECT_EQ(result.findings[0].fault, SenselFault::unknown);
-  EXPECT_EQ(result.calibration.planes.mask, calibration.planes.mask);
+  EXPECT_EQ(result.calibration.planes.mask, mask);
 }
 
 // Good sensels that stand still for a reason
@@ -243,16 +209,7 @@ TEST(FaultFinder, SenselsInactiveByShearAreNeverMasked) {
       ball.reference_load_n = 300;
       ball.path = {{0, 0, 0, 20}, {0.7, 0, 0, 300}, {1.3, 0, 0, 30}, {2, 0, 0, 200}};
       scene.load = std::vector<ClosedFormContact>{ball};
-      const Simulator simulator(scene);
-      FaultFinder finder("frames.h5", simulator.scene().skin, SenselType::u16,
-                         calibration_of(simulator), {});
-      FrameBuffer frame(SenselType::u16, kSize, kSize);
-      ForceField truth(kSize / 2, kSize / 2);
-      for (std::uint32_t t = 0; t < kPressedFrames; ++t) {
-        simulator.render(t, frame, truth);
-        finder.add(frame.view());
-      }
-      EXPECT_TRUE(finder.result().calibration.planes.mask.empty())
+      EXPECT_TRUE(faults_in(scene, no_spoil).calibration.planes.mask.empty())
           << direction_deg << " degrees, friction " << friction;
     }
   }
@@ -284,19 +241,18 @@ TEST(FaultFinder, NeedsFramesAndMovement) {
   other.rows = 4;
   other.cols = 4;
   EXPECT_NE(message_of([&] {
-              (void)FaultFinder("frames.h5", bare_scene().skin, SenselType::u8, other, {});
+              (void)FaultFinder("frames.h5", bare_scene().skin, SenselType::u8, other);
             }).find("4 x 4"),
             std::string::npos);
 }
 
 /// Too few loaded frames mask no sensel.
 TEST(FaultFinder, AsksForLoadedFrames) {
-  const std::size_t dead = place(20, 20);
-  const auto spoil = [=](auto readings, std::uint32_t) { readings[dead] = 0; };
+  const Spoil spoil = reads({{place(20, 20), 0}});
   Scene late = swaying_ball();
   std::get<std::vector<ClosedFormContact>>(late.load)[0].path = {{0.8, 0, 0, 0}, {1, 0, 0, 300}};
   EXPECT_TRUE(faults_in(late, spoil, 100).findings.empty());
-  EXPECT_EQ(faults_in(late, spoil, 100, {.least_frames = 10}).findings.size(), 1U);
+  EXPECT_EQ(faults_in(late, spoil, 100, 10).findings.size(), 1U);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include "pillarfield/calibration_steps.h"
 #include "pillarfield/host_solve.h"
-#include "pillarfield/tare.h"
 #include "tests/base/message.h"
 #include "tests/calibration/pressed_skin.h"
 
@@ -27,10 +26,6 @@ SensorModel noisy_sensor() {
   return sensor;
 }
 
-SkinCalibration tared_skin(PressedSkin& skin) {
-  return take_tare(blank_calibration(skin.skin()), skin.bare(kLoadFrames), {}).calibration;
-}
-
 /// A punch of 12 mm across in the middle of the skin.
 FrameStatistics punched(PressedSkin& skin, double load_n) {
   Scene scene = skin.scene();
@@ -45,7 +40,7 @@ FrameStatistics punched(PressedSkin& skin, double load_n) {
 TEST(LoadCalibration, AFlatPressGivesTheSensitivity) {
   PressedSkin skin(20, 20, noisy_sensor());
   skin.scene().skin.counts_per_newton = 250;
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics press = skin.press(0.4, kLoadFrames);
   const KnownLoad loads[] = {{press, 400 * 0.4}};
   const LoadResult result = calibrate_load(before, loads, LoadModel::linear);
@@ -61,7 +56,7 @@ TEST(LoadCalibration, AFlatPressGivesTheSensitivity) {
 
 TEST(LoadCalibration, SeveralLoadsShareTheirErrors) {
   PressedSkin skin(20, 20, noisy_sensor());
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics light = punched(skin, 10);
   const FrameStatistics heavy = punched(skin, 40);
   // Both balances are wrong by two percent, one up and one down.
@@ -75,7 +70,7 @@ TEST(LoadCalibration, SeveralLoadsShareTheirErrors) {
 
 TEST(LoadCalibration, MissingSenselsAreNoLoss) {
   PressedSkin skin(20, 20, noisy_sensor());
-  SkinCalibration before = tared_skin(skin);
+  SkinCalibration before = skin.tared();
   before.planes.mask.assign(skin.skin().sensels(), 1);
   for (std::size_t i = 0; i < before.planes.mask.size(); i += 14) before.planes.mask[i] = 0;
   const FrameStatistics press = skin.press(0.4, kLoadFrames);
@@ -86,7 +81,7 @@ TEST(LoadCalibration, MissingSenselsAreNoLoss) {
 
 TEST(LoadCalibration, ShearedPillarsGiveAnIntervalThatHoldsTheTruth) {
   PressedSkin skin(20, 20, noisy_sensor());
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   Scene scene = skin.scene();
   ClosedFormContact slider;
   slider.contact_radius_mm = 8;
@@ -108,7 +103,7 @@ TEST(LoadCalibration, ShearedPillarsGiveAnIntervalThatHoldsTheTruth) {
 TEST(LoadCalibration, WhatSeveralLoadsLeaveIsStated) {
   PressedSkin skin(20, 20, noisy_sensor());
   skin.scene().skin.power_law = {0.8, 100};
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   const double forces_n[] = {0.2, 0.3, 0.4, 0.6};
   std::vector<FrameStatistics> frames;
   for (const double force_n : forces_n) frames.push_back(skin.press(force_n, kLoadFrames));
@@ -148,7 +143,7 @@ TEST_P(PowerLawLoad, TheExponentIsFound) {
   sensor.noise_counts = 0.5;
   PressedSkin skin(20, 20, sensor);
   skin.scene().skin.power_law = {GetParam(), 100};
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics light = skin.press(0.1, kLoadFrames);  // 32 counts
   const FrameStatistics middle = skin.press(0.3, kLoadFrames);
   const FrameStatistics heavy = skin.press(0.7, kLoadFrames);  // 224 counts
@@ -177,7 +172,7 @@ TEST(LoadCalibration, SaturationInSomeFramesIsSeen) {
   sensor.adc_bits = 8;
   sensor.noise_counts = 6;
   PressedSkin skin(10, 10, sensor);
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics press = skin.press(0.72, kLoadFrames);  // 242 counts with the tare
   const KnownLoad loads[] = {{press, 72}};
   const std::string message =
@@ -187,7 +182,7 @@ TEST(LoadCalibration, SaturationInSomeFramesIsSeen) {
 
 TEST(LoadCalibration, RefusesWhatDoesNotTell) {
   PressedSkin skin(10, 10, noisy_sensor());
-  const SkinCalibration before = tared_skin(skin);
+  const SkinCalibration before = skin.tared();
   const FrameStatistics press = skin.press(0.4, kLoadFrames);
   const FrameStatistics bare = skin.bare(kLoadFrames);
   const FrameStatistics crushed = skin.press(100, kLoadFrames);

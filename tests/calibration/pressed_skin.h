@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "pillarfield/calibration_steps.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/tare.h"
@@ -48,6 +50,24 @@ class PressedSkin {
       statistics.add(frame.view());
     }
     return statistics;
+  }
+
+  SkinCalibration tared() {
+    return take_tare(blank_calibration(skin()), bare(100), {}).calibration;
+  }
+
+  /// The step after 100 frames of each of these forces on every pillar.
+  EquilibrationResult equilibrated(const SkinCalibration& before,
+                                   const std::vector<double>& forces_n,
+                                   const EquilibrationOptions& options = {}) {
+    std::vector<TareFrames> frames;
+    frames.reserve(forces_n.size());
+    std::vector<UniformPress> presses;
+    for (const double force_n : forces_n) {
+      frames.push_back(press(force_n, 100));
+      presses.push_back({frames.back(), pressure_kpa(force_n)});
+    }
+    return equilibrate(before, presses, options);
   }
 
   /// The pressure that puts `force_n` on each pillar.

@@ -57,24 +57,15 @@ WireResult fitted(PressedSkin& skin, std::optional<TareOrigin> tares = std::null
   return calibrate_wires(blank_calibration(skin.skin()), presses, {64, 64}, tares);
 }
 
-TEST(WireCalibration, FindsTheResistances) {
-  PressedSkin skin = wired_skin(60, 30);
-  const WireResult result = fitted(skin);
-  const WireCrosstalk truth = *skin.truth().effects.wires;
-  EXPECT_TRUE(result.found);
-  EXPECT_NEAR(result.wires.row_per_count, truth.row_per_count, 0.05 * truth.row_per_count);
-  EXPECT_NEAR(result.wires.column_per_count, truth.column_per_count, 0.05 * truth.row_per_count);
-  EXPECT_LT(result.standard_error.row_per_count, 0.05 * truth.row_per_count);
-  EXPECT_GT(result.residual_before, 5 * result.residual_after);
-  ASSERT_TRUE(result.calibration.planes.effects.wires);
-  EXPECT_TRUE(result.calibration.planes.tare.empty());
-}
-
-TEST(WireCalibration, TellsHowTaresArise) {
+TEST(WireCalibration, FindsTheResistancesAndHowTaresArise) {
   for (const TareOrigin origin : {TareOrigin::conductance, TareOrigin::offset}) {
     PressedSkin skin = wired_skin(60, 30, 0.5, origin);
     const WireResult result = fitted(skin);
     const WireCrosstalk truth = *skin.truth().effects.wires;
+    EXPECT_TRUE(result.found);
+    EXPECT_LT(result.standard_error.row_per_count, 0.05 * truth.row_per_count);
+    EXPECT_GT(result.residual_before, 5 * result.residual_after);
+    EXPECT_TRUE(result.calibration.planes.tare.empty());
     EXPECT_EQ(result.tares_shown, origin);
     EXPECT_NEAR(result.conducting_share, origin == TareOrigin::offset ? 0 : 1, 0.1);
     EXPECT_EQ(result.calibration.planes.effects.wires->tares, origin);
@@ -120,20 +111,16 @@ TEST(WireCorrection, RefusesRowsThatLoseTooMuch) {
       "that a calibration can correct; press less, or fewer sensels of a row at once");
 }
 
+/// Without noise the columns' resistance is exactly zero, with which that of idle rows has no
+/// effect.
 TEST(WireCalibration, StoresNothingWithoutResistance) {
-  PressedSkin skin = wired_skin(0, 0);
-  const WireResult result = fitted(skin);
-  EXPECT_FALSE(result.calibration.planes.effects.wires);
-  EXPECT_LT(result.wires.row_per_count, 4 * result.standard_error.row_per_count + 1e-12);
-  EXPECT_LT(result.wires.column_per_count, 4 * result.standard_error.column_per_count + 1e-12);
-}
-
-/// The columns' resistance is exactly zero, with which that of idle rows has no effect.
-TEST(WireCalibration, StoresNothingWithoutNoiseEither) {
-  PressedSkin skin = wired_skin(0, 0, 0);
-  const WireResult result = fitted(skin);
-  EXPECT_FALSE(result.found);
-  EXPECT_EQ(result.wires.column_per_count, 0);
+  for (const double noise_counts : {0.5, 0.0}) {
+    PressedSkin skin = wired_skin(0, 0, noise_counts);
+    const WireResult result = fitted(skin);
+    EXPECT_FALSE(result.calibration.planes.effects.wires);
+    EXPECT_LT(result.wires.row_per_count, 4 * result.standard_error.row_per_count + 1e-12);
+    EXPECT_LT(result.wires.column_per_count, 4 * result.standard_error.column_per_count + 1e-12);
+  }
 }
 
 TEST(WireCalibration, RefusesWhatDoesNotTell) {

@@ -34,7 +34,6 @@ class Doctor(unittest.TestCase):
         self.assertAlmostEqual(pf.doctor(WORK / "pad.npy", rate_hz=25).rate_hz, 25)
         self.assertIn(f"polarity falls, noise {found.noise_counts:.3g} counts", repr(found))
         self.assertIn(found.findings[0].text, repr(found))
-        self.assertEqual(found.picture()[:4], b"\x89PNG")
         with self.assertRaisesRegex(pf.Error, "9 frames"):
             pf.doctor(frames[:9])
 

@@ -14,14 +14,13 @@ import pillarfield as pf
 PARSER = argparse.ArgumentParser(description=__doc__)
 PARSER.add_argument("--count", type=int, default=24)
 PARSER.add_argument("--seed", type=int, default=0)
-PARSER.add_argument("--verbose", action="store_true")
 ARGUMENTS = PARSER.parse_args()
 
 TOUCHING = ("one sensel", "one touch", "five touches", "many touches", "sweep", "rest", "pressed", "starts pressed",
-            "grasps", "two at once", "full load")
+            "grasps", "two at once", "full load", "four fingers")
 NOISES = ("white", "coarse", "pink", "hum")
 FAULTS = ("dead", "dead line", "weak", "stuck", "noisy", "shorted", "order", "polarity", "rest", "frozen",
-          "repeated", "normalised", "drift", "ghosts")
+          "repeated", "normalised", "drift", "ghosts", "missing", "two values", "byte order", "saturated", "absent")
 
 
 class World:
@@ -34,7 +33,7 @@ class World:
         self.rows, self.cols = (int(round(np.exp(random.uniform(*np.log((least, most)))))) for _ in range(2))
         self.y, self.x = np.mgrid[:self.rows, :self.cols]
         self.rate = float(random.choice([20, 50, 100]))
-        self.loads, self.centres = [], []
+        self.loads = []
         self.touch()
         self.load = np.array(self.loads)
         self.gain = np.clip(1 + random.uniform(0, 0.5 if fault is None else 0.25) * random.normal(size=self.y.shape),
@@ -110,6 +109,12 @@ class World:
             for _ in range(random.integers(2, 5)):
                 self.press(cover, hold)
                 self.frame(0, int(random.integers(10, 40)))
+        elif kind == "four fingers":  # on the corners of a rectangle, the last one later and for longer
+            self.frame(0, before)
+            rows, cols = ([0, size - 1] for size in (self.rows, self.cols))
+            shapes = [self.shape(row, col, 0.5, flat) for row in rows for col in cols]
+            for first, end in ((0, 2), (0, 3), (0, 4), (3, 4)):
+                self.frame(sum(shapes[first:end]), hold)
         elif kind == "sweep":
             self.frame(0, before)
             self.sweep(max(0.7, width), flat)
@@ -219,9 +224,15 @@ class Faulty(World):
             self.load[line] = self.load[beside] = (self.load * self.gain)[line] + (self.load * self.gain)[beside]
             self.gain[line[1:]] = self.gain[beside[1:]] = 1
         elif fault == "order":
-            self.is_row, others = True, row + 2 if row + 2 < self.rows else row - 2
-            self.line = sorted([row, others])
-            self.load[:, self.line] = self.load[:, self.line[::-1]]
+            size = self.rows if self.is_row else self.cols
+            order, first = np.arange(size), int(random.integers(0, size - 4))
+            if random.random() < 0.5:
+                order[first:first + 5] = order[first:first + 5][::-1]
+            else:
+                order[[first, first + 4]] = order[[first + 4, first]]
+            self.line = {line for line in range(size) if any(
+                abs(order[line] - order[near]) > 1 for near in (line - 1, line + 1) if 0 <= near < size)}
+            self.load = np.take(self.load, order, 1 if self.is_row else 2)
         elif fault == "rest":
             self.sign = random.choice([-1, 1])
             follows, left = np.zeros(self.y.shape), np.zeros(self.y.shape)
@@ -232,6 +243,8 @@ class Faulty(World):
                     follows += (load - follows) / 200
                 self.load[number] = load + left * (load < 0.02) - follows
             self.rest += 0.5 * self.peak
+        elif fault == "missing":
+            self.rest += 10 * self.noise + 0.1 * self.peak
         elif fault == "drift":
             self.drift = random.choice([-1, 1]) * random.uniform(0.1, 0.3) * self.peak
             self.rest += 0.6 * self.peak
@@ -239,6 +252,15 @@ class Faulty(World):
         counts = super().readings()
         if fault == "stuck":
             counts[:, row, col] = counts[:, row, col].min() if random.random() < 0.5 else np.median(counts) + 7
+        elif fault in ("saturated", "absent"):
+            counts = counts.astype("f4") if fault == "absent" else counts
+            counts[:, row, col] = -1 if fault == "absent" else 255 if counts.dtype == np.uint8 else 65535
+        elif fault == "missing":
+            counts[[100, 101, 150]] = 0
+        elif fault == "two values":
+            counts = (100.0 * (self.load > 0.3)).astype("u1")
+        elif fault == "byte order":
+            counts = (counts * (60000 / counts.max())).astype("u2").byteswap()
         elif fault == "frozen":
             counts = counts[60:61].repeat(100, 0)
         elif fault == "repeated":
@@ -258,7 +280,8 @@ class Faulty(World):
             return any(each.lines == [self.line, self.line + 1] for each in found.findings
                        if each.fault == f"shorted {kind}s")
         if fault == "order":
-            return set(self.line) & set(findings.get("row order", pf.ArrayFinding("", "", [], [])).lines)
+            lines = set(findings.get(f"{kind} order", pf.ArrayFinding("", "", [], [])).lines)
+            return lines and lines <= self.line
         if fault == "polarity":
             return found.polarity == ("falls" if self.falls else "rises")
         if fault == "rest":
@@ -270,8 +293,8 @@ class Faulty(World):
             return drift is not None and abs(drift["median"] / true - 1) < 0.3
         if fault == "ghosts":
             return (6, 5) in findings.get("ghosts", pf.ArrayFinding("", "", [], [])).sensels
-        name = {"repeated": "repeated frames"}.get(fault, fault)
-        if name not in findings and fault in ("dead", "stuck", "weak"):
+        name = {"repeated": "repeated frames", "missing": "missing frames"}.get(fault, fault)
+        if name not in findings and fault in ("dead", "stuck", "weak", "saturated"):
             return any(self.place in each.sensels for name, each in findings.items() if name in ("dead", "stuck", "weak"))
         return name in findings and (not findings[name].sensels or self.place in findings[name].sensels)
 

@@ -80,16 +80,6 @@ void require_readings(const FrameStatistics& statistics) {
               "give frames of numbers");
 }
 
-/// The largest signal of each sensel.
-std::vector<float> largest_signals(const Examination& seen) {
-  std::vector<float> largest(seen.kept.sensels());
-  for (std::size_t frame = 0; frame < seen.kept.frames(); ++frame) {
-    const auto signals = std::as_const(seen.kept).frame(frame);
-    for (std::size_t i = 0; i < signals.size(); ++i) largest[i] = std::max(largest[i], signals[i]);
-  }
-  return largest;
-}
-
 }  // namespace
 
 bool Diagnosis::is_no_force() const {
@@ -169,7 +159,6 @@ Diagnosis Doctor::result() {
   }
   find_responses(seen, found);
   found.verdicts = seen.verdicts;
-  found.picture = largest_signals(seen);
   for (std::size_t i = 0; i < skin.sensels(); ++i) {
     found.clipped += seen.good[i] != 0 && seen.read[i].saturated > 0 ? 1U : 0U;
   }

@@ -62,19 +62,15 @@ std::string sentence_of(const ArrayFinding& finding) {
       return fmt::format("Weak: {}, at most {:.1f} % of the response of the neighbours, at {}",
                          count, figure, places_of(finding));
     case ArrayFault::rest_after_release:
+    case ArrayFault::followed_baseline: {
+      const bool is_up = finding.fault == ArrayFault::rest_after_release;
       return fmt::format(
-          "Rest: after {} of {} releases {} {} counts up, at {}: rest or a load that you do not "
-          "see",
-          finding.seen, finding.releases,
-          finding.sensels.size() == 1 ? "1 sensel stays" : count + " stay", rounded(figure),
-          places_of(finding));
-    case ArrayFault::followed_baseline:
-      return fmt::format(
-          "Rest: after {} of {} releases {} {} counts below the rest before, at {}: the board "
-          "itself follows the baseline; switch that off",
-          finding.seen, finding.releases,
-          finding.sensels.size() == 1 ? "1 sensel stays" : count + " stay", rounded(figure),
-          places_of(finding));
+          "Rest: after {} of {} releases {} {} counts {}, at {}: {}", finding.seen,
+          finding.releases, finding.sensels.size() == 1 ? "1 sensel stays" : count + " stay",
+          rounded(figure), is_up ? "up" : "below the rest before", places_of(finding),
+          is_up ? "rest or a load that you do not see"
+                : "the board itself follows the baseline; switch that off");
+    }
     case ArrayFault::ghosts:
       return fmt::format(
           "Ghosts: {}, reading up to {} counts only while the other three corners "

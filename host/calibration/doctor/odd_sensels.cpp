@@ -54,6 +54,7 @@ class OddSensels {
       ++ends_[seen.read[i].lowest];
       ++ends_[seen.read[i].highest];
       logs_.push_back(log_jitter(i));
+      noises_.push_back(seen_.noise[i]);
       lowest_ = std::min(lowest_, seen.read[i].lowest);
       highest_ = std::max(highest_, seen.read[i].highest);
     }
@@ -65,11 +66,7 @@ class OddSensels {
     judge_absent();
     std::size_t constant = 0;
     for (std::size_t i = 0; i < seen_.read.size(); ++i) constant += is_open(i) ? 1U : 0U;
-    std::vector<double> noises;
-    for (std::size_t i = 0; i < seen_.read.size(); ++i) {
-      if (seen_.constant[i] == 0) noises.push_back(seen_.noise[i]);
-    }
-    const bool tells = quantile(noises, kNearlyAllNoise) > kTellingNoise &&
+    const bool tells = quantile(noises_, kNearlyAllNoise) > kTellingNoise &&
                        seen_.statistics.frames() >= kTellingFrames;
     const double few = kFewConstant * static_cast<double>(seen_.read.size());
     if (tells && static_cast<double>(constant) <= std::max(1.0, few)) judge_constant();
@@ -110,13 +107,22 @@ class OddSensels {
   /// beyond it, or be pressed.
   void judge_constant() {
     const UsualValue level(levels_, 1);
+    const auto is_far = [&](float reading) {
+      return std::abs(reading - level.middle) > kOutOfPlace * level.deviation;
+    };
     for (std::size_t i = 0; i < seen_.read.size(); ++i) {
       if (!is_open(i) || is_in_constant_line(i)) continue;
       const float value = seen_.read[i].lowest;
-      const bool is_far = std::abs(value - level.middle) > kOutOfPlace * level.deviation;
       if (value > lowest_ && value < highest_) {
         seen_.verdicts[i] = SenselFault::stuck;
-      } else if (is_far && is_alone(i)) {
+        continue;
+      }
+      // Nothing may press the sensels around it for good.
+      const Neighbours around(seen_.statistics.skin(), i);
+      const bool is_alone = std::ranges::none_of(around.all(), [&](std::size_t n) {
+        return seen_.constant[n] == 0 && is_far(seen_.idle[n]);
+      });
+      if (is_far(value) && is_alone) {
         seen_.verdicts[i] = value == 0                                     ? SenselFault::absent
                             : value < static_cast<float>(seen_.full_scale) ? SenselFault::stuck
                                                                            : SenselFault::saturated;
@@ -136,18 +142,6 @@ class OddSensels {
       is_column = is_column && seen_.constant[seen_.sensel(LineAxis::columns, col, n)] != 0;
     }
     return is_row || is_column;
-  }
-
-  /// True if nothing presses the sensels around it for good.
-  [[nodiscard]] bool is_alone(std::size_t i) const {
-    const UsualValue level(levels_, 1);
-    for (const std::size_t n : Neighbours(seen_.statistics.skin(), i).all()) {
-      if (seen_.constant[n] != 0) continue;
-      if (std::abs(seen_.idle[n] - level.middle) > kOutOfPlace * level.deviation) {
-        return false;
-      }
-    }
-    return true;
   }
 
   /// Far noisier than the others at rest: load trembles, too, and an end of the range cuts noise.
@@ -205,7 +199,8 @@ class OddSensels {
   std::map<float, std::size_t> constant_;  ///< number of sensels that read it always
   std::map<float, std::size_t> ends_;      ///< number of sensels whose extreme it is
   std::vector<double> levels_;             ///< of sensels that vary
-  std::vector<double> logs_;               ///< of their noise
+  std::vector<double> logs_;               ///< of their noise from frame to frame
+  std::vector<double> noises_;
   float lowest_ = std::numeric_limits<float>::infinity();
   float highest_ = -std::numeric_limits<float>::infinity();
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <map>
@@ -32,18 +33,7 @@ using Signals = std::vector<float>;
 /// Changes of a sensel's rest from before a touch to after it, counts.
 struct RestChanges {
   std::size_t releases = 0;
-  std::vector<double> up = {};
-  std::vector<double> down = {};
-
-  [[nodiscard]] const std::vector<double>* agreeing() const {
-    for (const std::vector<double>* changes : {&up, &down}) {
-      const auto count = static_cast<double>(changes->size());
-      if (changes->size() >= kLeastReleases && count >= kAgreeing * static_cast<double>(releases)) {
-        return changes;
-      }
-    }
-    return nullptr;
-  }
+  std::array<std::vector<double>, 2> of = {};  ///< up, down
 };
 
 /// Follows touches of the whole array: rest, touch, release, rest.
@@ -128,7 +118,7 @@ class RestSearch {
           std::max({kLeastOfTouch * peaks_[i], kOverNoise * noise * std::sqrt(2.0 / kRestFrames),
                     kOverOthers * spread * noise / seen_.typical_noise});
       if (std::abs(change) < least) continue;
-      (change > 0 ? changes.up : changes.down).push_back(change);
+      changes.of.at(change > 0 ? 0 : 1).push_back(std::abs(change));
     }
     before_ = std::move(after);
     peaks_.clear();
@@ -146,25 +136,26 @@ class RestSearch {
 }  // namespace
 
 void find_rests(const Examination& seen, Diagnosis& found) {
-  ArrayFinding up = {.fault = ArrayFault::rest_after_release};
-  ArrayFinding down = {.fault = ArrayFault::followed_baseline};
-  std::array<std::vector<double>, 2> sizes;
   const RestSearch search(seen);
-  for (const auto& [sensel, changes] : search.changes()) {
-    const std::vector<double>* const agreeing = changes.agreeing();
-    if (agreeing == nullptr) continue;
-    std::vector<double> values = *agreeing;
-    const bool is_up = agreeing == &changes.up;
-    ArrayFinding& finding = is_up ? up : down;
-    finding.sensels.push_back(seen.place(sensel));
-    finding.releases = std::max(finding.releases, changes.releases);
-    finding.seen = std::max(finding.seen, agreeing->size());
-    sizes.at(is_up ? 0 : 1).push_back(std::abs(median(values)));
-  }
-  for (ArrayFinding* const finding : {&up, &down}) {
-    if (finding->sensels.empty()) continue;
-    finding->figure = median(sizes.at(finding == &up ? 0 : 1));
-    add(found, std::move(*finding));
+  for (const std::size_t way : {0U, 1U}) {
+    ArrayFinding finding = {.fault = way == 0 ? ArrayFault::rest_after_release
+                                              : ArrayFault::followed_baseline};
+    std::vector<double> sizes;
+    for (const auto& [sensel, changes] : search.changes()) {
+      std::vector<double> agreeing = changes.of.at(way);
+      if (agreeing.size() < kLeastReleases ||
+          static_cast<double>(agreeing.size()) <
+              kAgreeing * static_cast<double>(changes.releases)) {
+        continue;
+      }
+      finding.sensels.push_back(seen.place(sensel));
+      finding.releases = std::max(finding.releases, changes.releases);
+      finding.seen = std::max(finding.seen, agreeing.size());
+      sizes.push_back(median(agreeing));
+    }
+    if (sizes.empty()) continue;
+    finding.figure = median(sizes);
+    add(found, std::move(finding));
   }
 }
 

@@ -133,7 +133,7 @@ void add_doctor(CLI::App& parent, Work& work) {
       parent, work, doctor, "doctor",
       "Look at the frames of any pressure array: what is broken, shorted or wired wrongly.",
       "  pillarfield simulate scenes/calibration/new_skin_rolled.toml --uncalibrated -o rolled.h5\n"
-      "  pillarfield doctor rolled.h5 --png rolled.png\n"
+      "  pillarfield doctor rolled.h5\n"
       "  pillarfield doctor rolled.h5 --json\n");
   Group input(command, "Input");
   command
@@ -150,10 +150,6 @@ void add_doctor(CLI::App& parent, Work& work) {
   add_trust(command, options->read);
   add_plain_data(command, options->read, true);
   command->remove_option(command->get_option("--pitch-mm"));  // Nothing here is a length.
-  Group(command, "Output")
-      .text("--png", options->png, "FILE",
-            "Draw the array and what was found (docs/command_line.md)");
-  add_overwrite(command, options->replace);
   add_general(command, *options, "Print the findings as JSON", kQuietReport);
 }
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "pillarfield/frame.h"
-#include "pillarfield/rgb_picture.h"
 #include "pillarfield/sensel_finding.h"
 #include "pillarfield/skin.h"
 
@@ -119,8 +118,6 @@ struct Diagnosis {
   /// True if the readings show no force, whatever is done: they are all equal, scaled frame by
   /// frame, cut to two values, or their bytes are swapped.
   [[nodiscard]] bool is_no_force() const;
-
-  std::vector<float> picture = {};  ///< largest change of each sensel under load, counts
 };
 
 /// Looks at the frames of any pressure array and says what is wrong with it (docs/command_line.md).
@@ -146,12 +143,5 @@ class Doctor {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// Draws the array in squares, the brighter the more a sensel changed under load, with a scale in
-/// counts, numbers of rows and columns, a legend of the faults, and `title` above, ASCII. Sensels
-/// are framed in the colour of their fault: dead red, stuck orange, saturated magenta, others cyan;
-/// an absent one is crossed out. Bars beside rows and columns: dead red, shorted yellow, others
-/// cyan.
-[[nodiscard]] RgbPicture draw(const Diagnosis& diagnosis, const std::string& title);
 
 }  // namespace pillarfield

@@ -15,12 +15,8 @@
 
 namespace pillarfield {
 
-/// Options of FaultFinder.
-struct FaultOptions {
-  std::uint32_t least_frames = 30;  ///< least number of frames in which parity predicts a sensel
-  double still_factor = 10;         ///< a still reading's range is below this multiple of its noise
-  double moving_factor = 5;         ///< a moving prediction's deviation is above this multiple
-};
+/// Frames that a fault needs, and of those as many in which parity predicts the sensel.
+inline constexpr std::uint32_t kLeastFaultFrames = 30;
 
 /// The result of FaultFinder.
 struct FaultResult {
@@ -42,7 +38,7 @@ class FaultFinder {
   /// Messages use `name` as the name of the frames. Throws Error if the calibration is of another
   /// skin.
   FaultFinder(std::string name, const Skin& skin, SenselType type,
-              const SkinCalibration& calibration, const FaultOptions& options);
+              const SkinCalibration& calibration, std::uint32_t least_frames = kLeastFaultFrames);
 
   /// Adds a frame of the skin's size and type; about 20 ns per sensel.
   void add(const FrameView& frame);
@@ -74,7 +70,7 @@ class FaultFinder {
 
   FrameStatistics statistics_;
   SkinCalibration calibration_;
-  FaultOptions options_;
+  std::uint32_t least_frames_;
   SolverPlan plan_;
   SolverPlan sensels_;  ///< of its sensels alone, in counts
   std::vector<Prediction> predictions_;
