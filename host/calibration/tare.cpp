@@ -25,6 +25,9 @@ namespace {
 
 /// Distance from the typical level, in spreads, of neighbours that stand out together.
 constexpr double kStandsOut = 3;
+/// That of which at most this share of the sensels has more by itself.
+constexpr double kFarOut = 6;
+constexpr double kMostFarOut = 0.05;
 
 /// Distance from the common change, in robust standard deviations of the changes.
 constexpr double kFarChange = 6;
@@ -127,7 +130,9 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
       ++together;
       if (!first) first = i;
     }
-    const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(share, 4);
+    // Of a small array a touch is itself a large share of what stands far out.
+    const double chance = limit > kFarOut * spread ? std::min(share, kMostFarOut) : share;
+    const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(chance, 4);
     if (together > (by_chance < 0.01 ? 0 : 10 + 5 * by_chance)) return first;
     if (share == 0) break;
   }
