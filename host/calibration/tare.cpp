@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ namespace {
 
 /// Distance from the typical level, in spreads, of neighbours that stand out together.
 constexpr double kStandsOut = 3;
+/// That of which at most this share of the sensels has more by itself.
+constexpr double kFarOut = 6;
+constexpr double kMostFarOut = 0.05;
 
 /// Distance from the common change, in robust standard deviations of the changes.
 constexpr double kFarChange = 6;
@@ -32,6 +36,8 @@ constexpr double kLeastChangeNoises = 8;
 constexpr double kLeastChangeCounts = 3;
 /// Most by which unlike drift of the sensels may raise that.
 constexpr double kUnlikeDrift = 4;
+/// Factor on the limit where the levels of the sensels stand for a tare before.
+constexpr double kUneven = 2;
 /// Factor on the threshold from which a tare is much worse than the one before.
 constexpr double kMuchNoise = 2;
 
@@ -72,6 +78,27 @@ void refuse_equal_frames(const FrameStatistics& unloaded) {
 std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<double>& values,
                                         const std::vector<std::uint8_t>& used,
                                         double least_spread) {
+  if (skin.layout == SkinLayout::pillars) {  // Under shear the sensels of a pillar differ.
+    Skin pillars = skin;
+    pillars.rows = skin.pillar_rows();
+    pillars.cols = skin.pillar_cols();
+    pillars.layout = SkinLayout::sensels;
+    std::vector<double> means;
+    std::vector<std::uint8_t> usable;
+    const auto corner = [&](std::size_t p) {
+      return 2 * (p / pillars.cols * skin.cols + p % pillars.cols);
+    };
+    for (std::size_t p = 0; p < pillars.sensels(); ++p) {
+      const std::size_t i = corner(p);
+      const std::array<std::size_t, 4> four = {i, i + 1, i + skin.cols, i + skin.cols + 1};
+      double sum = 0;
+      for (const std::size_t each : four) sum += values[each];
+      means.push_back(sum / 4);
+      usable.push_back(std::ranges::all_of(four, [&](auto each) { return used[each] != 0; }));
+    }
+    const auto at = standing_out(pillars, means, usable, least_spread / 2);
+    return at ? std::optional(corner(*at)) : at;
+  }
   std::vector<double> sorted;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (used[i] != 0) sorted.push_back(values[i]);
@@ -103,7 +130,9 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
       ++together;
       if (!first) first = i;
     }
-    const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(share, 4);
+    // Of a small array a touch is itself a large share of what stands far out.
+    const double chance = limit > kFarOut * spread ? std::min(share, kMostFarOut) : share;
+    const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(chance, 4);
     if (together > (by_chance < 0.01 ? 0 : 10 + 5 * by_chance)) return first;
     if (share == 0) break;
   }
@@ -169,7 +198,7 @@ TareChange::TareChange(const FrameStatistics& unloaded, const std::vector<float>
   const double least = std::max(kLeastChangeNoises * quantile(noises, 0.99), rounding);
   // The median deviation of a normal distribution is 0.6745 of its standard deviation.
   limit = std::max(kFarChange * 1.4826 * median(changes), least);
-  if (!before.empty()) limit = std::min(limit, kUnlikeDrift * least);
+  limit = before.empty() ? kUneven * limit : std::min(limit, kUnlikeDrift * least);
   for (std::size_t i = 0; i < now.noise.size(); ++i) {
     const double change = is_good(now, i) ? change_of(i) - common : 0;
     beyond += change > limit ? 1 : 0;
@@ -357,6 +386,8 @@ SkinCalibration run_tare(StepWork& work) {
   report.measure("tare_counts", result.tare_counts, "tare", "counts, median of the valid sensels");
   report.measure("noise_counts", result.noise_counts, "noise",
                  "counts, median of the valid sensels");
+  report.measure("unseen_counts", result.unseen_counts, "unseen",
+                 "counts, a touch at rest on each of a few sensels that would not have been seen");
   report.measure("untouched_share", untouched_share(calibration), "untouched",
                  "% of the untouched skin would have a status");
   report.measure(

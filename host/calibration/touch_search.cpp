@@ -26,9 +26,9 @@ constexpr double kPartDeviations = 2;
 constexpr int kLeastParts = 4;
 /// Distance of a reading from its level, in noises, that is a spike or of a touch of one sensel.
 constexpr double kSpikeDeviations = 8;
-/// Frames that a spike lasts, and the largest share of a sensel's readings that are spikes.
+/// Frames that a spike lasts; of twenty frames of a sensel at most one, on average, has a spike.
 constexpr std::size_t kSpikeFrames = 2;
-constexpr double kMostSpikes = 0.05;
+constexpr std::size_t kSpikeEach = 20;
 /// Factor on the usual change within some frames from which one is sudden.
 constexpr double kSudden = 6;
 /// Least noise, in steps of the converter: that of rounding, and of flicker between two values.
@@ -400,7 +400,7 @@ void TouchSearch::search_sensel(std::size_t i) {
   if (longest > kSpikeFrames && other < 0.5 * kSpikeDeviations && fastest > far / 3) {
     return note({i, false, far * noise * (farthest[0] > farthest[1] ? 1 : -1), first, last}, far);
   }
-  if (static_cast<double>(away) > kMostSpikes * static_cast<double>(count_)) return;
+  if (away > std::max(kSpikeFrames, count_ / kSpikeEach)) return;
   spikes_.insert(spikes_.end(), spikes.begin(), spikes.end());
 }
 

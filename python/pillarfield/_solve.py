@@ -41,7 +41,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         of arrays [R, C]; a DataFrame of pandas, read as a table in a file; a Recording or a Simulation
     skin: constants of the skin; by default those of the file, or Skin() for arrays, without pillars
     calibration: replaces that of the file; a step of pf.calibrate holds one
-    tare_frames: the first frames, at least 10, are of the unloaded skin: tare, noise and threshold are
+    tare_frames: the first frames, at least 20, are of the unloaded skin: tare, noise and threshold are
         measured in them
     times: of the frames of an array, s; by default from rate_hz
     rate_hz: frames per second of arrays and iterators, 100 by default, and of files without times

@@ -20,9 +20,21 @@
 namespace pillarfield {
 namespace {
 
-enum class TouchKind { none, rests, lands, leaves, taps, rolls, slides, flickers };
-constexpr const char* kTouchKinds[] = {"none", "rests", "lands",  "leaves",
-                                       "taps", "rolls", "slides", "flickers"};
+enum class TouchKind {
+  none,
+  lifted,  ///< the tare before is of a touched skin
+  again,   ///< the tare before is of the untouched skin, and something rests on it now
+  rests,
+  covers,  ///< rests on a third of the array
+  lands,
+  leaves,
+  taps,
+  rolls,
+  slides,
+  flickers
+};
+constexpr const char* kTouchKinds[] = {"none",   "lifted", "again", "rests",  "covers",  "lands",
+                                       "leaves", "taps",   "rolls", "slides", "flickers"};
 
 class World {
  public:
@@ -30,18 +42,27 @@ class World {
     do {
       skin_.rows = static_cast<std::uint32_t>(std::lround(within(8, 64)));
       skin_.cols = static_cast<std::uint32_t>(std::lround(within(8, 64)));
-      frames_ = static_cast<std::size_t>(std::exp(within(std::log(30.0), std::log(3000.0))));
+      frames_ = static_cast<std::size_t>(
+          std::exp(within(std::log(double{kLeastTareFrames}), std::log(3000.0))));
     } while (skin_.rows * skin_.cols * static_cast<double>(frames_) > most_readings);
-    skin_.layout = SkinLayout::sensels;
+    if (one_of(4)) {
+      skin_.rows += skin_.rows % 2;
+      skin_.cols += skin_.cols % 2;
+      skin_.layout = SkinLayout::pillars;
+      shear_ = within(0, 0.8);
+      shear_angle_ = within(0, 2 * std::numbers::pi);
+    } else {
+      skin_.layout = SkinLayout::sensels;
+    }
     rate_hz_ = std::exp(within(std::log(20.0), std::log(500.0)));
     is_whole_ = one_of(2);
     noise_ = std::exp(within(std::log(is_whole_ ? 0.2 : 0.03), std::log(8.0)));
     reading_noise_ = std::sqrt(noise_ * noise_ + (is_whole_ ? 1 / 12.0 : 0));
-    const bool is_even = kind == TouchKind::rests || one_of(3);
+    const bool is_even = one_of(3);
     const double unevenness = is_even ? 0.5 * noise_ : within(1, 40) * noise_;
     const bool unlike = one_of(2);
     const double drift = one_of(2) ? within(-4, 4) : 0;
-    const double own_drift = one_of(3) && kind != TouchKind::rests ? within(0, 2) : 0;
+    const double own_drift = one_of(3) && !is_there_always() ? within(0, 2) : 0;
     bends_ = one_of(2);
     hum_ = one_of(3) ? within(0, 2) * noise_ : 0;
     spikes_ = one_of(3) ? std::exp(within(std::log(1e-5), std::log(1e-3))) : 0;
@@ -62,6 +83,15 @@ class World {
 
   /// "": as it should be; else what is wrong.
   std::string judge() {
+    SkinCalibration before = blank_calibration(skin_);
+    if (kind_ == TouchKind::again || kind_ == TouchKind::lifted) {
+      for (std::size_t i = 0; i < skin_.sensels(); ++i) {
+        const double held = kind_ == TouchKind::lifted ? load(begin_, i) : 0;
+        before.planes.tare.push_back(static_cast<float>(level_[i] + held));
+        before.planes.noise.push_back(static_cast<float>(own_noise_[i]));
+        before.planes.mask.push_back(fault_[i] == 0 ? 1 : 0);
+      }
+    }
     std::vector<double> sums(skin_.sensels(), 0);
     std::vector<double> squares(skin_.sensels(), 0);
     double untouched = 0;
@@ -83,11 +113,11 @@ class World {
       frames.add(buffer.view());
     }
     try {
-      const TareResult result = take_tare(blank_calibration(skin_), frames, {});
+      const TareResult result = take_tare(before, frames, {});
       return wrong_in(result, sums, squares, untouched);
     } catch (const Error& error) {
       message_ = error.what();
-      if (kind_ == TouchKind::none) return "refused: " + message_;
+      if (!is_ever_touched()) return "refused: " + message_;
       const bool says_where =
           message_.find("row") != std::string::npos || message_.find("array") != std::string::npos;
       return says_where && message_.find("frame") != std::string::npos ? "" : message_;
@@ -95,11 +125,11 @@ class World {
   }
 
   [[nodiscard]] std::string words() const {
-    return std::to_string(skin_.rows) + "x" + std::to_string(skin_.cols) + "x" +
-           std::to_string(frames_) + (is_whole_ ? " whole" : " float") + " noise " +
-           std::to_string(noise_) + " peak " + std::to_string(peak_) + " radius " +
-           std::to_string(radius_) + " from " + std::to_string(begin_) + " to " +
-           std::to_string(end_) + (falls_ ? " falls" : "") + " ";
+    return std::string(shear_ > 0 ? "pillars " : "") + std::to_string(skin_.rows) + "x" +
+           std::to_string(skin_.cols) + "x" + std::to_string(frames_) +
+           (is_whole_ ? " whole" : " float") + " noise " + std::to_string(noise_) + " peak " +
+           std::to_string(peak_) + " radius " + std::to_string(radius_) + " from " +
+           std::to_string(begin_) + " to " + std::to_string(end_) + (falls_ ? " falls" : "") + " ";
   }
 
  private:
@@ -109,17 +139,32 @@ class World {
   }
   double normal() { return normal_(random_); }
 
+  /// A touch that is there in all frames is of these kinds; one that comes or goes leaves some.
+  [[nodiscard]] bool is_there_always() const {
+    return kind_ == TouchKind::rests || kind_ == TouchKind::covers || kind_ == TouchKind::again;
+  }
+  [[nodiscard]] bool is_ever_touched() const {
+    return kind_ != TouchKind::none && kind_ != TouchKind::lifted;
+  }
+  [[nodiscard]] bool moves() const {
+    return kind_ == TouchKind::rolls || kind_ == TouchKind::slides;
+  }
+
   void plan_touch() {
-    const double share = kind_ == TouchKind::rests ? 1 : within(0.05, one_of(3) ? 1 : 0.5);
+    const double most_share = moves() || kind_ == TouchKind::flickers ? 1 : 0.95;
+    const double share = is_there_always() ? 1 : within(0.05, one_of(3) ? most_share : 0.5);
     const auto length = static_cast<std::size_t>(std::ceil(share * static_cast<double>(frames_)));
-    begin_ = kind_ == TouchKind::lands ? frames_ - length
-             : kind_ == TouchKind::leaves || kind_ == TouchKind::rests
-                 ? 0
-                 : random_() % (frames_ - length + 1);
+    begin_ = kind_ == TouchKind::lands                         ? frames_ - length
+             : kind_ == TouchKind::leaves || is_there_always() ? 0
+                                                               : random_() % (frames_ - length + 1);
     end_ = begin_ + length;
     peak_ = std::exp(within(std::log(10.0), std::log(300.0))) * reading_noise_;
-    falls_ = one_of(3);
-    radius_ = within(0.8, std::min(skin_.rows, skin_.cols) / 5.0);
+    // Since a tare before readings rise under load: those of falling sensors are mirrored.
+    falls_ = kind_ != TouchKind::again && kind_ != TouchKind::lifted && one_of(3);
+    const double side = std::min(skin_.rows, skin_.cols);
+    // One sensel that swings evenly is noisy.
+    const double least_radius = kind_ == TouchKind::taps || kind_ == TouchKind::flickers ? 1 : 0.8;
+    radius_ = kind_ == TouchKind::covers ? within(0.2, 0.3) * side : within(least_radius, side / 5);
     shape_ = static_cast<int>(random_() % 3);
     tap_ = 2 + random_() % (2 + length / 6);
     onset_ = one_of(2) ? 0 : within(0, 0.2) * static_cast<double>(length);
@@ -131,7 +176,7 @@ class World {
   }
 
   [[nodiscard]] bool is_touched(std::size_t t) const {
-    return kind_ != TouchKind::none && t >= begin_ && t < end_ &&
+    return is_ever_touched() && t >= begin_ && t < end_ &&
            (kind_ != TouchKind::taps || (t - begin_) / tap_ % 2 == 0);
   }
 
@@ -139,7 +184,7 @@ class World {
     double row = row_;
     double col = col_;
     const double done = static_cast<double>(t - begin_) / static_cast<double>(end_ - begin_);
-    if (kind_ == TouchKind::rolls || kind_ == TouchKind::slides) {
+    if (moves()) {
       const double way =
           kind_ == TouchKind::rolls ? 0.5 - 0.5 * std::cos(6 * std::numbers::pi * done) : done;
       row += way * (to_row_ - row_);
@@ -149,13 +194,16 @@ class World {
     const double x = static_cast<double>(i % skin_.cols) - col;
     const double r = std::sqrt(x * x + y * y * (shape_ == 2 ? 2 : 1)) / radius_;
     double size = shape_ == 1 ? std::clamp(1.5 - r, 0.0, 1.0) : std::exp(-0.5 * r * r);
-    if (kind_ != TouchKind::rests && kind_ != TouchKind::taps) {
+    if (is_ever_touched() && !is_there_always() && kind_ != TouchKind::taps) {
       const auto since = static_cast<double>(t - begin_ + 1);
       const auto left = static_cast<double>(end_ - t);
       if (kind_ != TouchKind::leaves) size *= std::min(1.0, since / (onset_ + 1));
       if (kind_ != TouchKind::lands) size *= std::min(1.0, left / (onset_ + 1));
     }
     if (kind_ == TouchKind::flickers) size *= 0.6 + 0.4 * std::sin(0.7 * static_cast<double>(t));
+    // Under shear sensels on one side of a pillar read more, and those on the other less.
+    size *= 1 + shear_ * (std::cos(shear_angle_) * (i % skin_.cols % 2 == 0 ? -1 : 1) +
+                          std::sin(shear_angle_) * (i / skin_.cols % 2 == 0 ? -1 : 1));
     return (falls_ ? -1 : 1) * peak_ * size * gain_[i];
   }
 
@@ -178,7 +226,18 @@ class World {
 
   std::string wrong_in(const TareResult& result, const std::vector<double>& sums,
                        const std::vector<double>& squares, double untouched) {
-    if (untouched < 2) return "taken under a touch";
+    if (untouched == 0) {  // The bound below which a touch at rest is not told apart.
+      std::vector<double> loads;
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        if (fault_[i] == 0) loads.push_back(std::abs(load(begin_, i)));
+      }
+      std::ranges::sort(loads, std::greater<>());
+      const double load = loads[kind_ == TouchKind::again ? 0 : 3];
+      return load < result.unseen_counts
+                 ? ""
+                 : "taken under " + std::to_string(load) + " counts; the bound is " +
+                       std::to_string(result.unseen_counts);
+    }
     std::vector<double> noises;
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (fault_[i] != 0) continue;
@@ -221,6 +280,8 @@ class World {
   double peak_ = 0;
   bool falls_ = false;
   double radius_ = 0;
+  double shear_ = 0;        ///< of pillars, relative to the load
+  double shear_angle_ = 0;  ///< radians
   int shape_ = 0;
   std::size_t tap_ = 0;
   double onset_ = 0;
@@ -233,10 +294,12 @@ class World {
 
 /// Number of worlds of each kind that are not judged as they should be.
 void run_worlds(std::uint64_t seeds, double most_readings, double most_sound) {
+  const char* const text = std::getenv("PILLARFIELD_FIRST_SEED");
+  const std::uint64_t first = text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
   for (int kind = 0; kind <= static_cast<int>(TouchKind::flickers); ++kind) {
     std::uint64_t wrong = 0;
     std::string all;
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
       World world(1000 * seed + static_cast<std::uint64_t>(kind), static_cast<TouchKind>(kind),
                   most_readings);
       const std::string found = world.judge();
@@ -245,7 +308,7 @@ void run_worlds(std::uint64_t seeds, double most_readings, double most_sound) {
       all += "\n  seed " + std::to_string(seed) + ": " + world.words() + found;
     }
     std::cout << kTouchKinds[kind] << ": " << wrong << " of " << seeds << " wrong\n";
-    EXPECT_LE(static_cast<double>(wrong), kind == 0 ? most_sound * static_cast<double>(seeds) : 0)
+    EXPECT_LE(static_cast<double>(wrong), kind <= 1 ? most_sound * static_cast<double>(seeds) : 0)
         << kTouchKinds[kind] << all;
   }
 }

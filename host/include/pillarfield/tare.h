@@ -52,8 +52,8 @@ struct TareResult {
   std::size_t spikes = 0;               ///< readings left out: they stand out for a frame or two
 };
 
-/// Least number of frames for a tare: ten determine the noise to about a quarter.
-inline constexpr std::uint32_t kLeastTareFrames = 10;
+/// Least number of frames for a tare: of fewer a noisy sensel, a tap and noise are not told apart.
+inline constexpr std::uint32_t kLeastTareFrames = 20;
 
 /// Measures the tare (mean) and the noise (standard deviation) of each sensel on the unloaded skin,
 /// sets the threshold, and masks faulty sensels. Keeps everything else of `before`. Formulas and

@@ -25,7 +25,7 @@ class PillarfieldCameraConfig(CameraConfig):
         sensels
     calibration: path of the skin's calibration
     counts_per_newton: of the skin; None: that of the calibration
-    tare_frames: the first frames after connect(), at least 10, are of the unloaded skin; 0: no tare
+    tare_frames: the first frames after connect(), at least 20, are of the unloaded skin; 0: no tare
     width, height: of the image, pixels; None: one a pillar or sensel, known after connect(). LeRobot's
         robots ask before.
     fps: not used; the sensor sets the pace
