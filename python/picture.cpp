@@ -33,7 +33,7 @@ Quantity quantity_of(const std::string& name, const py::dict& planes, SkinLayout
   source.has_angles = planes.contains("theta");
   source.has_uncertainty = planes.contains("uncertainty_normal");
   const bool pillars = layout == SkinLayout::pillars;
-  if (!quantity || *quantity == Quantity::parity || *quantity == Quantity::difference) {
+  if (!quantity || *quantity == Quantity::parity) {
     throw Error("picture", "'" + name + "' is not a quantity",
                 pillars ? "give normal, pressure, shear, shear_x, shear_y, magnitude, theta, phi, "
                           "region, status or uncertainty"

@@ -148,7 +148,7 @@ class Work(CommandTest):
     def test_kernel_holds_only_the_stages_of_its_scene(self):
         plan, source = run("info", "--kernel", self.scene).stdout.split("\n#line 1 ", 1)
         self.assertIn("kernel void solve_frame", source)
-        self.assertIn("#define PF_VALUE_full_scale 4080\n", plan)
+        self.assertIn("#define PF_SATURATION", plan)
         self.assertNotIn("#define PF_TARE", plan)
         self.scene.write_text(BALL.replace("noise_counts", "tare_counts = 3\nnoise_counts"))
         plan = run("info", "--kernel", self.scene).stdout.split("\n#line 1 ", 1)[0]

@@ -106,7 +106,7 @@ class PlainData(CommandTest):
             for axes in ((1, 2, 0), (1, 0, 2)):
                 np.save(self.path("a.npy"), np.ascontiguousarray(spot(*shape).transpose(axes)))
                 words = ",".join(("frames", "rows", "columns")[axis] for axis in axes)
-                self.assert_fails(*solve, names=["doubtful", f"--axes {words}"])
+                self.assert_fails(*solve, names=["doubtful", f"--axes '{words}'"])
                 run(*solve, "--overwrite", "-q", "--axes", words)
         np.save(self.path("a.npy"), spot(70, 64, 32).reshape(70, -1))
         self.assert_fails(*solve, names=["70 lines of 2048 numbers", "--shape"])

@@ -25,7 +25,7 @@ TEST(BaselineOfPlans, HasOneIntervalHoweverItIsAskedFor) {
   const Scene scene = following_scene();
   SolverPlan of_scene;
   set_solver(of_scene, scene);
-  EXPECT_GT(of_scene.baseline_interval, 50);
+  EXPECT_GT(of_scene.baseline_interval, 20);
   PlanSettings time;
   time.baseline_time_s = kTimeS;
   PlanSettings everything;

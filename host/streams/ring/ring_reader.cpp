@@ -32,10 +32,9 @@ RingReader::Time now_of_ring() { return std::chrono::steady_clock::now().time_si
 [[noreturn]] void throw_unfit(const std::string& name, RingReader::Content content,
                               const PillarfieldRing& ring, bool valid) {
   using Content = RingReader::Content;
-  constexpr std::uint32_t kEarlierResults = 2;
-  constexpr std::uint32_t kEarlierPressures = 3;
+  constexpr std::uint32_t kFirstResults = 2;  // two kinds in each layout
   if (ring.magic == PILLARFIELD_RING_MAGIC && content != Content::frames &&
-      (ring.kind == kEarlierResults || ring.kind == kEarlierPressures)) {
+      ring.kind >= kFirstResults && ring.kind < PILLARFIELD_RING_RESULTS) {
     throw Error(name, "it holds results in the layout of an earlier version",
                 "let this version write it");
   }

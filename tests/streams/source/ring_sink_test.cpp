@@ -217,11 +217,11 @@ TEST(ResultStream, RefusesRingsOfOtherKindsAndVersions) {
   EXPECT_EQ(open_result_stream(source, [&] { return ++asked == 2; }), nullptr);
   const auto sink = create_live_sink(source, info_of_skin(6, 10));
   std::fstream segment("/dev/shm/" + results_name(), std::ios::in | std::ios::out);
-  for (const char kind : {'\2', '\3'}) {
+  for (const char kind : {'\2', '\3', '\4', '\5'}) {
     segment.seekp(offsetof(PillarfieldRing, kind)).put(kind).flush();
     EXPECT_NE(message().find("results in the layout of an earlier version"), std::string::npos);
   }
-  segment.seekp(offsetof(PillarfieldRing, kind)).put('\7').flush();
+  segment.seekp(offsetof(PillarfieldRing, kind)).put('\x8').flush();
   EXPECT_NE(message().find("is not a ring of frames or results"), std::string::npos);
   EXPECT_NE(core_test::message_of([] { (void)open_result_stream("udp:1", {}); }).find("shm:NAME"),
             std::string::npos);
