@@ -56,7 +56,9 @@ TEST(FrameAssembler, CountsEveryDamageOfAPlan) {
       }
     }
     EXPECT_GT(std::min({all.lost, all.incomplete, all.duplicates, all.invalid}), 20);
-    if (order == PacketOrder::not_kept) EXPECT_GT(std::min(all.late, all.reordered), 20);
+    if (order == PacketOrder::not_kept) {
+      EXPECT_GT(std::min(all.late, all.reordered), 20);
+    }
   }
 }
 
