@@ -27,7 +27,7 @@ constexpr double kNearEnd = 0.1;
 constexpr double kMostVary = 0.8;
 /// Typical noise, counts, and frames from which a reading cannot be constant by chance, of a sensel
 /// that has less than half of it.
-constexpr double kVisibleNoise = 0.9;
+constexpr double kVisibleNoise = 0.7;
 constexpr std::uint32_t kVisibleFrames = 100;
 
 }  // namespace

@@ -122,13 +122,13 @@ std::string python_line(std::string_view code, const std::filesystem::path& path
   const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
   const std::filesystem::path folder = named.has_parent_path() ? named.parent_path() : ".";
   const auto alike = named.has_extension() ? folder / ("*" + named.extension().string()) : named;
-  return fmt::format("run python3 -c \"import numpy as np; {}\"",
-                     fmt::format(fmt::runtime(code), quoted(named.string()),
-                                 quoted(named.stem().string() + ".npy"), quoted(folder.string()),
-                                 quoted(alike.string()), quoted((folder / named.stem()).string()),
-                                 quoted(named.stem().string() + "_part.npy"),
-                                 quoted(named.stem().string() + ".csv"),
-                                 quoted(named.stem().string() + ".npz")));
+  return fmt::format(
+      "run python3 -c \"import numpy as np; {}\"",
+      fmt::format(fmt::runtime(code), quoted(named.string()),
+                  quoted(named.stem().string() + ".npy"), quoted(folder.string()),
+                  quoted(alike.string()), quoted((folder / named.stem()).string()),
+                  quoted(named.stem().string() + "_part.npy"),
+                  quoted(named.stem().string() + ".csv"), quoted(named.stem().string() + ".npz")));
 }
 
 void refuse_foreign(const std::filesystem::path& path, std::string_view head) {

@@ -160,7 +160,7 @@ class DamagedTest(unittest.TestCase):
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.folder = pathlib.Path(cls.scratch.name)
         cls.recording, cls.forces = cls.folder / "good.h5", cls.folder / "good_forces.h5"
-        run("simulate", SCENES / "demo.toml", "-o", cls.recording, "-q", "--frames", 12)
+        run("simulate", SCENES / "demo.toml", "-o", cls.recording, "-q", "--frames", 24)
         run("solve", cls.recording, "-o", cls.forces, "-q")
 
     def commands(self, file):

@@ -136,7 +136,7 @@ class SerialSearch(StreamTest):
 
     def test_devices_without_a_board_are_named(self):
         self.board(None)
-        self.assert_fails("stream", f"serial:{self.folder}/tty*", "-q", names=["ttyUSB0 sends other bytes", "baud"])
+        self.assert_fails("stream", f"serial:{self.folder}/tty*", "-q", names=["ttyUSB0 sends lines of text", "baud"])
         self.assert_fails("stream", f"serial:{self.folder}/none*", "-q", names=["no device is", "plug"])
 
 

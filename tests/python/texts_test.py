@@ -14,6 +14,7 @@ import numpy as np
 import pillarfield as pf
 
 WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
+WORK.mkdir(parents=True, exist_ok=True)
 SEEDS = int(os.environ.get("SEEDS", "20"))
 KPA = {"kPa": 1.0, "kpa": 1.0, "kilopascals": 1.0, "kN/m2": 1.0, "psi": 6.894757, "PSI": 6.894757, "lbf/in2": 6.894757,
        "mmHg": 0.1333224, "mm Hg": 0.1333224, "N/cm2": 10.0, "N/cm^2": 10.0, "N / cm²": 10.0, "N/mm2": 1000.0,

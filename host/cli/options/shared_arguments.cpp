@@ -115,9 +115,10 @@ void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
   Group plain(command, "Plain data");
   plain.text("--dataset", options.dataset, "NAME",
              "Array of frames in an HDF5 file or .npz archive [the only one]");
-  plain.text("--times", options.times, "NAME",
-             "Array of their times in that file, seconds [time of an archive]; column of times of a "
-             "table, by name or number");
+  plain.text(
+      "--times", options.times, "NAME",
+      "Array of their times in that file, seconds [time of an archive]; column of times of a "
+      "table, by name or number");
   command
       ->add_option_function<std::string>(
           "--shape", [&](const std::string& text) { options.frame_size = frame_size_of(text); },

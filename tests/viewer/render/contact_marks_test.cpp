@@ -92,7 +92,7 @@ TEST(ContactMarks, TheHeaviestAreDrawnAndTheRestIsReported) {
   const auto marks = contact_marks(many, Ground(nullptr, wide, settings, kPlot));
   EXPECT_EQ(marks.size(), kMostContactsDrawn);
   EXPECT_EQ(marks.front().words, "2500  990 N");
-  EXPECT_EQ(contacts_left_out(many), "256 of 2450 contacts are drawn, the heaviest");
+  EXPECT_EQ(contacts_left_out(many), "256 of 2500 contacts are drawn, the heaviest");
 }
 
 }  // namespace
