@@ -439,7 +439,7 @@ StepKind weight_step() {
   step.only = SkinLayout::sensels;
   step.arguments = {
       StepArgument::per_file("load-n", "L1,L2,...", "Weight of each file, in order", {1e-6, 1e6})};
-  step.examples = {"simulate scenes/touch/pad.toml --uncalibrated --frames 10 -o idle.h5",
+  step.examples = {"simulate scenes/touch/pad.toml --uncalibrated --frames 20 -o idle.h5",
                    kTareIdle, "simulate scenes/touch/pad.toml --uncalibrated -o rolled.h5",
                    "calibrate weight rolled.h5 --load-n 20 --calibration tared.h5 -o pad.h5"};
   return step;

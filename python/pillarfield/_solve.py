@@ -98,9 +98,9 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     if not isinstance(tare_frames, numbers.Integral):
         raise ArgumentError("tare_frames", f"it is {tare_frames!r:.60}", "give a whole number of frames")
     if tare_frames:
-        if not 10 <= tare_frames < len(source):
+        if not 20 <= tare_frames < len(source):
             raise Error("tare_frames", f"{tare_frames} of {len(source)} frames cannot be the unloaded ones",
-                        "give 10 or more, but fewer than there are")
+                        "give 20 or more, but fewer than there are")
         unloaded, before = source.read(0, 1, tare_frames), calibration or source.calibration
         try:
             calibration = tare(unloaded, before,

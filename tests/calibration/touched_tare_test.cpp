@@ -292,8 +292,9 @@ class World {
   std::string message_;
 };
 
-/// Number of worlds of each kind that are not judged as they should be.
-void run_worlds(std::uint64_t seeds, double most_readings, double most_sound) {
+/// Judges worlds of each kind, and prints how many are not as they should be. One share is allowed
+/// to sound skins and to loads that rest all the time, which no change in time shows.
+void run_worlds(std::uint64_t seeds, double most_readings, double most_steady) {
   const char* const text = std::getenv("PILLARFIELD_FIRST_SEED");
   const std::uint64_t first = text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
   for (int kind = 0; kind <= static_cast<int>(TouchKind::flickers); ++kind) {
@@ -308,7 +309,9 @@ void run_worlds(std::uint64_t seeds, double most_readings, double most_sound) {
       all += "\n  seed " + std::to_string(seed) + ": " + world.words() + found;
     }
     std::cout << kTouchKinds[kind] << ": " << wrong << " of " << seeds << " wrong\n";
-    EXPECT_LE(static_cast<double>(wrong), kind <= 1 ? most_sound * static_cast<double>(seeds) : 0)
+    EXPECT_LE(static_cast<double>(wrong), kind <= static_cast<int>(TouchKind::covers)
+                                              ? most_steady * static_cast<double>(seeds)
+                                              : 0)
         << kTouchKinds[kind] << all;
   }
 }

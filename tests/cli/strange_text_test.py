@@ -11,7 +11,7 @@ import numpy
 
 from command import BALL, PROGRAM, CommandTest, run
 
-SCENE = BALL.replace("A ball", "{title}").replace("frames = 6", "frames = 10")
+SCENE = BALL.replace("A ball", "{title}").replace("frames = 6", "frames = 24")
 
 ESCAPES = "a\x1b[31mb\x1b]0;c\x07\x9b2Jd\x7f"
 ESCAPED = r"a\u001b[31mb\u001b]0;c\u0007\u009b2Jd\u007f"
