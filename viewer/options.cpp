@@ -191,7 +191,7 @@ void add_layers(CLI::App& app, Options& options) {
   clear("--no-hatch", options.look.hatch, "No hatching of ambiguous pillars");
   clear("--no-contacts", options.look.contacts,
         "No marks of contacts: extent, id, force, centre of pressure, shear");
-  app.add_flag("--contacts")->group("");  // Of old command lines; the default.
+  app.add_flag("--contacts")->group("");  // for old command lines; the default
   layers.flag("--relief", options.look.relief, "In 3-D, raise the surface by the normal force");
   clear("--no-legend", options.look.legend, "Only the field, without axes and colour bar");
 }

@@ -130,7 +130,7 @@ std::optional<std::size_t> standing_out(const Skin& skin, const std::vector<doub
       ++together;
       if (!first) first = i;
     }
-    // Of a small array a touch is itself a large share of what stands far out.
+    // A touch of a small array is itself a large share of what stands far out.
     const double chance = limit > kFarOut * spread ? std::min(share, kMostFarOut) : share;
     const double by_chance = 6 * static_cast<double>(sorted.size()) * std::pow(chance, 4);
     if (together > (by_chance < 0.01 ? 0 : 10 + 5 * by_chance)) return first;

@@ -20,7 +20,7 @@ namespace {
 /// The macros of a program with their values.
 using Definitions = std::map<std::string, std::string, std::less<>>;
 
-/// What sizes the memory of a real sensor's effects.
+/// Defines the sizes of the memory of a real sensor's effects.
 void define_sizes(const SensorEffects& effects, Definitions& all) {
   if (effects.memory) {
     all["PF_PLAYS"] = fmt::format("{}", effects.memory->plays.size());

@@ -39,7 +39,7 @@ class ParityCheck {
   [[nodiscard]] double stated_noise() const { return noise_; }
   [[nodiscard]] double without_rounding(double noise) const;
 
-  /// What the parity of a pillar is compared with, for each cause that makes one.
+  /// Sums with which the parity of a pillar is compared, for each cause that makes one.
   enum Term : std::size_t { kParity, kTare, kDrift, kSum, kX, kY, kCurve, kLeak, kTerms };
   using Products = std::array<std::array<double, kTerms>, kTerms>;
 

@@ -16,7 +16,7 @@ typedef struct {
   float band;
 } BaselinePace;
 
-/* What a block remembers of its touch, mean counts above the tares. */
+/* Memory of a block of its touch, mean counts above the tares. */
 typedef struct {
   Real peak; /* largest load; zero once the rest has gone */
   Real low;  /* smallest since the load was last large beside the peak */

@@ -85,7 +85,7 @@ TEST(SlipTrend, FollowsARampAfterARestAndAfterASwing) {
   }
 }
 
-/// Of any load: probabilities do not fall with the horizon.
+/// Probabilities under any load do not fall with the horizon.
 TEST(SlipTrend, ProbabilitiesDoNotFallWithTheHorizon) {
   std::mt19937 random(1);
   const auto draw = [&](double low, double high) {

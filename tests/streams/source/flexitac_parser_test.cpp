@@ -266,7 +266,7 @@ TEST(FlexitacParser, AFrameArrivedWithItsLastByte) {
 TEST(FlexitacParser, ABoardOpenedInsideAFrameLosesNothing) {
   std::mt19937 random(1);
   for (int seed = 0; seed < 200; ++seed) {
-    // What waited since before ends anywhere, and the line goes on anywhere.
+    // Bytes that waited since before end anywhere, and the line goes on anywhere.
     const std::string waited =
         joined(quiet_frames(0, 1 + static_cast<std::uint32_t>(random() % 9)));
     const std::string bytes = waited.substr(random() % 100, random() % waited.size()) +
