@@ -65,7 +65,7 @@ std::uint32_t slots_for(const RingLayout& layout) {
 }
 
 RingLayout layout_of(const PillarfieldRing& ring) {
-  RingLayout layout{static_cast<PillarfieldRingKind>(ring.kind), ring.rows, ring.cols, ring.type};
+  RingLayout layout{ring.kind, ring.rows, ring.cols, ring.type};
   if (!holds_results(layout)) return layout;
   layout.pitch_mm = ring.pitch_mm;
   if (ring.type != 0) layout.pitch_mm.row_mm = double{std::bit_cast<float>(ring.type)};

@@ -12,7 +12,7 @@ namespace pillarfield {
 
 /// The content of a ring.
 struct RingLayout {
-  PillarfieldRingKind kind = PILLARFIELD_RING_FRAMES;
+  std::uint32_t kind = PILLARFIELD_RING_FRAMES;  ///< PillarfieldRingKind; a foreign ring has any
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
   std::uint32_t type = 0;  ///< PillarfieldReadingType of frames
