@@ -25,7 +25,7 @@ namespace {
 
 /// Distance from the typical level, in spreads, of neighbours that stand out together.
 constexpr double kStandsOut = 3;
-/// That of which at most this share of the sensels has more by itself.
+/// Distance, in spreads, that at most the share kMostFarOut of sound sensels exceeds alone.
 constexpr double kFarOut = 6;
 constexpr double kMostFarOut = 0.05;
 

@@ -11,7 +11,7 @@
 namespace pillarfield {
 namespace {
 
-/// Power of the difference of two shorted lines, in that which the lines beside them foretell.
+/// Power of the difference of two shorted lines, relative to what the lines beside them predict.
 constexpr double kShortedPower = 0.05;
 /// The same in their own power, of the first and the last line.
 constexpr double kShortedEnds = 0.01;
